@@ -39,6 +39,8 @@ pub mod mode;
 pub mod motor_map;
 pub mod mounting;
 pub mod params;
+pub mod position;
+pub mod position_hold;
 pub mod rate;
 pub mod rc;
 pub mod remote;

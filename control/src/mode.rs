@@ -21,6 +21,7 @@ mod failsafe;
 mod flight;
 mod guards;
 mod hold;
+mod holding;
 mod landed;
 mod lean;
 mod logic;
@@ -44,6 +45,7 @@ use crate::arming::ArmingInhibits;
 use crate::bench::{BenchAnswer, BenchRequest};
 use crate::grip::GripState;
 use crate::grip_memory::GripMemory;
+use crate::position;
 use crate::rc::Sticks;
 use crate::remote::{RemoteAnswer, RemoteRequest};
 use crate::setpoint::{ClampCommand, Setpoint};
@@ -113,6 +115,8 @@ modes! {
     Armed in armed = 2, "ARMED";
     /// Free flight under the pilot's sticks.
     Flight in flight = 3, "FLIGHT";
+    /// Free flight that holds the position; the sticks ask for velocities.
+    Hold in holding = 11, "HOLD";
     /// Resting on the pipe with the rotors still helping; attitude held, yaw given up.
     Contact in contact = 4, "CONTACT";
     /// Tendons closing the chosen arms under the pressure loop; rotors spool down once the grip is proven.
@@ -177,6 +181,8 @@ pub struct Inputs {
     pub bench: Option<BenchRequest>,
     /// Order of a remote link.
     pub remote: Option<RemoteRequest>,
+    /// Where the vehicle is; its own age says since when that is only by the inertial sensor.
+    pub position: Option<position::Estimate>,
 }
 
 impl Inputs {
@@ -199,6 +205,7 @@ impl Inputs {
             }),
             motion: self.motion.filter(sane),
             battery: self.battery.filter(|v| v.is_finite()),
+            position: self.position.filter(position::Estimate::is_finite),
             ..self
         }
     }

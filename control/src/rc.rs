@@ -12,6 +12,9 @@
 //! | 6 | stick mode | angle, rate, direct |
 //! | 7 | perch switch | off, on |
 //! | 8 | arms that close | all, front, rear |
+//! | 9 | hold switch | off, off, on |
+//!
+//! Channel 9 came later: a transmitter that leaves it out, or centres it, flies without.
 
 use crate::math::clamp;
 
@@ -85,6 +88,8 @@ pub struct Sticks {
     pub arm_switch: bool,
     /// On closes the arms, off releases them.
     pub perch_switch: bool,
+    /// On holds the position, off flies by the sticks.
+    pub hold_switch: bool,
     /// Reading of the sticks.
     pub stick_mode: StickMode,
     /// Arms to close.
@@ -111,7 +116,7 @@ impl Sticks {
                 return Err(ChannelError { channel, raw });
             }
         }
-        let &[roll, pitch, throttle, yaw, arm, mode, perch, arms, ..] = channels;
+        let &[roll, pitch, throttle, yaw, arm, mode, perch, arms, hold, ..] = channels;
         Ok(Self {
             roll: centred(roll),
             pitch: -centred(pitch),
@@ -119,6 +124,7 @@ impl Sticks {
             throttle: from_zero(throttle),
             arm_switch: position(arm) == Position::High,
             perch_switch: position(perch) == Position::High,
+            hold_switch: RAW_VALID.contains(&hold) && position(hold) == Position::High,
             stick_mode: match position(mode) {
                 Position::Low => StickMode::Angle,
                 Position::Middle => StickMode::Rate,
@@ -132,7 +138,7 @@ impl Sticks {
         })
     }
 
-    /// The frame for these sticks, exact to the count; channels 9 to 16 are centred.
+    /// The frame for these sticks, exact to the count; channels 10 to 16 are centred, and 9 where the hold switch is off.
     pub fn to_channels(&self) -> [u16; CHANNELS] {
         let c = RAW_CENTRE;
         let two = |on| if on { RAW_HIGH } else { RAW_LOW };
@@ -151,8 +157,9 @@ impl Sticks {
         let yaw = to_centred(self.yaw);
         let throttle = to_from_zero(self.throttle);
         let (arm, perch) = (two(self.arm_switch), two(self.perch_switch));
+        let hold = if self.hold_switch { RAW_HIGH } else { c };
         [
-            roll, pitch, throttle, yaw, arm, mode, perch, arms, c, c, c, c, c, c, c, c,
+            roll, pitch, throttle, yaw, arm, mode, perch, arms, hold, c, c, c, c, c, c, c,
         ]
     }
 }

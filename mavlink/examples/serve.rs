@@ -57,6 +57,7 @@ fn picture() -> Vehicle {
             throttle: 0.75,
             arm_switch: false,
             perch_switch: true,
+            hold_switch: false,
             stick_mode: StickMode::Direct,
             arms: ArmChoice::Front,
         }),

@@ -1,5 +1,5 @@
 //! What others measure and wish: an external pose and an offboard attitude, checked, in the vehicle's axes, with the time
-//! of measurement. Nothing flies by them: they are published for those that will.
+//! of measurement. The position hold flies by the poses; nothing flies by the attitudes yet.
 
 pub mod attitude;
 pub mod clock;

@@ -85,6 +85,10 @@ pub struct Sample {
     pub throttle: f64,
     /// The rotors saturated.
     pub saturated: bool,
+    /// Position by the stack's estimate, in the true axes, m; `None` without one.
+    pub position_estimate: Option<[f64; 3]>,
+    /// Position of the newest pose that the stack has, late as it is, in the true axes, m; `None` without one.
+    pub pose: Option<[f64; 3]>,
 }
 
 /// A flown step of the mission.

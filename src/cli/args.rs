@@ -18,7 +18,7 @@ use sophie_control::wrench::Configuration;
 use sophie_report::terminal::console;
 use sophie_sim::mixers::Variant;
 use sophie_sim::scenario::keys::{self, Range};
-use sophie_sim::scenario::{ArmBending, Overrides, Scenario};
+use sophie_sim::scenario::{ArmBending, Assist, Overrides, PositionSensor, Scenario};
 
 use super::key;
 
@@ -336,6 +336,12 @@ pub struct MissionArgs {
     /// Arms that close: 4 (all), 2 (front pair) or rear.
     #[arg(long, value_name = "2|4|rear", value_parser = arms, allow_negative_numbers = true)]
     arms: Option<ArmChoice>,
+    /// What measures the position: none, or pose (poses over MAVLink, late and with gaps).
+    #[arg(long, value_name = "NAME", value_parser = position_sensor)]
+    sensors: Option<PositionSensor>,
+    /// What the pilot leaves to the vehicle: none, or hold (hovers in the mode HOLD).
+    #[arg(long, value_name = "NAME", value_parser = assist)]
+    assist: Option<Assist>,
     /// Gain on the elastic term of the arm equation, 1 (literal) to 10.
     #[arg(long, value_name = "K", value_parser = gain_k, allow_negative_numbers = true)]
     gain_k: Option<f64>,
@@ -365,6 +371,8 @@ impl MissionArgs {
             configuration: self.config,
             mixer: self.mixer,
             arms: self.arms,
+            sensors: self.sensors,
+            assist: self.assist,
             seed: self.seed,
         }
     }
@@ -515,6 +523,14 @@ fn configuration(text: &str) -> Result<Configuration, String> {
 
 fn bending(text: &str) -> Result<ArmBending, String> {
     word(text, keys::BENDINGS).map(keys::bending)
+}
+
+fn position_sensor(text: &str) -> Result<PositionSensor, String> {
+    word(text, keys::POSITION_SENSORS).map(keys::position_sensor)
+}
+
+fn assist(text: &str) -> Result<Assist, String> {
+    word(text, keys::ASSISTS).map(keys::assist)
 }
 
 fn mixer(text: &str) -> Result<Variant, String> {

@@ -63,6 +63,7 @@ pub fn spawn(
     levels.spawn(TaskId::Analog, flight::analog(links, board.analog)?);
     levels.spawn(TaskId::Clamp, flight::clamp(links)?);
     levels.spawn(TaskId::Servos, flight::servos(links, board.servos)?);
+    levels.spawn(TaskId::Position, flight::position(links)?);
     levels.spawn(TaskId::Arms, arms(links, board.arms)?);
     levels.spawn(TaskId::Telemetry, telemetry(links, board.telemetry)?);
     let looks = board.chip.looks;

@@ -84,6 +84,12 @@ pub async fn commander(links: &'static Links) -> ! {
     sophie_tasks::commander::run(links).await
 }
 
+/// Position for the hold.
+#[embassy_executor::task]
+pub async fn position(links: &'static Links) -> ! {
+    sophie_tasks::position::run(links).await
+}
+
 /// Deadline supervision and watchdog. Also keeps the state that outlives a reset.
 #[embassy_executor::task]
 pub async fn supervisor(links: &'static Links, port: sophie_boards::WatchdogPort, memory: Memory) -> ! {

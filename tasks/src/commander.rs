@@ -3,12 +3,11 @@
 //! A miss delays a state machine whose shortest timer is 50 ms; rotors stop when its setpoint is stale.
 
 use embassy_time::{Duration, Instant};
-use sophie_control::math::cos;
 use sophie_control::mode::{Inputs, Mode, ModeLogic, Motion, Outputs};
 use sophie_control::tendon::ForceLimit;
 
 use crate::deadline::{FixedRate, Level, TaskId};
-use crate::links::{Links, MixOutput, Status};
+use crate::links::{Links, Status};
 use crate::warning::Warning;
 
 /// Smallest infill flown in the paper, %.
@@ -81,7 +80,7 @@ fn collect(links: &Links, late: bool) -> Inputs {
             accel: a.accel,
             calibrated: a.calibrated,
         }),
-        lift: links.mix.fresh().map_or(0.0, |mix| lift(&mix)),
+        lift: links.mix.fresh().map_or(0.0, |mix| mix.lift()),
         grip: links.grip.fresh(),
         fsr_fault: links
             .contact
@@ -92,19 +91,8 @@ fn collect(links: &Links, late: bool) -> Inputs {
         hardware: links.hardware(),
         bench: links.bench.fresh(),
         remote: links.remote.fresh(),
+        position: links.position.fresh(),
     }
-}
-
-/// Demanded thrust along body -z, N.
-fn lift(mix: &MixOutput) -> f32 {
-    if !mix.running {
-        return 0.0;
-    }
-    mix.thrusts
-        .iter()
-        .zip(mix.tilt)
-        .map(|(thrust, tilt)| thrust * cos(tilt))
-        .sum()
 }
 
 /// Missed deadlines of the flight level; too many forbid arming.

@@ -37,6 +37,7 @@ pub mod motors;
 pub mod one_of;
 pub mod parameters;
 pub mod ports;
+pub mod position;
 pub mod rc;
 pub mod retained_state;
 pub mod retained_store;

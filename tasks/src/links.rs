@@ -29,6 +29,7 @@ pub use sophie_control::grip::GripState;
 use sophie_control::grip_memory::GripMemory;
 use sophie_control::mode::{Mode, Reason};
 use sophie_control::params::Params;
+pub use sophie_control::position::Estimate;
 use sophie_control::rc::Sticks;
 pub use sophie_control::remote::{RemoteAnswer, RemoteRequest};
 pub use sophie_control::setpoint::{ClampCommand, Setpoint};
@@ -372,7 +373,7 @@ links! {
     /// Filtered inertial samples.
     imu: ImuSample, Imu to "estimator", stale after 5 ms;
     /// The estimate.
-    attitude: Attitude, Estimator to "control, commander, arms, telemetry, supervisor, console, mavlink", stale after 5 ms;
+    attitude: Attitude, Estimator to "control, commander, position, arms, telemetry, supervisor, console, mavlink", stale after 5 ms;
     /// What the rotors are to do; without it they stop.
     setpoint: Setpoint, Commander to "control", stale after 50 ms;
     /// What the controllers ask of the mixer.
@@ -380,7 +381,7 @@ links! {
     /// Where down is aimed at in body axes, and the wanted heading against the present one.
     target: Target, Control to "log", stale after 50 ms;
     /// What the mixer gave, and to `control` what it could not give; without it the motors stop.
-    mix: MixOutput, Mixer to "motors, control, clamp, commander, supervisor, mavlink", stale after 10 ms;
+    mix: MixOutput, Mixer to "motors, control, clamp, commander, position, supervisor, mavlink", stale after 10 ms;
     /// Contact pressures; without them closed arms keep their force and are faulty.
     contact: Contact, Analog to "clamp, commander, console", stale after 20 ms;
     /// The flight battery, with each fifth conversion; the mixer keeps the last one.
@@ -409,8 +410,10 @@ links! {
     bench: BenchRequest, Console to "commander", stale after 150 ms;
     /// What has become of it.
     bench_answer: BenchAnswer, Commander to "console, mavlink", stale after 200 ms;
-    /// Where others see the vehicle, as they send it; nothing flies by it.
-    external_pose: ExternalPose, Mavlink to "console", stale after 200 ms;
+    /// Where others see the vehicle, as they send it.
+    external_pose: ExternalPose, Mavlink to "position, console", stale after 200 ms;
+    /// Where the vehicle is; the message says since when only the inertial sensor says it. Without it nothing is held.
+    position: Estimate, Position to "commander, console, log", stale after 50 ms;
     /// The attitude that another computer wishes, as it sends it; nothing flies by it.
     offboard: OffboardAttitude, Mavlink to "console", stale after 500 ms;
     /// What the MAVLink line is like.

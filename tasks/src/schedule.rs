@@ -120,6 +120,8 @@ tasks! {
     Rc "rc": Steady, each 20000 us, within 2000 us, Unwatched;
     /// Mode logic.
     Commander "commander": Steady, each 10000 us at 300 us, within 10000 us, Watched;
+    /// Position, velocity and wind, for the hold. Without poses it does nothing, and the pilot flies as ever.
+    Position "position": Steady, each 5000 us at 150 us, within 5000 us, Unwatched;
     /// Arm sensors. Their bus may stall; the mixer does without.
     Arms "arms": Background, each 10000 us at 0 us, within 10000 us, Unwatched;
     /// Telemetry to the pilot.

@@ -22,7 +22,7 @@ use sophie_control::wrench::{Configuration, PerArm};
 use sophie_fakes::{FakeAnalog, FakeImu, FakeLine, FakeMotors, FakeServos};
 use sophie_tasks::links::{Links, RcState};
 use sophie_tasks::mavlink::signing::{Key, Record, Stored};
-use sophie_tasks::mavlink::{self, Line};
+use sophie_tasks::mavlink::{self, Lines};
 use sophie_tasks::ports::{
     AnalogFrame, ArmImus, Chip, ImuReading, Loaded, Look, NotSet, PortError, SerialOutput, Storage,
     StorageError,
@@ -364,21 +364,15 @@ impl Run {
         };
         let shell: &'static Shell = Box::leak(Box::default());
         let restarted = chip.restarted.clone();
-        let rate = Line {
-            bytes_per_second: 5000,
-            signing: key.map_or(Stored::None, |key| Stored::Key(Record::fresh(key))),
+        let lines = Lines {
+            inputs: [line],
+            outputs: [frames.clone()],
+            bytes_per_second: [5000],
         };
+        let signing = key.map_or(Stored::None, |key| Stored::Key(Record::fresh(key)));
         let restart = move || restarted.set(true);
         let storage = chip.clone();
-        time.spawn(mavlink::run(
-            links,
-            line,
-            frames.clone(),
-            shell,
-            storage,
-            restart,
-            rate,
-        ));
+        time.spawn(mavlink::run(links, lines, shell, storage, restart, signing));
         let tapped = Tapped(shell.port(), screen);
         time.spawn(console::run(links, shell.port(), tapped, chip.clone(), chip));
     }

@@ -2,6 +2,7 @@
 
 use crate::bench::Spin;
 use crate::desaturation::Given;
+use crate::math::cos;
 use crate::rate::Feedback;
 use crate::vector::{Quat, Vec3};
 use crate::wrench::{PerArm, Wrench};
@@ -89,6 +90,15 @@ pub struct MixOutput {
 }
 
 impl MixOutput {
+    /// Demanded thrust along body -z, N; 0 while the rotors stand.
+    pub fn lift(&self) -> f32 {
+        if !self.running {
+            return 0.0;
+        }
+        let arms = self.thrusts.iter().zip(self.tilt);
+        arms.map(|(thrust, tilt)| thrust * cos(tilt)).sum()
+    }
+
     /// Feedback for the rate loop.
     #[inline(always)]
     pub const fn feedback(&self) -> Feedback {

@@ -67,6 +67,8 @@ pub struct Context {
     /// Off since power-up.
     arm_seen_off: bool,
     pub perch_switch: PerchSwitch,
+    /// The hold switch was off since it was last in force.
+    pub hold_seen_off: bool,
     pub power_up_grip: PowerUpGripCheck,
     pub lean: Lean,
     /// Acceleration along world down, m/s².
@@ -97,6 +99,7 @@ impl Context {
                 seen_on: false,
                 left_on: true,
             },
+            hold_seen_off: false,
             power_up_grip: PowerUpGripCheck::default(),
             lean: Lean::default(),
             sinking: 0.0,
@@ -119,6 +122,7 @@ impl Context {
         if let Some(s) = i.sticks {
             self.throttle = clamp(s.throttle, 0.0, 1.0);
             self.arm_seen_off |= !s.arm_switch;
+            self.hold_seen_off |= !s.hold_switch;
             let perch = &mut self.perch_switch;
             perch.seen_off |= !s.perch_switch;
             perch.left_on &= s.perch_switch;

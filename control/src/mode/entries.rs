@@ -9,6 +9,7 @@ use super::escaping::Escaping;
 use super::failsafe::Failsafe;
 use super::flight::Flight;
 use super::hold::{Hold, Spool};
+use super::holding;
 use super::landed::Landed;
 use super::perched::Perched;
 use super::releasing::{Releasing, release_thrust};
@@ -51,6 +52,12 @@ pub fn armed(_: &State, _: &mut Step<'_>, _: Option<Reason>) -> Armed {
 /// The pilot flies.
 pub fn flight(_: &State, _: &mut Step<'_>, _: Option<Reason>) -> Flight {
     Flight
+}
+
+/// The position is held from here on; a later hold takes a new turn of the switch.
+pub fn holding(_: &State, step: &mut Step<'_>, _: Option<Reason>) -> holding::Hold {
+    step.context.hold_seen_off = false;
+    holding::Hold::here(step)
 }
 
 /// On the ground.

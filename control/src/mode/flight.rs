@@ -3,7 +3,7 @@
 use super::behaviour::Behaviour;
 use super::context::{Context, Step};
 use super::descent::descent;
-use super::{Inputs, Reason, Setpoint, demand};
+use super::{Inputs, Reason, Setpoint, demand, holding};
 use crate::math::cos;
 
 /// Largest lean at which the arms close, rad. Before they hold, a vehicle leaning by θ along a pipe's flank stays only
@@ -31,6 +31,13 @@ impl Flight {
 
 impl Behaviour for Flight {
     fn advance(&mut self, step: &mut Step<'_>) {
+        if step.inputs.sticks.as_ref().is_some_and(holding::asked) && step.context.noted().is_none() {
+            if !step.context.hold_seen_off {
+                step.context.note(Some(Reason::HoldSwitchNotOff));
+            } else if !holding::fresh(step.inputs) {
+                step.context.note(Some(Reason::NoPosition));
+            }
+        }
         if !(Self::means_to_perch(step) && step.context.support.resting()) {
             return;
         }

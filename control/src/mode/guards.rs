@@ -6,6 +6,7 @@ use super::context::Step;
 use super::escaping::{TAKE_OVER_TIME, takes_over};
 use super::failsafe::{RESUME_STICK, RESUME_TIME};
 use super::flight::Flight;
+use super::holding;
 use super::perched::Perched;
 use super::releasing::{FREE_TIME, Releasing};
 use super::{Reason, State};
@@ -56,6 +57,12 @@ guards! {
     IDLED = "idle for too long", |_, s| s.context.since >= super::armed::IDLE_MAX;
     STOOD = "landed long enough", |_, s| s.context.since >= super::landed::LANDED_TIME;
     GROUNDED = "the ground carries nearly all", |_, s| s.context.support.grounded();
+
+    HOLD_ON = "hold switch on, sticks in angle mode, perch switch off", |_, s| sticks(s, holding::asked);
+    HOLD_OFF = "hold switch off, sticks in another mode, or perch switch on", |_, s| sticks(s, |t| !holding::asked(t));
+    HOLD_TURNED = "hold switch was off since the last try", |_, s| s.context.hold_seen_off;
+    POSITION_FRESH = "position known", |_, s| holding::fresh(s.inputs);
+    POSITION_LOST = "position lost for too long", |_, s| holding::lost(s.inputs);
 
     MEANS_TO_PERCH = "perch switch on, throttle down", |_, s| Flight::means_to_perch(s);
     SWITCH_TURNED = "perch switch was off since the last try", |_, s| s.context.perch_switch.seen_off;

@@ -48,6 +48,14 @@ reasons! {
     PerchSwitchNotOff = "turn perch switch off first",
     /// It feels the pipe and leans too much to close the arms.
     NotOnCrown = "leaning, not on the crown",
+    /// A hold takes a new turn of its switch.
+    HoldSwitchNotOff = "turn hold switch off first",
+    /// Nobody has said in time where the vehicle is.
+    NoPosition = "no position to hold",
+    /// Holding: height and learnt wind alone, until a position comes or the hold ends.
+    PositionStale = "position stale: steer it",
+    /// The hold has ended.
+    PositionLost = "position lost: throttle to hover",
     /// The vehicle leaves the pipe by itself.
     SlidesOff = "sliding off the pipe",
     /// After an escape the throttle has not been moved.

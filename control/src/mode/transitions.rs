@@ -70,13 +70,16 @@ const fn rotors(when: &'static [Guard], to: Entry, notice: Notice) -> Transition
 
 use Entry as To;
 use Mode::{
-    Armed, Calibrating, Clamping, Contact, Disarmed, Escaping, Failsafe, Flight, Landed, Perched, Releasing,
+    Armed, Calibrating, Clamping, Contact, Disarmed, Escaping, Failsafe, Flight, Hold, Landed, Perched,
+    Releasing,
 };
 use Notice::{Clear, Keep, Lasting, Show, ShowOf};
 
 /// The modes in which an arm may hold while rotors turn.
 const CLOSED: &[Mode] = &[Clamping, Releasing];
 const IDLE: &[Mode] = &[Armed, Landed];
+/// Those in which the pilot flies.
+const FLOWN: &[Mode] = &[Flight, Hold];
 
 /// Why a closing ends.
 const DOUBTED: Notice = ShowOf(|state, step| match state {
@@ -110,13 +113,17 @@ pub const TRANSITIONS: &[Transition] = &[
     row(&[Armed], &[IDLED], To::Disarmed(entries::stopped), Show(Reason::IdleTooLong)),
     row(&[Landed], &[STOOD], To::Disarmed(entries::stopped), Clear),
     // In the air.
-    row(&[Flight], &[RADIO_LOST], To::Failsafe(entries::failsafe), Lasting(Reason::RADIO_LOST)),
-    row(&[Flight], &[BATTERY_CRITICAL], To::Failsafe(entries::failsafe), Lasting(Reason::BatteryCritical)),
-    row(&[Flight], &[LINE_SILENT], To::Failsafe(entries::failsafe), Lasting(Reason::LINE_SILENT)),
-    row(&[Flight], &[THROTTLE_LOW, GROUNDED], To::Landed(entries::landed), Keep),
+    row(FLOWN, &[RADIO_LOST], To::Failsafe(entries::failsafe), Lasting(Reason::RADIO_LOST)),
+    row(FLOWN, &[BATTERY_CRITICAL], To::Failsafe(entries::failsafe), Lasting(Reason::BatteryCritical)),
+    row(FLOWN, &[LINE_SILENT], To::Failsafe(entries::failsafe), Lasting(Reason::LINE_SILENT)),
+    // The pilot's hands first.
+    row(&[Hold], &[HOLD_OFF], To::Flight(entries::flight), Clear),
+    row(FLOWN, &[THROTTLE_LOW, GROUNDED], To::Landed(entries::landed), Keep),
+    row(&[Hold], &[POSITION_LOST], To::Flight(entries::flight), Show(Reason::PositionLost)),
     row(&[Flight], &[MEANS_TO_PERCH, SWITCH_TURNED, SLIDES_AT_TOUCH],
         To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
     row(&[Flight], &[MEANS_TO_PERCH, SWITCH_TURNED, RESTING, LEVEL], To::Contact(entries::contact), Keep),
+    row(&[Flight], &[HOLD_ON, HOLD_TURNED, POSITION_FRESH, NOT_RESTING], To::Hold(entries::holding), Clear),
     // Onto the pipe.
     row(&[Contact], &[CALLED_OFF], To::Flight(entries::flight), Keep),
     row(&[Contact], &[SLIDES], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),

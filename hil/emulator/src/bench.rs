@@ -383,6 +383,9 @@ impl Aircraft for Bench<'_> {
             tension_asked: self.tension(),
             pressure: self.pressure(),
             saturated: false,
+            // The emulated board has nothing that sends poses.
+            position: None,
+            pose: None,
         }
     }
 

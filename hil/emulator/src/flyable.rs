@@ -2,7 +2,7 @@
 
 use sophie_control::wrench::Configuration;
 use sophie_sim::mixers::Variant;
-use sophie_sim::scenario::{Scenario, Step, keys};
+use sophie_sim::scenario::{PositionSensor, Scenario, Step, keys};
 use sophie_tasks::start::StartCause;
 
 /// Refuses a scenario that needs another image.
@@ -23,6 +23,12 @@ pub fn check(scenario: &Scenario) -> Result<(), String> {
             "{name}: configuration {}: the image flies {}",
             keys::configuration_word(scenario.vehicle.configuration),
             keys::configuration_word(Configuration::default())
+        ));
+    }
+    if scenario.sensors.position != PositionSensor::None {
+        return Err(format!(
+            "{name}: sensors.position {}: nothing on the bench sends poses",
+            keys::position_sensor_word(scenario.sensors.position)
         ));
     }
     for step in &scenario.steps {
@@ -48,6 +54,9 @@ mod tests {
         assert_eq!(check(&scenario), Ok(()));
         scenario.params.rate_p = 9.0;
         assert_eq!(check(&scenario), Ok(()));
+        scenario.sensors.position = PositionSensor::Pose;
+        assert!(check(&scenario).unwrap_err().contains("position pose"));
+        scenario.sensors.position = PositionSensor::None;
         scenario.mixer = Variant::Rigid;
         assert!(check(&scenario).unwrap_err().contains("mixer rigid"));
     }

@@ -97,6 +97,7 @@ fn sticks_come_as_pulses_in_the_transmitters_order() {
         throttle: 0.25,
         arm_switch: true,
         perch_switch: false,
+        hold_switch: false,
         stick_mode: StickMode::Rate,
         arms: ArmChoice::Rear,
     });

@@ -7,8 +7,8 @@ use crate::scenario::Scenario;
 
 /// Steady wind force against which the vehicle keeps place and height.
 ///
-/// Value: W tan θ, N, θ the largest lean with L cos θ >= W within the stick's limit. Limit: three times the RMS of the
-/// gusts' horizontal force on both axes. By the plant's drag of 0.3 N s/m a wind of v pushes with 0.3 v.
+/// Value: W tan θ, N, θ the largest lean with L cos θ >= W within the stick's limit. Limit: the scenario's steady wind, and
+/// three times the RMS of the gusts' horizontal force on both axes. By the plant's drag of 0.3 N s/m a wind of v pushes with 0.3 v.
 pub fn row(scenario: &Scenario, built: &Built) -> Row {
     let lift = built.lift(scenario.vehicle.rotor.thrust_max);
     let upright = (built.weight / lift).clamp(0.0, 1.0).acos();
@@ -18,7 +18,8 @@ pub fn row(scenario: &Scenario, built: &Built) -> Row {
     } else {
         0.0
     };
-    let needed = GUST_FACTOR * scenario.world.gust_force * std::f64::consts::SQRT_2;
+    let gusts = GUST_FACTOR * scenario.world.gust_force * std::f64::consts::SQRT_2;
+    let needed = scenario.world.steady_wind + gusts;
     Row::new("wind force", force, "N", Limit::AtLeast(needed))
         .advise("raise stick_angle, make it lighter, or wait for less wind")
 }

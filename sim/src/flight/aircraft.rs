@@ -104,4 +104,8 @@ pub struct Belief {
     pub pressure: PerArm<f64>,
     /// The rotors saturated.
     pub saturated: bool,
+    /// Estimated position in the true axes, m; `None` without one.
+    pub position: Option<[f64; 3]>,
+    /// Position of the newest pose in the true axes, m; `None` without a fresh one.
+    pub pose: Option<[f64; 3]>,
 }

@@ -285,6 +285,8 @@ fn sample(t: f64, plant: &Plant, stack: &impl Aircraft, throttle: f64) -> Sample
         battery_voltage: plant.battery_voltage(),
         throttle,
         saturated: belief.saturated,
+        position_estimate: belief.position,
+        pose: belief.pose,
     }
 }
 
@@ -328,6 +330,9 @@ impl Digest {
             .chain(vectors.iter().flatten())
             .chain(arms.iter().flatten());
         for value in values {
+            self.word(value.to_bits());
+        }
+        for value in s.position_estimate.iter().chain(&s.pose).flatten() {
             self.word(value.to_bits());
         }
     }

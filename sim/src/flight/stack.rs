@@ -1,10 +1,12 @@
 //! The flight stack on the simulated board: all tasks on the virtual executor, dropped at a reset.
 
+use glam::DVec3;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use sophie_control::math;
 use sophie_control::mode::Reason;
 use sophie_control::params::Params;
+use sophie_control::vector::Vec3;
 use sophie_control::wrench::{Configuration, PerArm};
 use sophie_drivers::rc_decoder::Decoder;
 use sophie_mixers::{Mixer, Variant};
@@ -13,12 +15,13 @@ use sophie_tasks::links::{GripState, Links, Newest, Status};
 use sophie_tasks::start::{Start, StartCause};
 
 use super::aircraft::{Aircraft, Belief, Reset, Said};
+use super::companion::Companion;
 use crate::aim;
 use crate::board::{Board, Port};
 use crate::clock::VirtualTime;
 use crate::live::Live;
 use crate::plant::Plant;
-use crate::scenario::Scenario;
+use crate::scenario::{PositionSensor, Scenario};
 
 /// The step of a reset that no step of the mission made.
 const NO_STEP: usize = usize::MAX;
@@ -41,6 +44,8 @@ pub struct Stack {
     noise: Pcg64Mcg,
     /// Real time and MAVLink clients; `None` in pure virtual time.
     live: Option<Live>,
+    /// The computer that sends poses; `None` where there is none.
+    companion: Option<Companion>,
 }
 
 impl Stack {
@@ -59,6 +64,10 @@ impl Stack {
     fn with(scenario: &Scenario, rng: &mut Pcg64Mcg, live: Option<Live>) -> Self {
         let board: &'static Board = Box::leak(Box::new(Board::configured(&scenario.params, rng)));
         let params = calibrated(scenario.params, board);
+        let companion = match scenario.sensors.position {
+            PositionSensor::None => None,
+            PositionSensor::Pose => Some(Companion::new(scenario, live.as_ref())),
+        };
         let mut stack = Self {
             running: None,
             board,
@@ -71,6 +80,7 @@ impl Stack {
             overruns: 0,
             noise: Pcg64Mcg::seed_from_u64(!scenario.seed),
             live,
+            companion,
         };
         stack.spawn(0);
         stack
@@ -95,20 +105,35 @@ impl Stack {
         let decoder = Decoder::from_params(&links.params);
         time.spawn(sophie_tasks::rc::run(links, Port(board), decoder));
         time.spawn(sophie_tasks::commander::run(links));
+        time.spawn(sophie_tasks::position::run(links));
         time.spawn(sophie_tasks::supervisor::run(links, Port(board), Port(board)));
         // Background.
         time.spawn(sophie_tasks::arms::run(links, Port(board)));
         time.spawn(sophie_tasks::telemetry::run(links, Port(board)));
         if let Some(live) = &mut self.live {
             live.spawn(&time, links);
+        } else if let Some(companion) = &mut self.companion {
+            companion.spawn(&time, links);
         }
         self.running = Some((time, us));
+    }
+}
+
+impl Stack {
+    /// A position in the axes of the companion computer as one in the true axes.
+    fn in_world(&self, position: Vec3) -> Option<[f64; 3]> {
+        let companion = self.companion.as_ref()?;
+        let position = DVec3::from_array(position.to_array().map(f64::from));
+        Some(companion.in_world(position).to_array())
     }
 }
 
 impl Aircraft for Stack {
     fn step_world(&mut self, plant: &mut Plant) {
         self.board.step_world(plant);
+        if let Some(companion) = &mut self.companion {
+            companion.look(plant);
+        }
     }
 
     fn take_telemetry(&mut self, buffer: &mut [u8]) -> usize {
@@ -122,6 +147,9 @@ impl Aircraft for Stack {
     fn run_until(&mut self, us: u64) -> Result<(), String> {
         if let Some(live) = &mut self.live {
             live.begin(us)?;
+        }
+        if let (Some(companion), Some((_, start))) = (&mut self.companion, &self.running) {
+            companion.speak(us, *start);
         }
         if let Some((time, start)) = &self.running {
             time.run_until(us.saturating_sub(*start));
@@ -188,6 +216,11 @@ impl Aircraft for Stack {
             tension_asked: wide(force),
             pressure,
             saturated: mix.running && mix.given.saturated(),
+            position: links.position.fresh().and_then(|e| self.in_world(e.position)),
+            pose: links
+                .external_pose
+                .fresh()
+                .and_then(|pose| self.in_world(pose.pose.position)),
         }
     }
 
@@ -202,6 +235,9 @@ impl Aircraft for Stack {
         self.board.reset();
         if let Some(live) = &self.live {
             live.reset();
+        }
+        if let Some(companion) = &self.companion {
+            companion.reset();
         }
         if cause.loses_memory() {
             let noise: [[u32; 16]; 2] =

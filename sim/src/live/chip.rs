@@ -15,6 +15,11 @@ impl Chip for ThisChip {
         self.0.restart();
     }
 
+    /// It has no loader: the firmware starts again at once.
+    fn enter_loader(&mut self) {
+        self.0.restart();
+    }
+
     fn board(&self) -> &'static str {
         "a simulated board"
     }

@@ -67,7 +67,7 @@ impl Line {
 
 /// The board's end of a line.
 #[derive(Clone, Copy)]
-pub struct LinePort(pub(super) &'static Line);
+pub struct LinePort(pub &'static Line);
 
 impl SerialInput for LinePort {
     async fn read(&mut self, buffer: &mut [u8]) -> Result<usize, PortError> {

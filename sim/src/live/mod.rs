@@ -2,9 +2,9 @@
 
 mod chip;
 mod flight;
-mod line;
+pub(crate) mod line;
 mod pace;
-mod stored;
+pub(crate) mod stored;
 mod udp;
 
 use std::cell::Cell;
@@ -100,6 +100,11 @@ impl Live {
             Port(stored),
             chip,
         ));
+    }
+
+    /// The board's line, for what reaches it beside the clients.
+    pub(crate) fn line(&self) -> &'static Line {
+        self.line
     }
 
     /// The parameters that the board restarts with, if it is to.

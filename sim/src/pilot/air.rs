@@ -14,8 +14,8 @@ const ROLL_LEAD: f64 = 1.05;
 const RECOVERED: f64 = 0.3;
 const RECOVERED_SPEED: f64 = 0.3;
 /// Distance from a point (m) and speed (m/s) at which it is reached.
-const REACHED: f64 = 0.25;
-const REACHED_SPEED: f64 = 0.25;
+pub(super) const REACHED: f64 = 0.25;
+pub(super) const REACHED_SPEED: f64 = 0.25;
 
 impl Mission {
     pub(super) fn hover(&mut self, v: &View<'_>, seconds: f64, dt: f64) -> Progress {

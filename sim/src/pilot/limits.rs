@@ -8,7 +8,8 @@ pub fn of(step: &Step) -> f64 {
         // Includes the calibration at rest.
         Step::Arm => 30.0,
         Step::TakeOff { height } => 12.0 + 4.0 * height,
-        Step::Hover { seconds } => seconds + 1.0,
+        // A hold that is lost is flown by hand, and tried again.
+        Step::Hover { seconds } => 2.0 * seconds + 20.0,
         Step::Roll { seconds, .. } => 2.0 * seconds + 30.0,
         Step::FlyToPipe => 90.0,
         // With room for several tries.

@@ -7,7 +7,7 @@ use super::Seen;
 use super::guidance::{Course, Guidance, Vertical};
 use super::limits;
 use super::stick_dynamics::StickTarget;
-use crate::scenario::{Scenario, Step};
+use crate::scenario::{Assist, Scenario, Step};
 
 /// Heading flown throughout, rad: north, along the pipe.
 pub const HEADING: f64 = 0.0;
@@ -97,6 +97,8 @@ pub struct Mission {
     pub(super) stick_angle: f64,
     pub(super) arm_switch: bool,
     pub(super) perch_switch: bool,
+    pub(super) hold_switch: bool,
+    pub(super) assist: Assist,
     pub(super) phase: Phase,
     /// Time since the step and the phase began, s.
     pub(super) step_time: f64,
@@ -126,6 +128,8 @@ impl Mission {
             stick_angle: f64::from(scenario.params.stick_angle),
             arm_switch: false,
             perch_switch: false,
+            hold_switch: false,
+            assist: scenario.pilot.assist,
             phase: Phase::Start,
             step_time: 0.0,
             phase_time: 0.0,
@@ -145,6 +149,7 @@ impl Mission {
 
     /// Begins a step.
     pub fn begin(&mut self, seen: &Seen) {
+        self.hold_switch = false;
         self.enter(Phase::Start);
         self.step_time = 0.0;
         self.missed = 0;
@@ -158,7 +163,7 @@ impl Mission {
         self.guidance.foresee(&view.seen, view.now, sticks, dt);
         match view.mode {
             Some(Mode::Failsafe) if self.trouble.is_none() => self.trouble = Some(view.text.to_owned()),
-            Some(Mode::Flight) => self.trouble = None,
+            Some(Mode::Flight | Mode::Hold) => self.trouble = None,
             _ => (),
         }
         if let Some(why) = self.stopped(step, view) {
@@ -167,6 +172,10 @@ impl Mission {
         let progress = match *step {
             Step::Arm => self.arm(view),
             Step::TakeOff { height } => self.take_off(view, height, dt),
+            Step::Hover { seconds } if self.assist == Assist::Hold => self.hover_held(view, seconds, dt),
+            Step::FlyTo { north, east, height } if self.assist == Assist::Hold => {
+                self.fly_to_held(view, DVec2::new(north, east), height, dt)
+            }
             Step::Hover { seconds } => self.hover(view, seconds, dt),
             Step::Roll { angle, seconds } => self.roll(view, angle, seconds, dt),
             Step::FlyTo { north, east, height } => self.fly_to(view, DVec2::new(north, east), height, dt),
@@ -237,6 +246,7 @@ impl Mission {
         StickTarget {
             arm_switch: self.arm_switch,
             perch_switch: self.perch_switch,
+            hold_switch: self.hold_switch,
             ..wish
         }
     }

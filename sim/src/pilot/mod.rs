@@ -8,6 +8,7 @@
 mod air;
 mod ground;
 mod guidance;
+mod held;
 mod limits;
 mod mission;
 mod perception;

@@ -19,6 +19,8 @@ pub struct StickTarget {
     pub arm_switch: bool,
     /// Perch switch on.
     pub perch_switch: bool,
+    /// Hold switch on.
+    pub hold_switch: bool,
 }
 
 /// The sticks and switches.
@@ -65,6 +67,7 @@ impl StickDynamics {
             throttle,
             arm_switch: wish.arm_switch,
             perch_switch: wish.perch_switch,
+            hold_switch: wish.hold_switch,
             stick_mode: StickMode::Angle,
             arms: self.arms,
         }

@@ -16,6 +16,8 @@ const DIVIDER: u32 = 16;
 pub struct Gust {
     force_rms: f64,
     moment_rms: f64,
+    /// The steady wind's, N, NED.
+    steady: DVec3,
     rng: Pcg64Mcg,
     force: DVec3,
     moment: DVec3,
@@ -30,11 +32,21 @@ impl Gust {
         Self {
             force_rms,
             moment_rms,
+            steady: DVec3::ZERO,
             rng,
             force: DVec3::ZERO,
             moment: DVec3::ZERO,
             count: 0,
             elapsed: 0.0,
+        }
+    }
+
+    /// The same in a steady wind that pushes with `force` N and comes from `from` rad, clockwise from north.
+    #[must_use]
+    pub fn in_wind(self, force: f64, from: f64) -> Self {
+        Self {
+            steady: DVec3::new(-from.cos(), -from.sin(), 0.0) * force,
+            ..self
         }
     }
 
@@ -61,7 +73,7 @@ impl Gust {
     /// Force, N, NED.
     #[must_use]
     pub fn force(&self) -> DVec3 {
-        self.force
+        self.force + self.steady
     }
 
     /// Moment, N·m, body.
@@ -75,6 +87,12 @@ impl Gust {
 mod tests {
     use super::super::STEP;
     use super::*;
+
+    #[test]
+    fn a_wind_from_the_east_pushes_west() {
+        let wind = Gust::new(0.0, 0.0, Pcg64Mcg::new(7)).in_wind(2.0, 90_f64.to_radians());
+        assert!((wind.force() - DVec3::new(0.0, -2.0, 0.0)).length() < 1e-12);
+    }
 
     #[test]
     fn gusts_have_the_stated_rms() {

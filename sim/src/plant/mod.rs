@@ -281,7 +281,7 @@ impl Base {
             },
             limbs: std::array::from_fn(limb),
             battery: Battery::new(v.battery_charge),
-            gust: Gust::new(w.gust_force, w.gust_moment, rng),
+            gust: Gust::new(w.gust_force, w.gust_moment, rng).in_wind(w.steady_wind, w.steady_wind_from),
             ground_belly: Belly::default(),
             pipe_belly: Belly::default(),
             pipe: Pipe {

@@ -7,7 +7,10 @@ use sophie_control::rc::ArmChoice;
 use sophie_control::wrench::Configuration;
 use sophie_mixers::Variant;
 
-use super::{ArmBending, Expect, Overrides, Pilot, Scenario, ServoProfile, Step, Vehicle, World, read_steps};
+use super::{
+    ArmBending, Assist, Expect, Overrides, Pilot, Scenario, Sensors, ServoProfile, Step, Vehicle, World,
+    read_steps,
+};
 use crate::plant::arm::TABLE_1;
 use crate::plant::body::BodySpec;
 use crate::plant::rotor::RotorSpec;
@@ -42,6 +45,8 @@ impl Default for World {
         Self {
             gust_force: 0.10,
             gust_moment: 0.004,
+            steady_wind: 0.0,
+            steady_wind_from: 0.0,
             pipe_diameter: 0.30,
             pipe_position: [3.0, 0.0],
             pipe_top: 1.5,
@@ -56,6 +61,7 @@ impl Default for Pilot {
             delay: 0.25,
             bandwidth: 2.0,
             eye_noise: 0.01,
+            assist: Assist::None,
         }
     }
 }
@@ -94,6 +100,7 @@ impl Scenario {
             mixer: Variant::Flexible,
             arms: ArmChoice::All,
             world: World::default(),
+            sensors: Sensors::default(),
             pilot: Pilot::default(),
             steps: Vec::new(),
             expect: Expect::default(),

@@ -6,7 +6,7 @@ use sophie_control::rc::ArmChoice;
 use sophie_control::wrench::{Configuration, PerArm};
 use sophie_mixers::Variant;
 
-use super::{ArmBending, Scenario, ServoProfile};
+use super::{ArmBending, Assist, PositionSensor, Scenario, ServoProfile};
 
 /// One key.
 pub struct Key {
@@ -85,6 +85,11 @@ pub const ARMS: &[&str] = &["all", "front", "rear"];
 /// Words for the servo.
 pub const SERVOS: &[&str] = &["paper", "mg996r"];
 
+/// Words for what measures the position.
+pub const POSITION_SENSORS: &[&str] = &["none", "pose"];
+/// Words for what the pilot leaves to the vehicle.
+pub const ASSISTS: &[&str] = &["none", "hold"];
+
 /// Words for how the arms bend.
 pub const BENDINGS: &[&str] = &["hinge", "beam"];
 
@@ -144,6 +149,24 @@ pub fn servo(word: &str) -> ServoProfile {
     }
 }
 
+/// A word from [`POSITION_SENSORS`].
+pub fn position_sensor(word: &str) -> PositionSensor {
+    if word == "pose" {
+        PositionSensor::Pose
+    } else {
+        PositionSensor::None
+    }
+}
+
+/// A word from [`ASSISTS`].
+pub fn assist(word: &str) -> Assist {
+    if word == "hold" {
+        Assist::Hold
+    } else {
+        Assist::None
+    }
+}
+
 /// A word from [`BENDINGS`].
 pub fn bending(word: &str) -> ArmBending {
     if word == "beam" {
@@ -185,6 +208,22 @@ pub const fn arms_word(arms: ArmChoice) -> &'static str {
         ArmChoice::All => "all",
         ArmChoice::Front => "front",
         ArmChoice::Rear => "rear",
+    }
+}
+
+/// The word of what measures the position.
+pub const fn position_sensor_word(sensor: PositionSensor) -> &'static str {
+    match sensor {
+        PositionSensor::None => "none",
+        PositionSensor::Pose => "pose",
+    }
+}
+
+/// The word of what the pilot leaves to the vehicle.
+pub const fn assist_word(assist: Assist) -> &'static str {
+    match assist {
+        Assist::None => "none",
+        Assist::Hold => "hold",
     }
 }
 
@@ -305,6 +344,16 @@ pub const KEYS: &[Key] = &[
         world.gust_moment
     ),
     number!(
+        "world.steady_wind_n",
+        Range::new(0.0, 5.0, "N"),
+        world.steady_wind
+    ),
+    number!(
+        "world.steady_wind_from_deg",
+        Range::new(-360.0, 360.0, "deg").times(DEGREE),
+        world.steady_wind_from
+    ),
+    number!(
         "world.pipe_diameter_m",
         Range::new(0.15, 0.6, "m"),
         world.pipe_diameter
@@ -325,9 +374,27 @@ pub const KEYS: &[Key] = &[
         Range::new(0.05, 1.5, ""),
         world.pipe_friction
     ),
+    Key {
+        name: "sensors.position",
+        kind: Kind::Choice(POSITION_SENSORS, |s, v| s.sensors.position = position_sensor(v)),
+    },
+    number!(
+        "sensors.pose_fails_at_s",
+        Range::new(0.0, 3600.0, "s"),
+        sensors.pose_fails_at
+    ),
+    number!(
+        "sensors.pose_fails_for_s",
+        Range::new(0.0, 3600.0, "s"),
+        sensors.pose_fails_for
+    ),
     number!("pilot.delay_s", Range::new(0.0, 1.0, "s"), pilot.delay),
     number!("pilot.bandwidth_hz", Range::new(0.2, 20.0, "Hz"), pilot.bandwidth),
     number!("pilot.eye_noise_m", Range::new(0.0, 0.5, "m"), pilot.eye_noise),
+    Key {
+        name: "pilot.assist",
+        kind: Kind::Choice(ASSISTS, |s, v| s.pilot.assist = assist(v)),
+    },
     Key {
         name: "expect.accomplished",
         kind: Kind::Flag(|s| &mut s.expect.accomplished),
@@ -339,4 +406,4 @@ pub const KEYS: &[Key] = &[
 ];
 
 /// Tables of a file; `steps` is a list.
-pub const TABLES: &[&str] = &["vehicle", "world", "pilot", "params", "expect"];
+pub const TABLES: &[&str] = &["vehicle", "world", "sensors", "pilot", "params", "expect"];

@@ -10,7 +10,7 @@ use sophie_mixers::Variant;
 
 use super::error::{Place, ScenarioError};
 use super::read::Source;
-use super::{ArmBending, Scenario};
+use super::{ArmBending, Assist, PositionSensor, Scenario};
 
 /// Refuses devices and wrong files.
 const MAX_BYTES: u64 = 1 << 20;
@@ -29,6 +29,10 @@ pub struct Overrides {
     pub configuration: Option<Configuration>,
     /// Allocation.
     pub mixer: Option<Variant>,
+    /// What measures the position.
+    pub sensors: Option<PositionSensor>,
+    /// What the pilot leaves to the vehicle.
+    pub assist: Option<Assist>,
     /// Arms that close.
     pub arms: Option<ArmChoice>,
     /// Seed.
@@ -48,6 +52,8 @@ impl Overrides {
         set(&mut scenario.vehicle.configuration, self.configuration);
         set(&mut scenario.mixer, self.mixer);
         set(&mut scenario.arms, self.arms);
+        set(&mut scenario.sensors.position, self.sensors);
+        set(&mut scenario.pilot.assist, self.assist);
         set(&mut scenario.seed, self.seed);
     }
 }

@@ -48,6 +48,8 @@ pub struct Scenario {
     pub arms: ArmChoice,
     /// Air and pipe.
     pub world: World,
+    /// Sensors beside those of every board.
+    pub sensors: Sensors,
     /// The pilot's limits.
     pub pilot: Pilot,
     /// The pilot's steps, in order.
@@ -116,6 +118,10 @@ pub struct World {
     pub gust_force: f64,
     /// RMS per axis, N·m.
     pub gust_moment: f64,
+    /// Force of the steady wind, N.
+    pub steady_wind: f64,
+    /// Where it comes from, clockwise from north, rad.
+    pub steady_wind_from: f64,
     /// Outer, m.
     pub pipe_diameter: f64,
     /// North and east of the perch spot, m; the pipe runs north-south.
@@ -135,6 +141,39 @@ pub struct Pilot {
     pub bandwidth: f64,
     /// RMS, m.
     pub eye_noise: f64,
+    /// What he leaves to the vehicle where its mode takes it.
+    pub assist: Assist,
+}
+
+/// What the pilot leaves to the vehicle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Assist {
+    /// Nothing.
+    #[default]
+    None,
+    /// Hovering and flying to a point in the mode HOLD.
+    Hold,
+}
+
+/// Sensors beside those of every board.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sensors {
+    /// What measures the position.
+    pub position: PositionSensor,
+    /// When after power-up the poses fail, s, beside the gaps that they have.
+    pub pose_fails_at: f64,
+    /// For how long, s.
+    pub pose_fails_for: f64,
+}
+
+/// What measures the position.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PositionSensor {
+    /// Nothing.
+    #[default]
+    None,
+    /// A computer that sends poses over MAVLink, late and with gaps.
+    Pose,
 }
 
 /// A step of the mission.

@@ -4,3 +4,4 @@ pub mod analog;
 pub mod arm_imu;
 pub mod fsr;
 pub mod imu;
+pub mod pose;

@@ -6,7 +6,7 @@ use embassy_time::{Duration, Timer};
 use heapless::{String, Vec};
 use sophie_control::math::to_deg;
 use sophie_control::rc::{ArmChoice, StickMode};
-use sophie_control::vector::Quat;
+use sophie_control::vector::{Quat, Vec3};
 use sophie_control::wrench::PerArm;
 
 use super::Console;
@@ -34,7 +34,7 @@ struct Group {
     read: fn(&Links) -> Row,
 }
 
-const GROUPS: [Group; 8] = [
+const GROUPS: [Group; 9] = [
     Group {
         name: "sticks",
         what: "sticks -1 to 1, throttle 0 to 1, switches by their position",
@@ -83,6 +83,13 @@ const GROUPS: [Group; 8] = [
         columns: "       x       y       z    roll   pitch     yaw      vx      vy      vz",
         places: 2,
         read: pose,
+    },
+    Group {
+        name: "pos",
+        what: "estimated position m, velocity m/s, wind across m/s2, age of the newest pose s",
+        columns: "       x       y       z      vx      vy      vz      wx      wy     age",
+        places: 2,
+        read: position,
     },
     Group {
         name: "offb",
@@ -179,6 +186,15 @@ fn pose(links: &Links) -> Row {
     let velocity = pose.velocity.map_or([None; 3], |v| v.to_array().map(Some));
     let angles = euler(pose.attitude);
     position.into_iter().chain(angles).chain(velocity).collect()
+}
+
+fn position(links: &Links) -> Row {
+    let Some(e) = links.position.fresh() else {
+        return silent(9);
+    };
+    let motion = [e.position, e.velocity].into_iter().flat_map(Vec3::to_array);
+    let wind = [e.disturbance.x, e.disturbance.y];
+    motion.chain(wind).chain([e.age]).map(Some).collect()
 }
 
 fn offboard(links: &Links) -> Row {

@@ -19,6 +19,7 @@ mod mavlink;
 mod mixer;
 mod parameters;
 mod pilot_page;
+mod position;
 mod retained_store;
 mod rig;
 mod servos;

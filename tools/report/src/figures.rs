@@ -30,12 +30,9 @@ pub const ARM_NAMES: [&str; 4] = ["1 front left", "2 rear left", "3 front right"
 /// All figures, in page order.
 pub fn all(record: &FlightRecord) -> Vec<Figure> {
     let span = Span::all(record);
-    let mut figures = vec![
-        attitude(record, span),
-        height(record, span),
-        tilt(record, span),
-        thrust(record, span),
-    ];
+    let mut figures = vec![attitude(record, span), height(record, span)];
+    figures.extend(position(record, span));
+    figures.extend([tilt(record, span), thrust(record, span)]);
     figures.push(grip(record, span, "Tendons and grip", String::new()));
     if let Some((span, note)) = closing(record) {
         figures.push(grip(record, span, "Closing on the pipe", note));
@@ -149,6 +146,46 @@ fn height(record: &FlightRecord, span: Span) -> Figure {
         ]),
         svg: figure(record, span, "height and place over time", &[panel, ground_track]),
     }
+}
+
+/// Position by the poses and by the estimate, where there was any.
+fn position(record: &FlightRecord, span: Span) -> Option<Figure> {
+    record.samples.iter().find(|s| s.position_estimate.is_some())?;
+    let axis = |i: usize, name: &str| {
+        let of = |place: &Option<[f64; 3]>| place.and_then(|p| p.get(i).copied()).unwrap_or(f64::NAN);
+        Panel {
+            axis: format!("{name} (m)"),
+            height: 100.0,
+            span: 0.5,
+            traces: vec![
+                Trace {
+                    class: "setpoint",
+                    values: series(record, |s| of(&s.pose)),
+                },
+                Trace {
+                    class: "estimate",
+                    values: series(record, |s| of(&s.position_estimate)),
+                },
+                Trace {
+                    class: "true",
+                    values: series(record, |s| of(&Some(s.position))),
+                },
+            ],
+            ..Panel::default()
+        }
+    };
+    let panels = [axis(0, "north"), axis(1, "east"), axis(2, "down")];
+    Some(Figure {
+        title: "Position",
+        note: "Pose and estimate are in axes of their sender; here they are turned into the true ones."
+            .into(),
+        legend: legend(&[
+            ("true", "true"),
+            ("setpoint", "newest pose, late"),
+            ("estimate", "estimate"),
+        ]),
+        svg: figure(record, span, "north, east and down over time", &panels),
+    })
 }
 
 fn tilt(record: &FlightRecord, span: Span) -> Figure {

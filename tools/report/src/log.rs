@@ -35,6 +35,10 @@ fn write(record: &FlightRecord) -> mcap::McapResult<Vec<u8>> {
     };
     let truth = file.channel("/truth", "sophie.Truth", &schemas::own(schemas::TRUTH))?;
     let stack = file.channel("/stack", "sophie.Stack", &schemas::own(schemas::STACK))?;
+    let position = match record.samples.iter().find(|s| s.pose.is_some()) {
+        Some(_) => Some(file.channel("/position", "sophie.Position", &schemas::own(schemas::POSITION))?),
+        None => None,
+    };
     let events = file.channel("/events", "foxglove.Log", &schemas::log())?;
     let frames = file.channel("/tf", "foxglove.FrameTransform", &schemas::frame_transform())?;
     let drawing = file.channel("/scene", "foxglove.SceneUpdate", &schemas::scene_update())?;
@@ -48,6 +52,9 @@ fn write(record: &FlightRecord) -> mcap::McapResult<Vec<u8>> {
         }
         file.message(truth, sample.t, &truth_message(sample))?;
         file.message(stack, sample.t, &stack_message(sample))?;
+        if let Some(position) = position {
+            file.message(position, sample.t, &position_message(sample))?;
+        }
         file.message(frames, sample.t, &scene::transform(sample))?;
         if sample.t >= next_scene {
             file.message(drawing, sample.t, &scene::vehicle(sample))?;
@@ -138,6 +145,11 @@ fn stack_message(s: &Sample) -> Value {
         "throttle": tidy(s.throttle),
         "saturated": s.saturated,
     })
+}
+
+fn position_message(s: &Sample) -> Value {
+    let place = |place: Option<[f64; 3]>| tidied(&place.unwrap_or([f64::NAN; 3]), si);
+    json!({ "estimate": place(s.position_estimate), "pose": place(s.pose) })
 }
 
 #[cfg(test)]

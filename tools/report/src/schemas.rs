@@ -61,6 +61,20 @@ pub const STACK: &[(&str, Field, &str)] = &[
     ),
 ];
 
+/// Fields of `/position`, which only flights with poses have.
+pub const POSITION: &[(&str, Field, &str)] = &[
+    (
+        "estimate",
+        Field::Three,
+        "by the stack, NED from the take-off point, m; null without one",
+    ),
+    (
+        "pose",
+        Field::Three,
+        "newest pose, late, NED from the take-off point, m; null without one",
+    ),
+];
+
 /// Schema of one of our channels.
 pub fn own(fields: &[(&str, Field, &str)]) -> Value {
     let number = json!({ "type": ["number", "null"] });

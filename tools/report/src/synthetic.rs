@@ -176,5 +176,7 @@ fn sample(t: f64, phases: &[Phase]) -> Sample {
         battery_voltage: 16.6 - 0.012 * t - 0.08 * mean,
         throttle: mean / 8.3,
         saturated: index == 3 && u < 0.03,
+        position_estimate: None,
+        pose: None,
     }
 }

@@ -32,6 +32,7 @@ fn place(mode: Mode) -> Point {
         Mode::Armed => (455.0, 165.0),
         Mode::Landed => (455.0, 300.0),
         Mode::Flight => (625.0, 230.0),
+        Mode::Hold => (610.0, 70.0),
         Mode::Failsafe => (580.0, 415.0),
         Mode::Contact => (770.0, 100.0),
         Mode::Escaping => (830.0, 230.0),

@@ -5,6 +5,7 @@ mod bench;
 mod diagram;
 mod docs;
 mod hand_over;
+mod holding;
 mod leaving;
 mod letting_go;
 mod losses;

@@ -22,6 +22,7 @@ fn in_mode(mode: Mode) -> &'static str {
         Mode::Disarmed => "Stopped. The only mode in which to touch it.",
         Mode::Armed => "Rotors idle. Throttle up to fly.",
         Mode::Flight => "The sticks fly it.",
+        Mode::Hold => "It stays where it is; the sticks move it, centred they stop it.",
         Mode::Contact => "It feels the pipe. Keep the throttle; climb or turn perch off to leave.",
         Mode::Clamping => "Arms close, then the rotors spool down. Wait.",
         Mode::Perched => "It holds; rotors stopped. Sticks do nothing.",
@@ -42,6 +43,12 @@ fn on_reason(reason: Reason) -> &'static str {
         Reason::BatteryCritical => "It lands: steer it over clear ground. On the pipe it stays: fetch it.",
         Reason::TippedOver => "Arm switch off. Set it upright, look for damage.",
         Reason::PerchSwitchNotOff => "Perch off, then on.",
+        Reason::HoldSwitchNotOff => "Hold off, then on.",
+        Reason::NoPosition => "Fly on by hand; look at what measures the pose.",
+        Reason::PositionStale => {
+            "Steer by tilt, or hold off: it keeps only height and lean against the wind."
+        }
+        Reason::PositionLost => "Fly by hand; hold off.",
         Reason::NotOnCrown => "Climb; come down on top of the pipe.",
         Reason::SlidesOff => "Throttle to hover: it climbs away by itself. Try again.",
         Reason::NotTakenOver => "Throttle to hover ends the descent.",
@@ -165,6 +172,7 @@ fn channels() -> String {
         ),
         ("perch switch", positions(7, |s| on(s.perch_switch))),
         ("arms that close", positions(8, |s| word(format!("{:?}", s.arms)))),
+        ("hold switch", positions(9, |s| on(s.hold_switch))),
     ];
     let mut table = String::from(
         "| channel | what | low, 988 µs | middle, 1500 µs | high, 2012 µs |\n|---:|---|---|---|---|\n",

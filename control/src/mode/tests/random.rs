@@ -10,6 +10,7 @@ use proptest::prelude::*;
 use super::rig::Rig;
 use crate::grip::ArmState;
 use crate::mode::*;
+use crate::position::Estimate;
 use crate::rc::StickMode;
 use crate::remote::RemoteOrder;
 
@@ -39,9 +40,10 @@ fn sticks() -> impl Strategy<Value = Option<Sticks>> {
         arms,
         prop::bool::weighted(0.9),
         any::<bool>(),
+        any::<bool>(),
     );
     let some = values.prop_map(
-        |(roll, pitch, yaw, throttle, stick_mode, arms, arm_switch, perch_switch)| {
+        |(roll, pitch, yaw, throttle, stick_mode, arms, arm_switch, perch_switch, hold_switch)| {
             Some(Sticks {
                 roll,
                 pitch,
@@ -49,6 +51,7 @@ fn sticks() -> impl Strategy<Value = Option<Sticks>> {
                 throttle,
                 arm_switch,
                 perch_switch,
+                hold_switch,
                 stick_mode,
                 arms,
             })
@@ -82,6 +85,25 @@ fn grip() -> impl Strategy<Value = Option<GripState>> {
     prop_oneof![9 => some, 1 => Just(None)]
 }
 
+fn position() -> impl Strategy<Value = Option<Estimate>> {
+    let age = prop_oneof![Just(0.02f32), 0.0f32..10.0];
+    let vector = |size: f32| [-size..size, -size..size, -size..size].prop_map(Vec3::from);
+    let jumps = prop_oneof![9 => Just(0u8), 1 => any::<u8>()];
+    let some = (vector(20.0), vector(5.0), vector(8.0), number(), age, jumps).prop_map(
+        |(position, velocity, disturbance, turn, age, jumps)| {
+            Some(Estimate {
+                position,
+                velocity,
+                disturbance,
+                turn,
+                age,
+                jumps,
+            })
+        },
+    );
+    prop_oneof![2 => some, 1 => Just(None)]
+}
+
 fn order() -> impl Strategy<Value = Option<RemoteOrder>> {
     use RemoteOrder::{Arm, Disarm, Grab, Kill, Release};
     let some =
@@ -89,7 +111,7 @@ fn order() -> impl Strategy<Value = Option<RemoteOrder>> {
     prop_oneof![1 => some.prop_map(Some), 1 => Just(None)]
 }
 
-/// Conditions for a while: (steps, sticks, grip, roll, carried, battery, motion known, order given once).
+/// Conditions for a while: (steps, sticks, grip, roll, carried, battery, motion known, order given once, position).
 type Spell = (
     u32,
     Option<Sticks>,
@@ -99,6 +121,7 @@ type Spell = (
     Option<f32>,
     bool,
     Option<RemoteOrder>,
+    Option<Estimate>,
 );
 
 fn spells() -> impl Strategy<Value = Vec<Spell>> {
@@ -113,6 +136,7 @@ fn spells() -> impl Strategy<Value = Vec<Spell>> {
         battery,
         prop::bool::weighted(0.95),
         order(),
+        position(),
     );
     prop::collection::vec(spell, 1..40)
 }
@@ -136,12 +160,13 @@ proptest! {
         };
         // The perch switch by an order that was obeyed.
         let mut let_go = false;
-        for (number, (steps, sticks, grip, roll, carried, battery, there, order)) in (1..).zip(spells) {
+        for (number, (steps, sticks, grip, roll, carried, battery, there, order, position)) in (1..).zip(spells) {
             r.inputs.remote = order.map(|order| RemoteRequest { number, order });
             r.inputs.sticks = sticks;
             r.inputs.grip = grip;
             r.inputs.battery = battery;
             r.carried = carried;
+            r.inputs.position = position;
             let q = Quat::from_euler(roll, 0.0, 0.0);
             r.inputs.motion = there.then_some(Motion { q, calibrated: true, ..Default::default() });
             for _ in 0..steps {

@@ -64,6 +64,7 @@ impl Hovering {
             world: World {
                 gust_force: 0.0,
                 gust_moment: 0.0,
+                steady_wind: 0.0,
                 ..scenario.world.clone()
             },
             ..scenario.clone()

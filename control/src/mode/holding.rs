@@ -1,0 +1,126 @@
+//! Free flight that holds the position.
+
+use super::behaviour::Behaviour;
+use super::context::{Context, Step};
+use super::{Inputs, Reason, Setpoint, demand};
+use crate::arming::ArmingInhibits;
+use crate::math::{GRAVITY, clamp, clamp_abs, tan};
+use crate::position::Estimate;
+use crate::position_hold::{CLIMB_MAX, Felt, PositionHold, SPEED_MAX, Wish};
+use crate::rc::{StickMode, Sticks};
+use crate::vector::Vec3;
+
+/// Age of the newest fix with which a hold may begin, s: ten missing at 50 Hz.
+pub const FRESH_AGE: f32 = 0.2;
+/// Age up to which the inertial sensor alone carries the position, s: centimetres off.
+pub const COAST_AGE: f32 = 1.0;
+/// Age up to which it carries the height, s: some decimetres off. Then the pilot has the throttle.
+pub const HEIGHT_AGE: f32 = 4.0;
+/// Throttle of a centred stick, and the half width about it that asks for no climb, 1.
+pub const THROTTLE_CENTRE: f32 = 0.5;
+pub const THROTTLE_ZONE: f32 = 0.1;
+
+/// The pilot wants the position held: the arms close and open in [`super::Mode::Flight`] alone.
+pub fn asked(s: &Sticks) -> bool {
+    s.hold_switch && s.stick_mode == StickMode::Angle && !s.perch_switch
+}
+
+/// There is a position to begin with.
+pub fn fresh(i: &Inputs) -> bool {
+    i.motion.is_some() && younger(i, FRESH_AGE)
+}
+
+/// Nothing is known any more.
+pub fn lost(i: &Inputs) -> bool {
+    !younger(i, HEIGHT_AGE)
+}
+
+fn younger(i: &Inputs, age: f32) -> bool {
+    i.position.is_some_and(|e| e.age <= age)
+}
+
+/// See [`super::Mode::Hold`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hold {
+    law: PositionHold,
+    wanted: Setpoint,
+    /// The throttle was centred since the hold began: until then, where it stands is no wish.
+    centred: bool,
+    /// The position is none at present.
+    adrift: bool,
+}
+
+impl Hold {
+    /// Holds where the vehicle is.
+    pub fn here(step: &mut Step<'_>) -> Self {
+        let estimate = step.inputs.position.unwrap_or_default();
+        let mut hold = Self {
+            law: PositionHold::begin(&step.context.params, &estimate, &felt(step)),
+            wanted: Setpoint::Stop,
+            centred: false,
+            adrift: false,
+        };
+        hold.step(&estimate, step);
+        hold
+    }
+
+    fn step(&mut self, estimate: &Estimate, step: &Step<'_>) {
+        let sticks = step.inputs.sticks.unwrap_or_default();
+        self.centred |= (sticks.throttle - THROTTLE_CENTRE).abs() <= THROTTLE_ZONE;
+        let adrift = estimate.age > COAST_AGE;
+        if self.adrift && !adrift {
+            self.law.anchor_at(estimate);
+        }
+        self.adrift = adrift;
+        let wish = self.wish(&sticks, step.context);
+        self.wanted = self.law.step(estimate, &felt(step), &wish, !adrift, step.dt);
+    }
+
+    fn wish(&self, s: &Sticks, context: &Context) -> Wish {
+        let climb = if self.centred { climb(s.throttle) } else { 0.0 };
+        let lean = |stick: f32| GRAVITY * tan(clamp_abs(stick * context.params.stick_angle, 1.0));
+        let yaw_rate = match demand::from_sticks(s, &context.params) {
+            Setpoint::Angle { yaw_rate, .. } => yaw_rate,
+            _ => 0.0,
+        };
+        Wish {
+            velocity: Vec3::new(-s.pitch * SPEED_MAX, s.roll * SPEED_MAX, -climb * CLIMB_MAX),
+            yaw_rate,
+            lean: [-lean(s.pitch), lean(s.roll)],
+        }
+    }
+}
+
+/// Share of the fastest climb that a throttle asks for, -1..1.
+fn climb(throttle: f32) -> f32 {
+    let off = throttle - THROTTLE_CENTRE;
+    let beyond = clamp(off.abs() - THROTTLE_ZONE, 0.0, 1.0) / (THROTTLE_CENTRE - THROTTLE_ZONE);
+    clamp(if off < 0.0 { -beyond } else { beyond }, -1.0, 1.0)
+}
+
+fn felt(step: &Step<'_>) -> Felt {
+    let motion = step.inputs.motion.unwrap_or_default();
+    Felt {
+        q: motion.q,
+        rate: motion.rate,
+        carried: step.context.support.resting(),
+    }
+}
+
+impl Behaviour for Hold {
+    fn advance(&mut self, step: &mut Step<'_>) {
+        // A silent inertial sensor stops the rotors within some steps; until then the last setpoint stands.
+        if let (Some(estimate), Some(_)) = (step.inputs.position, step.inputs.motion) {
+            self.step(&estimate, step);
+        }
+    }
+
+    fn rotors(&self, _: &Context, _: &Inputs) -> Setpoint {
+        self.wanted
+    }
+
+    fn reason(&self, context: &Context, inputs: &Inputs, _: ArmingInhibits) -> Option<Reason> {
+        let stale = self.adrift.then_some(Reason::PositionStale);
+        stale.or_else(|| context.reason(inputs, true))
+    }
+}

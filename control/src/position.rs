@@ -1,0 +1,313 @@
+//! Position, velocity and disturbance, 200 Hz, from the inertial sensor and poses that others measure late.
+//!
+//! The axes are those of the pose's sender: down is the vehicle's, the heading differs by a turn that is estimated
+//! (the vehicle has no compass, and a visual odometry drifts). docs/hold.md has derivation and figures.
+
+mod axis;
+mod past;
+#[cfg(test)]
+mod tests;
+
+use self::axis::{Axis, Change};
+use self::past::{Moment, Past};
+use crate::chain::Attitude;
+use crate::math::{self, GRAVITY};
+use crate::params::Params;
+use crate::vector::Vec3;
+
+/// Longest step, s: after a longer silence of the inertial sensor the estimate begins anew.
+const STEP_MAX: f32 = 0.05;
+/// Age of the newest fix with which the estimate ends, s: the inertial sensor alone is metres off by then.
+pub const LOST_AGE: f32 = 10.0;
+/// Fixes until the estimate is given out, half a second at 50 Hz, and the velocity's deviation by then, m/s.
+const READY_FIXES: u32 = 25;
+const READY_SPEED: f32 = 0.1;
+/// Farthest from the origin along an axis, m: beyond it a float has steps of a millimetre.
+const POSITION_MAX: f32 = 10_000.0;
+/// Deviation of a fix whose sender does not say it, m, and the bounds of one that does.
+pub const FIX_DEVIATION: f32 = 0.01;
+const DEVIATION_BOUNDS: (f32, f32) = (0.003, 0.5);
+/// Fixes refused in a row after which the next is believed, half a second at 50 Hz: the sender has found another origin.
+const REFUSED_MAX: u32 = 25;
+/// Share of a new heading's difference that the turn follows: 1 s at 50 Hz.
+const TURN_GAIN: f32 = 0.02;
+/// Cut-off of the lateral and the vertical disturbance, rad/s.
+const LATERAL_CUTOFF: f32 = 20.0;
+const VERTICAL_CUTOFF: f32 = 8.0;
+
+/// A pose that somebody else has measured.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Fix {
+    /// When it was measured, µs.
+    pub at_us: u64,
+    /// In the sender's axes, down as the vehicle's, m.
+    pub position: Vec3,
+    /// Heading of the nose in the sender's axes, rad.
+    pub heading: f32,
+    /// Variance along each axis, m²; `None` where the sender does not say it.
+    pub variance: Option<Vec3>,
+    /// Counts the jumps of the sender's estimate.
+    pub resets: u8,
+}
+
+impl Fix {
+    fn is_sane(&self) -> bool {
+        let far = |x: f32| x.abs() > POSITION_MAX;
+        let p = self.position;
+        p.is_finite() && self.heading.is_finite() && !(far(p.x) || far(p.y) || far(p.z))
+    }
+
+    fn variance(&self) -> Vec3 {
+        let (least, most) = DEVIATION_BOUNDS;
+        let given = self.variance.filter(|v| v.is_finite());
+        given.map_or(Vec3::new(1.0, 1.0, 1.0) * (FIX_DEVIATION * FIX_DEVIATION), |v| {
+            v.map(|v| math::clamp(v, least * least, most * most))
+        })
+    }
+}
+
+/// Where the vehicle is, as far as the newest fix and the inertial sensor say.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Estimate {
+    /// In the sender's axes, m.
+    pub position: Vec3,
+    /// m/s.
+    pub velocity: Vec3,
+    /// Acceleration that rotors and gravity do not explain, m/s²: wind. Touching something it is no wind.
+    pub disturbance: Vec3,
+    /// Heading in the sender's axes less that of the vehicle's attitude, rad.
+    pub turn: f32,
+    /// Age of the newest fix that was taken, s, below [`LOST_AGE`].
+    pub age: f32,
+    /// Counts where the position has jumped with the sender's origin.
+    pub jumps: u8,
+}
+
+impl Estimate {
+    /// True if every number is finite.
+    pub fn is_finite(&self) -> bool {
+        (self.position + self.velocity + self.disturbance).is_finite() && (self.turn + self.age).is_finite()
+    }
+}
+
+/// The estimator.
+#[derive(Clone, Debug)]
+pub struct PositionEstimator {
+    mass: f32,
+    motor_tau: f32,
+    past: Past,
+    /// `None` before the first fix and after the last one has aged.
+    track: Option<Track>,
+    /// When the newest fix that was looked at was measured, µs: each is taken once.
+    seen_us: u64,
+}
+
+impl PositionEstimator {
+    /// An estimator without a fix.
+    pub fn new(p: &Params) -> Self {
+        Self {
+            mass: p.mass,
+            motor_tau: p.motor_tau,
+            past: Past::default(),
+            track: None,
+            seen_us: 0,
+        }
+    }
+
+    /// One step with the attitude measured at `at_us` µs, the thrust demanded along -z, N, and the newest fix. `None`
+    /// without a position.
+    pub fn step(
+        &mut self,
+        at_us: u64,
+        attitude: &Attitude,
+        lift: f32,
+        fix: Option<&Fix>,
+    ) -> Option<Estimate> {
+        let new = fix.filter(|fix| fix.at_us > self.seen_us && fix.at_us <= at_us && fix.is_sane());
+        self.seen_us = new.map_or(self.seen_us, |fix| fix.at_us);
+        if !(attitude.q.is_finite() && attitude.accel.is_finite() && lift.is_finite()) {
+            return None;
+        }
+        let yaw = attitude.q.to_euler().2;
+        let track = match (&mut self.track, new) {
+            (Some(track), _) if track.follows(at_us) => track,
+            (track, Some(fix)) => {
+                self.past.clear();
+                *track = Some(Track::begin(at_us, yaw, fix));
+                return None;
+            }
+            (track, None) => {
+                *track = None;
+                return None;
+            }
+        };
+        track.predict(at_us, attitude, (lift / self.mass, self.motor_tau));
+        self.past.push(Moment {
+            at_us,
+            position: track.position(),
+            yaw,
+        });
+        if let Some(fix) = new {
+            track.take(&mut self.past, fix);
+        }
+        track.estimate()
+    }
+}
+
+/// What is known since the first fix.
+#[derive(Clone, Debug)]
+struct Track {
+    /// North or forward, east or right, down.
+    axes: [Axis; 3],
+    turn: f32,
+    /// Thrust over mass, with the motors' lag, m/s².
+    lift: f32,
+    disturbance: Vec3,
+    /// Times of the last step and of the newest fix taken, µs.
+    at_us: u64,
+    fixed_us: u64,
+    fixes: u32,
+    refused: u32,
+    resets: u8,
+    jumps: u8,
+    ready: bool,
+}
+
+impl Track {
+    fn begin(at_us: u64, yaw: f32, fix: &Fix) -> Self {
+        let axes = fix.position.to_array().map(Axis::at);
+        Self {
+            axes,
+            turn: math::wrap_pi(fix.heading - yaw),
+            lift: 0.0,
+            disturbance: Vec3::ZERO,
+            at_us,
+            fixed_us: fix.at_us,
+            fixes: 1,
+            refused: 0,
+            resets: fix.resets,
+            jumps: 0,
+            ready: false,
+        }
+    }
+
+    /// The step at `at_us` µs follows the last one, and the newest fix is not too old.
+    fn follows(&self, at_us: u64) -> bool {
+        let since = seconds(self.at_us, at_us);
+        since > 0.0 && since <= STEP_MAX && seconds(self.fixed_us, at_us) < LOST_AGE
+    }
+
+    fn predict(&mut self, at_us: u64, a: &Attitude, (lift, motor_tau): (f32, f32)) {
+        let dt = seconds(self.at_us, at_us);
+        self.at_us = at_us;
+        let force = about_down(a.q.rotate(a.accel), self.turn);
+        let acceleration = force + Vec3::new(0.0, 0.0, GRAVITY);
+        for (axis, acceleration) in self.axes.iter_mut().zip(acceleration.to_array()) {
+            axis.predict(acceleration, dt);
+        }
+        // Across the thrust axis rotors push little: what is felt there is the air, and the arms' lean.
+        let across = about_down(a.q.rotate(Vec3::new(a.accel.x, a.accel.y, 0.0)), self.turn) - self.bias();
+        self.lift += (lift - self.lift) * dt / (dt + motor_tau);
+        let down = acceleration.z - self.bias().z - GRAVITY + self.lift * a.q.down_in_body().z;
+        let follow = |from: f32, to: f32, cutoff: f32| from + (to - from) * cutoff * dt / (1.0 + cutoff * dt);
+        let Vec3 { x, y, z } = self.disturbance;
+        self.disturbance = Vec3::new(
+            follow(x, across.x, LATERAL_CUTOFF),
+            follow(y, across.y, LATERAL_CUTOFF),
+            follow(z, down, VERTICAL_CUTOFF),
+        );
+    }
+
+    /// Compares `fix` with where the vehicle was taken to be when it was measured.
+    fn take(&mut self, past: &mut Past, fix: &Fix) {
+        let Some(then) = past.at(fix.at_us) else {
+            return;
+        };
+        let innovation = fix.position - then.position;
+        let variance = fix.variance();
+        let close = |((axis, y), r): ((&Axis, f32), f32)| axis.accepts(y, r);
+        let pairs = self.axes.iter().zip(innovation.to_array());
+        let accepted = pairs.zip(variance.to_array()).all(close);
+        if fix.resets != self.resets || self.refused >= REFUSED_MAX {
+            past.clear();
+            self.jump(then.yaw, fix);
+        } else if accepted {
+            let lag = seconds(fix.at_us, self.at_us);
+            let mut changes = [Change::default(); 3];
+            let inputs = innovation.to_array().into_iter().zip(variance.to_array());
+            for ((axis, change), (y, r)) in self.axes.iter_mut().zip(&mut changes).zip(inputs) {
+                *change = axis.correct(y, r, lag);
+            }
+            past.change(fix.at_us, &changes);
+            let gain = math::clamp(1.0 / (1.0 + self.fixes as f32), TURN_GAIN, 1.0);
+            let off = math::wrap_pi(fix.heading - then.yaw - self.turn);
+            self.turn = math::wrap_pi(self.turn + gain * off);
+            self.fixes = self.fixes.saturating_add(1);
+            let known = self.axes.iter().all(|axis| axis.speed_within(READY_SPEED));
+            self.ready |= known && self.fixes >= READY_FIXES;
+        } else {
+            self.refused += 1;
+            return;
+        }
+        self.refused = 0;
+        self.fixed_us = fix.at_us;
+    }
+
+    /// The sender's origin has jumped: velocity and bias stay, but for their turn.
+    fn jump(&mut self, yaw: f32, fix: &Fix) {
+        let before = self.turn;
+        self.turn = math::wrap_pi(fix.heading - yaw);
+        let by = self.turn - before;
+        let velocity = about_down(self.velocity(), by);
+        let bias = about_down(self.bias(), by);
+        self.disturbance = about_down(self.disturbance, by);
+        let values = velocity.to_array().into_iter().zip(bias.to_array());
+        for ((axis, position), (velocity, bias)) in
+            self.axes.iter_mut().zip(fix.position.to_array()).zip(values)
+        {
+            axis.jump(position, velocity, bias);
+        }
+        self.resets = fix.resets;
+        self.jumps = self.jumps.wrapping_add(1);
+    }
+
+    fn of(&self, value: impl Fn(&Axis) -> f32) -> Vec3 {
+        let [x, y, z] = &self.axes;
+        Vec3::new(value(x), value(y), value(z))
+    }
+
+    fn position(&self) -> Vec3 {
+        self.of(Axis::position)
+    }
+
+    fn velocity(&self) -> Vec3 {
+        self.of(Axis::velocity)
+    }
+
+    fn bias(&self) -> Vec3 {
+        self.of(Axis::bias)
+    }
+
+    fn estimate(&self) -> Option<Estimate> {
+        let estimate = Estimate {
+            position: self.position(),
+            velocity: self.velocity(),
+            disturbance: self.disturbance,
+            turn: self.turn,
+            age: seconds(self.fixed_us, self.at_us),
+            jumps: self.jumps,
+        };
+        (self.ready && estimate.is_finite()).then_some(estimate)
+    }
+}
+
+/// From `from` to `to`, µs, in s; 0 where it is not after.
+fn seconds(from: u64, to: u64) -> f32 {
+    to.saturating_sub(from) as f32 * 1e-6
+}
+
+/// `v` turned about down by `angle`, rad, clockwise from above.
+pub fn about_down(v: Vec3, angle: f32) -> Vec3 {
+    let (sin, cos) = (math::sin(angle), math::cos(angle));
+    Vec3::new(v.x * cos - v.y * sin, v.x * sin + v.y * cos, v.z)
+}

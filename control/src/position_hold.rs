@@ -1,0 +1,237 @@
+//! The law that holds a position, 100 Hz: sticks ask for velocities, centred sticks stay.
+//!
+//! Lateral: full state feedback, with the lag from setpoint to tilt in the state (docs/hold.md). Vertical: a cascade with
+//! the disturbance fed forward. Without a position it keeps level against the wind that it has learnt, and the height by
+//! the inertial sensor, for as long as the estimate's age allows.
+
+mod gains;
+mod height;
+mod lag;
+#[cfg(test)]
+mod tests;
+
+use self::gains::GAINS;
+use self::height::Height;
+use self::lag::Lag;
+use crate::math::{self, GRAVITY};
+use crate::params::Params;
+use crate::position::{Estimate, about_down};
+use crate::setpoint::Setpoint;
+use crate::vector::{Quat, Vec3};
+
+/// Fastest wish, level and vertical, m/s.
+pub const SPEED_MAX: f32 = 1.5;
+/// See [`SPEED_MAX`].
+pub const CLIMB_MAX: f32 = 0.7;
+/// Change of the wished velocity, m/s².
+const SPEED_SLEW: f32 = 1.0;
+/// Largest acceleration asked for, the wind's included, m/s²: 17° of tilt, 5.4 N of wind.
+pub const ACCELERATION_MAX: f32 = 3.0;
+/// Time constant of learning the wind, s.
+const WIND_TIME: f32 = 4.0;
+/// Departure of the disturbance from the wind beyond which something is touched, m/s²: gusts stay at a fifth.
+const TOUCH: f32 = 1.5;
+/// Farthest that the held point may be, m: after a push the vehicle does not rush back.
+const LEASH: f32 = 1.0;
+
+/// What the pilot wants.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Wish {
+    /// Forward, right and down along the heading, m/s: within [`SPEED_MAX`] and [`CLIMB_MAX`].
+    pub velocity: Vec3,
+    /// Clockwise from above, rad/s.
+    pub yaw_rate: f32,
+    /// Tilt that the sticks ask for where there is no position, as acceleration forward and right, m/s².
+    pub lean: [f32; 2],
+}
+
+/// What the inertial sensor says of the vehicle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Felt {
+    /// Body to world.
+    pub q: Quat,
+    /// Angular rate, rad/s, body.
+    pub rate: Vec3,
+    /// Something carries the vehicle: what is felt is no wind.
+    pub carried: bool,
+}
+
+/// The law and its state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PositionHold {
+    mass: f32,
+    thrust: (f32, f32),
+    lag: Lag,
+    height: Height,
+    /// Point to hold, m, and the wished velocity, m/s, in the estimate's axes.
+    anchor: Vec3,
+    speed: Vec3,
+    /// Learnt wind, m/s², in the estimate's axes.
+    wind: Vec3,
+    jumps: u8,
+}
+
+impl PositionHold {
+    /// Holds where the vehicle is.
+    pub fn begin(p: &Params, e: &Estimate, felt: &Felt) -> Self {
+        let weight = p.mass * GRAVITY;
+        let full = 4.0 * p.thrust_max;
+        Self {
+            mass: p.mass,
+            thrust: (0.4 * weight, math::clamp(1.6 * weight, weight, 0.95 * full)),
+            lag: Lag::at(p, tilt(felt.q)),
+            height: Height::default(),
+            anchor: e.position,
+            speed: Vec3::ZERO,
+            wind: Vec3::new(e.disturbance.x, e.disturbance.y, 0.0),
+            jumps: e.jumps,
+        }
+    }
+
+    /// Holds where the vehicle is from now on; what is learnt stays.
+    pub fn anchor_at(&mut self, e: &Estimate) {
+        self.anchor = e.position;
+        self.speed = Vec3::ZERO;
+        self.jumps = e.jumps;
+    }
+
+    /// One step of `dt` s; without `known` the position is none, and the sticks tilt.
+    pub fn step(&mut self, e: &Estimate, felt: &Felt, wish: &Wish, known: bool, dt: f32) -> Setpoint {
+        let heading = felt.q.to_euler().2 + e.turn;
+        if e.jumps != self.jumps {
+            self.anchor_at(e);
+        }
+        let wished = about_down(wish.velocity, heading);
+        let slew = |from: f32, to: f32| math::slew(from, to, SPEED_SLEW * dt);
+        self.speed = Vec3::new(
+            slew(self.speed.x, wished.x),
+            slew(self.speed.y, wished.y),
+            slew(self.speed.z, wished.z),
+        );
+        self.anchor += self.speed * dt;
+        self.leash(e.position);
+        let d = self.disturbance(e, felt.carried, dt);
+        let ahead = |v: Vec3| {
+            let v = about_down(v, -heading);
+            [v.x, v.y]
+        };
+        let wind = ahead(self.wind);
+        let u = if known {
+            let (p, v) = (ahead(e.position - self.anchor), ahead(e.velocity - self.speed));
+            self.feedback(p, v, ahead(d), wind, felt)
+        } else {
+            core::array::from_fn(|i| at(&wish.lean, i) - at(&wind, i))
+        };
+        let u = limited(u);
+        self.lag.step(u, tilt(felt.q), tilt_rate(felt.rate), dt);
+        let up = self.height.step(
+            &height::State {
+                error: self.anchor.z - e.position.z,
+                wished: self.speed.z,
+                velocity: e.velocity.z,
+                disturbance: e.disturbance.z,
+                landing: felt.carried && wish.velocity.z > 0.0,
+            },
+            dt,
+        );
+        self.setpoint(u, up, felt.q, wish.yaw_rate)
+    }
+
+    /// Keeps the held point within reach.
+    fn leash(&mut self, position: Vec3) {
+        let off = self.anchor - position;
+        let level = Vec3::new(off.x, off.y, 0.0);
+        let over = math::clamp(LEASH * math::inv_sqrt(level.norm_squared()), 0.0, 1.0);
+        let level = if level.norm_squared() > LEASH * LEASH {
+            level * over
+        } else {
+            level
+        };
+        let down = math::clamp_abs(off.z, height::LEASH);
+        self.anchor = position + level + Vec3::new(0.0, 0.0, down);
+    }
+
+    /// The lateral disturbance; the wind learns from it, but not from what is touched.
+    fn disturbance(&mut self, e: &Estimate, carried: bool, dt: f32) -> Vec3 {
+        let d = Vec3::new(e.disturbance.x, e.disturbance.y, 0.0);
+        let off = d - self.wind;
+        if carried || off.norm_squared() > TOUCH * TOUCH {
+            return self.wind;
+        }
+        self.wind += off * (dt / (dt + WIND_TIME));
+        d
+    }
+
+    /// Acceleration to ask for, forward and right, m/s².
+    fn feedback(&self, p: [f32; 2], v: [f32; 2], d: [f32; 2], wind: [f32; 2], felt: &Felt) -> [f32; 2] {
+        let (a, rate) = (tilt(felt.q), tilt_rate(felt.rate));
+        let Lag {
+            first,
+            second,
+            turning,
+            ..
+        } = &self.lag;
+        core::array::from_fn(|i| {
+            let wind = at(&wind, i);
+            let state = [
+                at(&p, i),
+                at(&v, i),
+                at(&a, i) + wind,
+                at(&rate, i),
+                at(turning, i),
+                at(second, i) + wind,
+                at(first, i) + wind,
+                at(&d, i) - wind,
+            ];
+            let fed: f32 = GAINS.iter().zip(state).map(|(k, x)| k * x).sum();
+            -fed - wind
+        })
+    }
+
+    fn setpoint(&self, u: [f32; 2], up: f32, q: Quat, yaw_rate: f32) -> Setpoint {
+        let [forward, right] = u.map(|u| u * (1.0 / GRAVITY));
+        let across = math::inv_sqrt(1.0 + right * right);
+        let cos = math::clamp(q.down_in_body().z, 0.5, 1.0);
+        let (least, most) = self.thrust;
+        let thrust = self.mass * (GRAVITY + up) / cos;
+        Setpoint::Angle {
+            roll: arctangent(right),
+            pitch: -arctangent(forward * across),
+            yaw_rate,
+            thrust: self.height.settled() * math::clamp(thrust, least, most),
+        }
+    }
+}
+
+/// For |x| below 0.35, error below 1e-4: that of the common one would lean the vehicle by 0.1°.
+fn arctangent(x: f32) -> f32 {
+    let square = x * x;
+    x * (1.0 - square * (1.0 / 3.0 - 0.2 * square))
+}
+
+/// Acceleration of the present tilt, forward and right, m/s².
+fn tilt(q: Quat) -> [f32; 2] {
+    let down = q.down_in_body();
+    let per = GRAVITY / math::clamp(down.z, 0.5, 1.0);
+    [per * down.x, per * down.y]
+}
+
+/// Its rate, m/s³.
+fn tilt_rate(rate: Vec3) -> [f32; 2] {
+    [-GRAVITY * rate.y, GRAVITY * rate.x]
+}
+
+/// Shortened to [`ACCELERATION_MAX`].
+fn limited(u: [f32; 2]) -> [f32; 2] {
+    let [x, y] = u;
+    let square = x * x + y * y;
+    if square > ACCELERATION_MAX * ACCELERATION_MAX {
+        u.map(|u| u * ACCELERATION_MAX * math::inv_sqrt(square))
+    } else {
+        u
+    }
+}
+
+fn at(values: &[f32; 2], axis: usize) -> f32 {
+    values.get(axis).copied().unwrap_or(0.0)
+}

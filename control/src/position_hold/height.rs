@@ -1,0 +1,70 @@
+//! Height: error to climb rate to thrust, the disturbance fed forward.
+
+use super::CLIMB_MAX;
+use crate::math;
+
+/// Height error to climb rate, 1/s; climb error to acceleration, 1/s, and to its trim, 1/s².
+const HEIGHT_GAIN: f32 = 1.5;
+const CLIMB_GAIN: f32 = 3.0;
+const TRIM_GAIN: f32 = 1.0;
+/// Largest trim, m/s²: what the model of the thrust is off.
+const TRIM_MAX: f32 = 1.5;
+/// Largest disturbance fed forward, m/s².
+const DISTURBANCE_MAX: f32 = 3.0;
+/// Farthest that the held height may be, m.
+pub const LEASH: f32 = 0.5;
+/// Rate at which the thrust is taken away where something carries, and at which it comes back, 1/s.
+const SETTLE_RATE: f32 = 0.5;
+const LIFT_RATE: f32 = 2.0;
+
+/// What the height is like; down is positive.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State {
+    /// From the vehicle down to the held height, m.
+    pub error: f32,
+    /// Wished velocity, m/s.
+    pub wished: f32,
+    /// Velocity, m/s.
+    pub velocity: f32,
+    /// Acceleration that the rotors do not explain, m/s².
+    pub disturbance: f32,
+    /// The pilot sinks, and something carries: the rotors hand over the weight.
+    pub landing: bool,
+}
+
+/// The loop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Height {
+    /// Upwards, m/s².
+    trim: f32,
+    /// Share of the thrust that is left.
+    settled: f32,
+}
+
+impl Default for Height {
+    fn default() -> Self {
+        Self {
+            trim: 0.0,
+            settled: 1.0,
+        }
+    }
+}
+
+impl Height {
+    /// Acceleration to give upwards beyond gravity, m/s², in a step of `dt` s.
+    pub fn step(&mut self, s: &State, dt: f32) -> f32 {
+        let wished = math::clamp_abs(s.wished + HEIGHT_GAIN * s.error, CLIMB_MAX);
+        let short = s.velocity - wished;
+        let rate = if s.landing { -SETTLE_RATE } else { LIFT_RATE };
+        self.settled = math::clamp(self.settled + rate * dt, 0.0, 1.0);
+        if !s.landing {
+            self.trim = math::clamp_abs(self.trim + TRIM_GAIN * short * dt, TRIM_MAX);
+        }
+        CLIMB_GAIN * short + self.trim + math::clamp_abs(s.disturbance, DISTURBANCE_MAX)
+    }
+
+    /// Share of the thrust to give, 0..1.
+    pub fn settled(&self) -> f32 {
+        self.settled
+    }
+}

@@ -1,0 +1,56 @@
+//! What lies between the setpoint and the tilt and no sensor shows: the setpoint's filter, and the motors.
+
+use crate::filter::LowPass;
+use crate::math;
+use crate::params::Params;
+
+/// Steps of the filter in one step of the law: it runs at 1 kHz.
+const SUBSTEPS: u8 = 10;
+/// Largest second derivative of the tilt, m/s⁴, taken for true.
+const TURNING_MAX: f32 = 500.0;
+
+/// A copy of both, forward and right, m/s² and m/s⁴.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lag {
+    /// First stage of the filter.
+    pub first: [f32; 2],
+    /// Second stage.
+    pub second: [f32; 2],
+    /// Second derivative of the tilt, by the motors' thrust.
+    pub turning: [f32; 2],
+    /// rad/s.
+    cutoff: f32,
+    attitude_p: f32,
+    rate_p: f32,
+    motor_tau: f32,
+}
+
+impl Lag {
+    /// At rest at the tilt `a`, m/s².
+    pub fn at(p: &Params, a: [f32; 2]) -> Self {
+        Self {
+            first: a,
+            second: a,
+            turning: [0.0; 2],
+            cutoff: core::f32::consts::TAU * p.setpoint_lpf_hz,
+            attitude_p: p.attitude_p,
+            rate_p: p.rate_p,
+            motor_tau: p.motor_tau,
+        }
+    }
+
+    /// A step of `dt` s with the setpoint `u`, from the tilt `a` (m/s²) and its rate (m/s³).
+    pub fn step(&mut self, u: [f32; 2], a: [f32; 2], rate: [f32; 2], dt: f32) {
+        let gain = LowPass::gain(self.cutoff, dt / f32::from(SUBSTEPS));
+        let follow = LowPass::gain(1.0 / self.motor_tau, dt);
+        let stages = self.first.iter_mut().zip(&mut self.second).zip(&mut self.turning);
+        for (((first, second), turning), ((u, a), rate)) in stages.zip(u.into_iter().zip(a).zip(rate)) {
+            for _ in 0..SUBSTEPS {
+                *first += (u - *first) * gain;
+                *second += (*first - *second) * gain;
+            }
+            let asked = self.rate_p * (self.attitude_p * (*second - a) - rate);
+            *turning = math::clamp_abs(*turning + (asked - *turning) * follow, TURNING_MAX);
+        }
+    }
+}

@@ -1,0 +1,197 @@
+//! The law on a point mass with the tilt's lag, in wind, against its limits.
+
+extern crate std;
+use super::*;
+
+const DT: f32 = 0.01;
+const UNDER: u8 = 10;
+
+/// A vehicle whose tilt follows as the gains' model has it, by Euler at 1 kHz.
+struct World {
+    law: PositionHold,
+    e: Estimate,
+    /// Tilt forward and right, its rate and second derivative; the filter's stages.
+    tilt: [[f32; 3]; 2],
+    stages: [[f32; 2]; 2],
+    wind: Vec3,
+    wish: Wish,
+    known: bool,
+    yaw: f32,
+    out: Setpoint,
+}
+
+impl World {
+    fn new(yaw: f32, turn: f32) -> Self {
+        let e = Estimate {
+            turn,
+            ..Estimate::default()
+        };
+        let felt = Felt {
+            q: Quat::from_euler(0.0, 0.0, yaw),
+            rate: Vec3::ZERO,
+            carried: false,
+        };
+        Self {
+            law: PositionHold::begin(&Params::DEFAULT, &e, &felt),
+            e,
+            tilt: [[0.0; 3]; 2],
+            stages: [[0.0; 2]; 2],
+            wind: Vec3::ZERO,
+            wish: Wish::default(),
+            known: true,
+            yaw,
+            out: Setpoint::Stop,
+        }
+    }
+
+    fn felt(&self) -> Felt {
+        let [[f, fr, _], [r, rr, _]] = self.tilt;
+        let q = Quat::from_euler(math::asin(r / GRAVITY), -math::asin(f / GRAVITY), self.yaw);
+        Felt {
+            q,
+            rate: Vec3::new(rr / GRAVITY, -fr / GRAVITY, 0.0),
+            carried: false,
+        }
+    }
+
+    fn step(&mut self) {
+        let p = Params::DEFAULT;
+        self.out = self.law.step(&self.e, &self.felt(), &self.wish, self.known, DT);
+        let Setpoint::Angle {
+            roll, pitch, thrust, ..
+        } = self.out
+        else {
+            panic!("{:?}", self.out)
+        };
+        let aim = [-GRAVITY * pitch.sin(), GRAVITY * roll.sin() * pitch.cos()];
+        let lag = core::f32::consts::TAU * p.setpoint_lpf_hz;
+        let dt = DT / f32::from(UNDER);
+        for _ in 0..UNDER {
+            for ((t, s), u) in self.tilt.iter_mut().zip(&mut self.stages).zip(aim) {
+                s[0] += lag * (u - s[0]) * dt;
+                s[1] += lag * (s[0] - s[1]) * dt;
+                let asked = p.rate_p * (p.attitude_p * (s[1] - t[0]) - t[1]);
+                t[2] += (asked - t[2]) / p.motor_tau * dt;
+                t[1] += t[2] * dt;
+                t[0] += t[1] * dt;
+            }
+            let [[f, ..], [r, ..]] = self.tilt;
+            let up = thrust / p.mass - GRAVITY;
+            let level = about_down(Vec3::new(f, r, 0.0), self.yaw + self.e.turn);
+            let a = level + self.wind - Vec3::new(0.0, 0.0, up);
+            self.e.velocity += a * dt;
+            self.e.position += self.e.velocity * dt;
+        }
+        self.e.disturbance = self.wind;
+    }
+
+    fn run(&mut self, seconds: f32) -> &Estimate {
+        for _ in 0..(seconds / DT) as u32 {
+            self.step();
+        }
+        &self.e
+    }
+}
+
+#[test]
+fn a_displaced_vehicle_returns_with_little_overshoot_whatever_its_heading() {
+    for (yaw, turn) in [(0.0, 0.0), (1.2, 0.7), (3.0, -1.0)] {
+        let mut w = World::new(yaw, turn);
+        w.e.position = Vec3::new(0.3, -0.2, 0.1);
+        let start = w.e.position;
+        let mut over = 0.0f32;
+        for _ in 0..600 {
+            w.step();
+            over = over.max(-w.e.position.dot(start) / start.norm());
+        }
+        assert!(w.e.position.norm() < 0.01, "{yaw} {turn}: {:?}", w.e.position);
+        assert!(over < 0.05, "{yaw} {turn}: {over}");
+    }
+}
+
+#[test]
+fn a_steady_wind_leaves_no_error_and_more_than_the_limit_is_not_fought() {
+    let mut w = World::new(0.5, 0.0);
+    // 1 N and 3 N.
+    for wind in [0.55, 1.66] {
+        w.wind = Vec3::new(0.6 * wind, -0.8 * wind, 0.3);
+        let p = w.run(25.0).position;
+        assert!(p.norm() < 0.015, "{wind}: {p:?}");
+    }
+    w.wind = Vec3::new(10.0, 0.0, 0.0);
+    w.run(0.5);
+    let [roll, pitch, ..] = w.out.numbers();
+    let asked = GRAVITY * (roll.tan().powi(2) + pitch.tan().powi(2)).sqrt();
+    assert!(asked < 1.03 * ACCELERATION_MAX, "{asked}");
+}
+
+#[test]
+fn sticks_ask_for_velocities_along_the_heading_and_centred_they_stop() {
+    let mut w = World::new(1.0, 0.5);
+    w.wish.velocity = Vec3::new(1.0, 0.0, -0.4);
+    let v = w.run(6.0).velocity;
+    let wanted = about_down(w.wish.velocity, 1.5);
+    assert!((v - wanted).norm() < 0.03, "{v:?} {wanted:?}");
+    w.wish = Wish::default();
+    w.run(5.0);
+    let held = w.e.position;
+    w.run(5.0);
+    assert!(w.e.velocity.norm() < 0.01 && (w.e.position - held).norm() < 0.02);
+}
+
+#[test]
+fn what_is_touched_is_not_learnt_as_wind() {
+    let mut w = World::new(0.0, 0.0);
+    w.wind = Vec3::new(0.3, 0.0, 0.0);
+    w.run(20.0);
+    // Pressed at by 4 N, held where it is; then free again.
+    let learnt = w.law.wind;
+    w.e.disturbance = Vec3::new(2.5, 0.0, 0.0);
+    for _ in 0..200 {
+        w.law.step(&w.e, &w.felt(), &w.wish, true, DT);
+    }
+    assert_eq!(w.law.wind, learnt);
+    let carried = Felt {
+        carried: true,
+        ..w.felt()
+    };
+    w.e.disturbance = Vec3::new(0.6, 0.0, 0.0);
+    for _ in 0..200 {
+        w.law.step(&w.e, &carried, &w.wish, true, DT);
+    }
+    assert_eq!(w.law.wind, learnt);
+}
+
+#[test]
+fn a_jump_of_the_origin_moves_the_held_point_and_a_push_leaves_it_in_reach() {
+    let mut w = World::new(0.0, 0.0);
+    w.run(1.0);
+    w.e.position = Vec3::new(50.0, 20.0, -3.0);
+    w.e.jumps = 1;
+    w.run(3.0);
+    assert!((w.e.position - Vec3::new(50.0, 20.0, -3.0)).norm() < 0.02);
+    w.e.position.x += 5.0;
+    w.step();
+    assert!((w.law.anchor.x - w.e.position.x).abs() < 1.01 * LEASH);
+}
+
+#[test]
+fn sinking_onto_something_hands_over_the_weight() {
+    let mut w = World::new(0.0, 0.0);
+    w.wish.velocity.z = CLIMB_MAX;
+    let carried = Felt {
+        carried: true,
+        ..w.felt()
+    };
+    let mut thrust = f32::MAX;
+    for _ in 0..300 {
+        thrust = w.law.step(&w.e, &carried, &w.wish, true, DT).thrust();
+    }
+    assert!(thrust < 0.5, "{thrust}");
+    // Lifted again, it carries at once.
+    w.wish.velocity.z = 0.0;
+    for _ in 0..100 {
+        thrust = w.law.step(&w.e, &carried, &w.wish, true, DT).thrust();
+    }
+    assert!(thrust > 0.4 * Params::DEFAULT.mass * GRAVITY, "{thrust}");
+}

@@ -1,0 +1,195 @@
+//! A visual odometry or motion capture: late, noisy, with gaps, in axes of its own that slowly turn (figures assumed).
+
+use std::collections::VecDeque;
+use std::f64::consts::PI;
+
+use glam::{DQuat, DVec3};
+use rand::{Rng, SeedableRng};
+use rand_distr::{Distribution, StandardNormal};
+use rand_pcg::Pcg64Mcg;
+
+use crate::plant::contact::Pose;
+
+/// Time between two measurements, ms: 50 a second.
+const PERIOD_MS: u64 = 20;
+/// From measurement to the line, µs.
+const DELAY_US: u64 = 30_000;
+/// White noise along each axis, m, and of each angle, rad.
+const NOISE: f64 = 3e-3;
+const ANGLE_NOISE: f64 = 3e-3;
+/// Constant error along each axis, m RMS.
+const CONSTANT: f64 = 5e-3;
+/// Largest turn of its axes at the start, rad, and how fast they turn, rad/s: 1° a minute.
+const TURN: f64 = PI;
+const TURN_RATE: f64 = PI / 180.0 / 60.0;
+/// Without a measurement, s, and time between two such gaps, s.
+const GAP: (f64, f64) = (0.3, 1.0);
+const BETWEEN: (f64, f64) = (10.0, 40.0);
+
+/// A measurement in the source's axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measured {
+    /// When, µs after power-up.
+    pub at_us: u64,
+    /// m, down as the world's.
+    pub position: DVec3,
+    /// Body to its axes.
+    pub attitude: DQuat,
+}
+
+/// The source.
+#[derive(Clone, Debug)]
+pub struct PoseSource {
+    rng: Pcg64Mcg,
+    /// Since power-up, ms.
+    ms: u64,
+    /// Last true position, and what the source makes of the way since the start, m.
+    before: Option<DVec3>,
+    gone: DVec3,
+    constant: DVec3,
+    turn: f64,
+    turn_rate: f64,
+    /// Begin and end of the next gap, and of the failure, ms.
+    gap: (u64, u64),
+    failure: (u64, u64),
+    sent: VecDeque<Measured>,
+}
+
+impl PoseSource {
+    /// A source whose errors follow from `seed`, with random numbers of its own.
+    #[must_use]
+    pub fn new(seed: u64) -> Self {
+        let mut rng = Pcg64Mcg::seed_from_u64(seed ^ 0x706f_7365);
+        let constant = normal(&mut rng) * CONSTANT;
+        let turn = rng.random_range(-TURN..TURN);
+        let turn_rate = rng.random_range(-TURN_RATE..TURN_RATE);
+        let gap = gap(&mut rng, 0);
+        Self {
+            rng,
+            ms: 0,
+            before: None,
+            gone: DVec3::ZERO,
+            constant,
+            turn,
+            turn_rate,
+            gap,
+            failure: (0, 0),
+            sent: VecDeque::new(),
+        }
+    }
+
+    /// The same, failing at `at` s after power-up for `seconds`.
+    #[must_use]
+    pub fn failing(self, at: f64, seconds: f64) -> Self {
+        let failure = ((at * 1e3) as u64, ((at + seconds) * 1e3) as u64);
+        Self { failure, ..self }
+    }
+
+    /// A millisecond later the vehicle is at `pose`.
+    pub fn step(&mut self, pose: &Pose) {
+        self.ms += 1;
+        self.turn += self.turn_rate * 1e-3;
+        let axes = DQuat::from_rotation_z(self.turn);
+        let before = self.before.replace(pose.position).unwrap_or_default();
+        self.gone += axes * (pose.position - before);
+        let (begins, ends) = self.gap;
+        if self.ms >= ends {
+            self.gap = gap(&mut self.rng, self.ms);
+        }
+        let silent = [(begins, ends), self.failure]
+            .iter()
+            .any(|(begins, ends)| (*begins..*ends).contains(&self.ms));
+        if silent || !self.ms.is_multiple_of(PERIOD_MS) {
+            return;
+        }
+        let position = self.gone + self.constant + normal(&mut self.rng) * NOISE;
+        let error = DQuat::from_scaled_axis(normal(&mut self.rng) * ANGLE_NOISE);
+        self.sent.push_back(Measured {
+            at_us: self.ms * 1000,
+            position,
+            attitude: (axes * pose.attitude * error).normalize(),
+        });
+    }
+
+    /// Where `position` in the source's axes is in the world, by where it takes the vehicle to be now.
+    #[must_use]
+    pub fn in_world(&self, position: DVec3) -> DVec3 {
+        let axes = DQuat::from_rotation_z(self.turn);
+        self.before.unwrap_or_default() + axes.inverse() * (position - self.gone)
+    }
+
+    /// The oldest measurement that has arrived `us` µs after power-up.
+    pub fn take(&mut self, us: u64) -> Option<Measured> {
+        self.sent.front().filter(|m| m.at_us + DELAY_US <= us)?;
+        self.sent.pop_front()
+    }
+}
+
+fn normal(rng: &mut Pcg64Mcg) -> DVec3 {
+    DVec3::from_array(std::array::from_fn(|_| StandardNormal.sample(rng)))
+}
+
+/// Begin and end of the first gap after `ms`.
+fn gap(rng: &mut Pcg64Mcg, ms: u64) -> (u64, u64) {
+    let begins = ms + (rng.random_range(BETWEEN.0..BETWEEN.1) * 1e3) as u64;
+    (begins, begins + (rng.random_range(GAP.0..GAP.1) * 1e3) as u64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(position: DVec3) -> Pose {
+        Pose {
+            position,
+            attitude: DQuat::IDENTITY,
+            velocity: DVec3::ZERO,
+            omega: DVec3::ZERO,
+        }
+    }
+
+    #[test]
+    fn it_is_late_noisy_and_has_gaps() {
+        let mut source = PoseSource::new(5);
+        let (mut times, mut places) = (vec![], vec![]);
+        for ms in 1..=120_000_u64 {
+            source.step(&at(DVec3::new(1.0, 2.0, -3.0)));
+            while let Some(m) = source.take(ms * 1000) {
+                assert_eq!(m.at_us + DELAY_US, ms * 1000);
+                times.push(m.at_us);
+                places.push(m.position);
+            }
+        }
+        let gaps: Vec<u64> = times
+            .windows(2)
+            .map(|t| t[1] - t[0])
+            .filter(|gap| *gap > 20_000)
+            .collect();
+        assert!((3..=12).contains(&gaps.len()), "{gaps:?}");
+        assert!(
+            gaps.iter().all(|gap| (300_000..=1_040_000).contains(gap)),
+            "{gaps:?}"
+        );
+        let mean = places.iter().sum::<DVec3>() / places.len() as f64;
+        let rms =
+            (places.iter().map(|p| (*p - mean).length_squared()).sum::<f64>() / places.len() as f64).sqrt();
+        assert!((rms / (3f64.sqrt() * NOISE) - 1.0).abs() < 0.05, "{rms}");
+    }
+
+    #[test]
+    fn its_axes_are_its_own_and_the_way_in_them_is_as_long() {
+        let mut source = PoseSource::new(6);
+        let mut seen = vec![];
+        for ms in 1..=2_000_u64 {
+            source.step(&at(DVec3::new(ms as f64 * 1e-3, 0.0, 0.0)));
+            seen.extend(source.take(ms * 1000));
+        }
+        let (first, last) = (seen.first().unwrap(), seen.last().unwrap());
+        let way = last.position - first.position;
+        let time = (last.at_us - first.at_us) as f64 * 1e-6;
+        assert!((way.length() / time - 1.0).abs() < 0.02, "{way}");
+        // The nose is where the way goes.
+        let nose = last.attitude * DVec3::X;
+        assert!(nose.dot(way.normalize()) > 0.999, "{nose} {way}");
+    }
+}
