@@ -77,7 +77,9 @@ enum Command {
     ///
     /// BENCH.csv has a header line with the columns infill_percent (%), thrust_n (N), tilt_deg (degrees, tip up
     /// positive) and, if wanted, power_ratio (P/P0, 1 without it). TENDON.csv has infill_percent, force_n (along the
-    /// tendon, N), thrust_n, tilt_deg and, of an arm on the pipe, pressure_pa. Exit status: 0 done, 2 bad input or unwritable output.
+    /// tendon, N), thrust_n, tilt_deg and, of an arm on the pipe, pressure_pa.
+    ///
+    /// Exit status: 0 done, 2 bad input or unwritable output.
     FitArm(FitArgs),
     /// Print the timing of a board's log.
     ///
