@@ -243,9 +243,37 @@ fn an_arm_from_the_bench_is_fitted_and_flies() {
     // The example of docs/paper.md.
     let example = include_str!("../docs/arm-bench.csv");
     fs::write(temp.0.join("bench.csv"), example).unwrap();
-    let output = sophie(&temp.0, &["fit-arm", "bench.csv", "--json"]);
+    fs::write(
+        temp.0.join("tendon.csv"),
+        include_str!("../docs/tendon-bench.csv"),
+    )
+    .unwrap();
+    let output = sophie(
+        &temp.0,
+        &["fit-arm", "bench.csv", "--tendon", "tendon.csv", "--json"],
+    );
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
     let results: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let names = column(&results, "fit", "The tendon", 0);
+    // The simulated beam's: 2 h/L of what a thrust does, and 6.4 to 6.7 N/N on the pipe of 0.3 m.
+    for (name, low, high) in [
+        ("tendon_bend", 1.9, 2.1),
+        ("tilt per tendon force", 1.32, 1.45),
+        ("tendon_relief", 0.53, 0.58),
+        ("tendon force per thrust", 6.3, 6.9),
+    ] {
+        let at = names.iter().position(|n| n == name).unwrap();
+        let [value, from, to] =
+            [2, 3, 4].map(|i| column(&results, "fit", "The tendon", i)[at].as_f64().unwrap());
+        assert!(
+            (low..high).contains(&value) && from < value && value < to && to - from < 0.1 * value,
+            "{name}: {value}, {from} to {to}"
+        );
+    }
+    let lines = fs::read_to_string(temp.0.join("out/arm.console")).unwrap();
+    for name in ["tendon_lever 0.015", "tendon_bend ", "tendon_relief "] {
+        assert!(lines.contains(&format!("set {name}")), "{lines}");
+    }
     let names = column(&results, "fit", "Coefficients", 0);
     let value = |name: &str, i: usize| {
         let at = names.iter().position(|n| n == name).unwrap();
@@ -411,6 +439,11 @@ fn wrong_input_is_told_in_one_line() {
     write("tabs.csv", "infill_percent\tthrust_n\ttilt_deg\n6\t1\t2\n");
     write("mixed.csv", "infill_percent,thrust_n,tilt_deg\n6;1;2\n");
     write("headless.csv", "6,1,2\n6,2,3\n");
+    write("good.csv", include_str!("../docs/arm-bench.csv"));
+    write(
+        "turning.csv",
+        "infill_percent,force_n,thrust_n,tilt_deg\n6,10,2,-30\n",
+    );
     fs::write(temp.0.join("bytes.csv"), [0xff, 0xfe, 0x00]).unwrap();
     for (args, message) in [
         (&["paper", "x"][..], "unexpected argument 'x': allowed is no file"),
@@ -457,6 +490,15 @@ fn wrong_input_is_told_in_one_line() {
             "headless.csv:1: a row of numbers where the header should be: allowed is a header with infill_percent",
         ),
         (&["fit-arm", "bytes.csv"], "bytes.csv: is not text"),
+        (
+            &["fit-arm", "good.csv", "--tendon", "turning.csv"],
+            "turning.csv: a free arm (pressure_pa 0) at thrust_n 2: allowed is 0",
+        ),
+        (
+            &["fit-arm", "good.csv", "--tendon", "few.csv"],
+            "few.csv:1: column 'force_n' is missing: needed are infill_percent, force_n, thrust_n, tilt_deg and",
+        ),
+        (&["fit-arm", "good.csv", "--lever", "2"], "allowed 5 to 100 mm"),
     ] {
         let line = refused(&temp, args);
         assert!(

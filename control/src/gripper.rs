@@ -8,8 +8,9 @@
 //! lags in motion, and a PID leads the pressure along a reference that approaches the target from below. On release the
 //! force falls at a limited rate.
 //!
-//! Two feed-forwards: the arm's stiffness sets the rise, and a force of arm_d/h T balances the moment arm_d T by which
-//! the rotor's thrust bends the arm off the pipe, so the pressure hardly moves when the rotors stop.
+//! Two feed-forwards: the arm's stiffness sets the rise, and a tendon force in proportion to the rotor's thrust balances
+//! what this bends the arm off the pipe, so the pressure hardly moves when the rotors stop. A thrust at the tip and a
+//! tendon along the arm bend a beam differently: how much each does, free and on the pipe, are two parameters.
 //!
 //! | word | meaning |
 //! |---|---|
@@ -31,7 +32,7 @@ mod pressure_loop;
 mod tests;
 
 pub use self::arm::ArmGripper;
-pub use self::config::Config;
+pub use self::config::{Config, force_per_thrust};
 pub use self::input::{ArmInput, Pressure};
 use crate::grip::{ArmGrip, ArmState};
 use crate::grip_fault::GripFault;

@@ -163,16 +163,17 @@ impl Solution {
     /// `None` if the points cannot separate the unknowns.
     fn of(points: &[Point], unknowns: Unknowns) -> Option<Self> {
         let linear = unknowns.linear();
+        let tilts = tilts(points);
         let mut exponent = EXPONENT;
         // C_P's derivative needs a solution.
         let start: Vec<Vec<f64>> = points
             .iter()
             .map(|p| unknowns.row(p, &[], exponent)[..linear].to_vec())
             .collect();
-        let (mut x, mut covariance) = solve(&start, points)?;
+        let (mut x, mut covariance) = solve(&start, &tilts)?;
         for _ in 0..STEPS {
             let design: Vec<Vec<f64>> = points.iter().map(|p| unknowns.row(p, &x, exponent)).collect();
-            (x, covariance) = solve(&design, points)?;
+            (x, covariance) = solve(&design, &tilts)?;
             let step = x.get(linear).map_or(0.0, |step| step.clamp(-0.5, 0.5));
             exponent += step;
             if step.abs() < 1e-9 {
@@ -245,7 +246,7 @@ fn gain(points: &[Point], [a1, a2, b1, b2]: [f64; 4], exponent: f64) -> Option<(
         ((a1 + p.infill * a2) + (b1 + p.infill * b2) * p.thrust) * p.thrust * p.power.powf(exponent)
     };
     let design: Vec<Vec<f64>> = points.iter().map(|p| vec![1.0, shape(p)]).collect();
-    let (x, covariance) = solve(&design, points)?;
+    let (x, covariance) = solve(&design, &tilts(points))?;
     let square: f64 = points
         .iter()
         .map(|p| (p.tilt - x[0] - x[1] * shape(p)).powi(2))
@@ -262,6 +263,10 @@ fn gain(points: &[Point], [a1, a2, b1, b2]: [f64; 4], exponent: f64) -> Option<(
         },
         residual,
     ))
+}
+
+fn tilts(points: &[Point]) -> Vec<f64> {
+    points.iter().map(|p| p.tilt).collect()
 }
 
 fn range(points: &[Point], of: impl Fn(&Point) -> f64) -> (f64, f64) {

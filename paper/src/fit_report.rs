@@ -5,7 +5,8 @@ use sophie_sim::scenario::Scenario;
 
 use super::bench_data::Point;
 use super::fit::{Fit, Fitted};
-use super::model::{Axis, Chart, Look, Section, Series, Table, num};
+use super::model::{Axis, Cell, Chart, Look, Section, Series, Table, num};
+use super::tendon_fit::TendonFit;
 
 /// Tilts within this span may be radians: a quarter turn. Table I's stiffest arm (10 %, K = 1) bends by 2.8°.
 const RADIANS: f64 = 1.58;
@@ -85,8 +86,8 @@ pub fn infill(points: &[Point]) -> f64 {
     default.clamp(low, high.max(low))
 }
 
-/// The section of the fit.
-pub fn section(points: &[Point], fit: &Fit) -> Section {
+/// The section of the fit, with that of the tendon where there is one.
+pub fn section(points: &[Point], fit: &Fit, tendon: Option<&TendonFit>) -> Section {
     let mut s = Section::new("fit", "Eq. 1 fitted to bench data");
     s.table(coefficients(fit));
     s.text(format!(
@@ -97,21 +98,42 @@ pub fn section(points: &[Point], fit: &Fit) -> Section {
     for warning in warnings(points, fit) {
         s.text(format!("Warning: {warning}."));
     }
+    if let Some(tendon) = tendon {
+        tendon_table(&mut s, tendon);
+    }
     curves(&mut s, points, fit);
     s.finding = format!("{} points, residual {:.2}° RMS.", points.len(), fit.residual);
     s
 }
 
+fn show(f: &Fitted) -> [Cell; 5] {
+    [
+        f.name.into(),
+        f.unit.into(),
+        num(f.value, 4),
+        num(f.value - f.half, 4),
+        num(f.value + f.half, 4),
+    ]
+}
+
+fn tendon_table(s: &mut Section, tendon: &TendonFit) {
+    let mut t = Table::new(
+        "The tendon, with 95 % confidence intervals",
+        &["name", "unit", "value", "from", "to"],
+    );
+    for f in tendon.bend.iter().chain(&tendon.relief) {
+        t.row(show(f));
+    }
+    s.table(t);
+    let [tilt, force] = tendon.residuals;
+    s.text(format!(
+        "The tendon runs {:.1} mm from the neutral line. Residuals: {tilt:.2}° RMS of the free arm's tilt, {force:.2} N RMS \
+         of the force on the pipe.",
+        1e3 * tendon.lever
+    ));
+}
+
 fn coefficients(fit: &Fit) -> Table {
-    let show = |f: &Fitted| {
-        [
-            f.name.into(),
-            f.unit.into(),
-            num(f.value, 4),
-            num(f.value - f.half, 4),
-            num(f.value + f.half, 4),
-        ]
-    };
     let mut t = Table::new(
         "Coefficients with their 95 % confidence interval",
         &["name", "unit", "value", "from", "to"],
@@ -192,7 +214,12 @@ pub fn console_lines(text: &str) -> String {
 ///
 /// # Errors
 /// One line: a number outside the stack's range, and the range.
-pub fn parameters(points: &[Point], fit: &Fit, source: &str) -> Result<String, String> {
+pub fn parameters(
+    points: &[Point],
+    fit: &Fit,
+    tendon: Option<&TendonFit>,
+    source: &str,
+) -> Result<String, String> {
     let rho = infill(points);
     let (a, b) = fit.at(rho);
     let top = f64::from(Params::default().thrust_max);
@@ -213,7 +240,7 @@ pub fn parameters(points: &[Point], fit: &Fit, source: &str) -> Result<String, S
     // One infill's arm is independent of the infill, which is clamped to the stack's range.
     let [a1, a2, b1, b2] = fit.coefficients;
     let rho = rho.clamp(4.0, 10.0);
-    let text = format!(
+    let mut text = format!(
         "# Arm of {source}, fitted by sophie fit-arm: {} points, residual {:.3} deg RMS.\n\
          # sophie fly THIS_FILE flies the default mission with it. [vehicle] is what the simulator builds, [params] what the\n\
          # flight stack believes, under the names of its parameter table.\n\n\
@@ -225,6 +252,15 @@ pub fn parameters(points: &[Point], fit: &Fit, source: &str) -> Result<String, S
         fit.residual,
         fit.exponent.clamp(1.0, 2.5)
     );
+    if let Some(TendonFit {
+        lever, bend, relief, ..
+    }) = tendon
+    {
+        text += &format!(
+            "tendon_lever = {lever:.6}\ntendon_bend = {:.4}\ntendon_relief = {:.4}\n",
+            bend[0].value, relief[0].value
+        );
+    }
     Scenario::parse(&text, "arm.toml", &Default::default()).map_err(|e| {
         let hint = unit_hint(points);
         format!("the fitted arm is out of range{hint}; as arm.toml, which is not written: {e}")
@@ -285,7 +321,7 @@ mod tests {
             })
             .collect();
         let f = fit(&points, [2.4387, -0.1997, -0.162, 0.0151]).unwrap();
-        let text = parameters(&points, &f, "bench.csv").unwrap();
+        let text = parameters(&points, &f, None, "bench.csv").unwrap();
         let s = Scenario::parse(&text, "arm.toml", &Default::default()).unwrap();
         let model = sophie_control::deflection::ArmModel::from_params(&s.params);
         for t in [0.5f32, 3.0, 6.0] {
@@ -317,7 +353,7 @@ mod tests {
         let falling: Vec<Point> = points.iter().map(|p| Point { tilt: -p.tilt, ..*p }).collect();
         let f = fit(&falling, [2.4387, -0.1997, -0.162, 0.0151]).unwrap();
         assert!(
-            parameters(&falling, &f, "b")
+            parameters(&falling, &f, None, "b")
                 .unwrap_err()
                 .contains("does not rise")
         );

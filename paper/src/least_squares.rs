@@ -1,9 +1,7 @@
 //! Linear least squares, and Student's quantile for the intervals.
 
-use super::bench_data::Point;
-
-/// Solves `design` x = tilts by normal equations with scaled columns; x and (XᵀX)⁻¹.
-pub fn solve(design: &[Vec<f64>], points: &[Point]) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
+/// Solves `design` x = `measured` by normal equations with scaled columns; x and (XᵀX)⁻¹.
+pub fn solve(design: &[Vec<f64>], measured: &[f64]) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
     let n = design.first()?.len();
     let scale: Vec<f64> = (0..n)
         .map(|j| design.iter().map(|r| r[j] * r[j]).sum::<f64>().sqrt())
@@ -15,7 +13,7 @@ pub fn solve(design: &[Vec<f64>], points: &[Point]) -> Option<(Vec<f64>, Vec<Vec
     let mut m: Vec<Vec<f64>> = (0..n)
         .map(|i| {
             let dot = |j: usize| design.iter().map(|r| r[i] * r[j]).sum::<f64>() / (scale[i] * scale[j]);
-            let y = design.iter().zip(points).map(|(r, p)| r[i] * p.tilt).sum::<f64>() / scale[i];
+            let y = design.iter().zip(measured).map(|(r, m)| r[i] * m).sum::<f64>() / scale[i];
             (0..n)
                 .map(dot)
                 .chain((0..n).map(|j| f64::from(u8::from(i == j))))

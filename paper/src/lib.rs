@@ -6,6 +6,7 @@ pub mod bench_data;
 mod beyond;
 mod chart;
 mod clamp;
+mod csv;
 mod endurance;
 mod fatigue;
 pub mod fit;
@@ -23,6 +24,8 @@ mod roll;
 mod stability;
 mod statics;
 pub mod study;
+pub mod tendon_data;
+pub mod tendon_fit;
 pub mod text;
 mod translation;
 

@@ -1,167 +1,117 @@
-//! The two models of an arm side by side: bending by thrust and by tendon, modes, and what a tendon takes on a pipe
-//! (`cargo run --release -p sophie-sim --example arms`).
+//! What a tendon does to a bending arm: free and on a pipe, over infill and lever; modes; and the example bench data of
+//! docs/paper.md (`cargo run --release -p sophie-sim --example arms [-- bench]`).
 
 #![allow(clippy::print_stdout, reason = "the table is what it is for")]
 
-use glam::{DQuat, DVec3};
 use sophie_sim::plant::arm::ArmSpec;
-use sophie_sim::plant::beam::{BeamArm, BeamSpec, Masses};
-use sophie_sim::plant::body::{BodySpec, Load};
-use sophie_sim::plant::contact::{BELLY_Z, Pipe, Pose};
-use sophie_sim::plant::flexible::{Acceleration, Carrier, Drive, Flexible, Nearby};
-use sophie_sim::plant::hinged::HingedArm;
-use sophie_sim::plant::tendon::TendonSpec;
-use sophie_sim::plant::{GRAVITY, STEP};
-use sophie_sim::scenario::ArmBending;
+use sophie_sim::plant::beam::rest::{DAMPING, SlowArm, pipe_under};
+use sophie_sim::plant::beam::{BeamSpec, Masses, TENDON_LEVER};
+use sophie_sim::plant::body::BodySpec;
 
-/// Damping ratio: an arm comes to rest soon.
-const DAMPING: f64 = 0.8;
-/// Time to rest, s, of which the tendon rises in the first half.
-const REST: f64 = 4.0;
 /// Grip pressure, Pa.
 const GRIP: f64 = 950.0;
-const POSE: Pose = Pose {
-    position: DVec3::ZERO,
-    attitude: DQuat::IDENTITY,
-    velocity: DVec3::ZERO,
-    omega: DVec3::ZERO,
-};
+/// Of the reel, m, and kgcm per N·m.
+const REEL: f64 = 0.015;
+const KGCM: f64 = 10.197;
+/// Time to rest under a new force, s.
+const REST: f64 = 2.0;
+/// Thrust of a closing, N.
+const CLOSING: f64 = 2.5;
+const INFILLS: [f64; 3] = [6.0, 6.9, 8.0];
 
 /// An arm under test.
 #[derive(Clone, Copy)]
 struct Tried {
-    bending: ArmBending,
     infill: f64,
     lever: f64,
 }
 
-/// At rest.
-struct Rested {
-    /// °.
-    tilt: f64,
-    /// Pa.
-    pressure: f64,
-}
-
 impl Tried {
-    fn arm(&self) -> Box<dyn Flexible> {
-        let spec = ArmSpec::new(self.infill, 7.75, 1.0, 0.0, DAMPING);
-        match self.bending {
-            ArmBending::Hinge => Box::new(HingedArm::new(2, spec)),
-            ArmBending::Beam => {
-                let masses = Masses::of(&BodySpec::default());
-                Box::new(BeamArm::new(2, BeamSpec::of(&spec, masses, DAMPING)))
-            }
-        }
+    fn arm(&self, thrust: f64, diameter: Option<f64>) -> SlowArm {
+        let print = ArmSpec::new(self.infill, 7.75, 1.0, 0.0, DAMPING);
+        let beam = BeamSpec::of(&print, Masses::of(&BodySpec::default()), DAMPING);
+        let pipe = diameter.map(|d| pipe_under(0.5 * d, 0.0));
+        SlowArm::new(2, beam, self.lever, thrust, pipe)
     }
 
-    fn rest(&self, thrust: f64, force: f64, pipe: Option<Pipe>) -> Rested {
-        let mut arm = self.arm();
-        let bench = Carrier {
-            omega: DVec3::ZERO,
-            gravity: DVec3::new(0.0, 0.0, GRAVITY),
-            coupled: false,
-        };
-        let held = Acceleration {
-            linear: DVec3::ZERO,
-            angular: DVec3::ZERO,
-        };
-        let nearby = Nearby { pipe, ground: false };
-        let steps = (REST / STEP) as u32;
-        let mut pressure = 0.0;
-        for i in 0..steps {
-            let share = (2.0 * f64::from(i) / f64::from(steps)).min(1.0);
-            let drive = Drive {
-                dt: STEP,
-                thrust,
-                tendon: -self.lever * force * share,
-                ..Drive::default()
-            };
-            pressure = arm.touch(STEP, &POSE, &nearby, &mut Load::default());
-            arm.drive(&drive, &bench, &mut Load::default());
-            arm.advance(STEP, &held, &bench);
-        }
-        Rested {
-            tilt: arm.tilt().to_degrees(),
-            pressure,
-        }
+    /// Force (N) that presses with `pressure` Pa.
+    fn presses(&self, thrust: f64, diameter: f64, pressure: f64) -> f64 {
+        self.arm(thrust, Some(diameter))
+            .pull_to(pressure)
+            .unwrap_or(f64::NAN)
     }
 
-    /// Force (N) that presses with [`GRIP`].
-    fn grips(&self, thrust: f64, diameter: f64) -> f64 {
-        let (mut low, mut high) = (0.0, 200.0);
-        for _ in 0..18 {
-            let middle = 0.5 * (low + high);
-            if self.rest(thrust, middle, Some(pipe(diameter))).pressure < GRIP {
-                low = middle;
-            } else {
-                high = middle;
-            }
+    /// Tilt (°) and pressure (Pa) at rest under `force` N, reached without a bounce.
+    fn rests(&self, thrust: f64, diameter: Option<f64>, force: f64) -> (f64, f64) {
+        let mut arm = self.arm(thrust, diameter);
+        for share in 1..=20 {
+            arm.hold(force * f64::from(share) / 20.0, 0.2);
         }
-        0.5 * (low + high)
+        arm.hold(force, REST);
+        (arm.tilt().to_degrees(), arm.pressure)
+    }
+
+    /// °/N.
+    fn free(&self) -> f64 {
+        (self.rests(0.0, None, 10.0).0 - self.rests(0.0, None, 20.0).0) / 10.0
     }
 
     fn print(&self) {
-        let name = match self.bending {
-            ArmBending::Hinge => "hinge",
-            ArmBending::Beam => "beam",
-        };
-        println!(
-            "{name}, infill {} %, lever {:.0} mm",
-            self.infill,
-            1e3 * self.lever
-        );
-        let free = self.rest(0.0, 10.0, None).tilt - self.rest(0.0, 20.0, None).tilt;
-        println!("  free arm by tendon        {:.3} deg/N", free / 10.0);
+        println!("infill {} %, lever {:.1} mm", self.infill, 1e3 * self.lever);
+        let free = self.free();
+        println!("  free arm by tendon        {free:.3} deg/N");
         for diameter in [0.2, 0.3, 0.4] {
-            let (still, turning) = (self.grips(0.0, diameter), self.grips(2.5, diameter));
-            let held = self.rest(0.0, still, Some(pipe(diameter)));
-            let more = self.rest(0.0, still + 1.0, Some(pipe(diameter)));
+            let still = self.presses(0.0, diameter, GRIP);
+            let turning = self.presses(CLOSING, diameter, GRIP);
+            let (tilt, pressure) = self.rests(0.0, Some(diameter), still);
+            let (more_tilt, more) = self.rests(0.0, Some(diameter), still + 1.0);
             println!(
-                "  on {diameter} m: {still:.1} N stopped ({:.2} kgcm, {:.1} deg), {turning:.1} N at 2.5 N; {:.2} N/N, \
-                 {:.0} Pa/N, on pipe over free {:.2}",
-                still * 0.015 * 10.197,
-                held.tilt,
-                (turning - still) / 2.5,
-                more.pressure - held.pressure,
-                (held.tilt - more.tilt) / (free / 10.0),
+                "  on {diameter} m: {still:.1} N stopped ({:.2} kgcm, {tilt:.1} deg), {turning:.1} N at {CLOSING} N \
+                 ({:.2} kgcm); {:.2} N/N, {:.0} Pa/N, on pipe over free {:.2}",
+                still * REEL * KGCM,
+                turning * REEL * KGCM,
+                (turning - still) / CLOSING,
+                more - pressure,
+                (tilt - more_tilt) / free,
             );
         }
     }
-}
 
-/// Belly on the pipe's crown: pads 30 mm beside it, 0.6 mm deep.
-fn pipe(diameter: f64) -> Pipe {
-    let radius = 0.5 * diameter;
-    Pipe {
-        north: 0.0,
-        half_length: 1.0,
-        east: 0.0,
-        down: BELLY_Z + (radius * radius - 0.03 * 0.03).sqrt() - 0.6e-3,
-        radius,
-        friction: 0.0,
+    /// Rows as a person with spring scales would write them.
+    fn bench(&self) {
+        for force in [5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0] {
+            let (tilt, _) = self.rests(0.0, None, force);
+            println!("{},{force:.1},0.0,{tilt:.1},0", self.infill);
+        }
+        for thrust in [0.0, 1.5, 3.0] {
+            for pressure in [800.0, 950.0, 1100.0] {
+                let force = (2.0 * self.presses(thrust, 0.3, pressure)).round() / 2.0;
+                let (tilt, pressure) = self.rests(thrust, Some(0.3), force);
+                println!("{},{force:.1},{thrust:.1},{tilt:.1},{pressure:.0}", self.infill);
+            }
+        }
     }
 }
 
 fn main() {
-    for infill in [6.0, 6.9, 8.0] {
-        for bending in [ArmBending::Hinge, ArmBending::Beam] {
-            let lever = TendonSpec::of(bending).lever;
-            Tried {
-                bending,
-                infill,
-                lever,
-            }
-            .print();
+    if std::env::args().nth(1).as_deref() == Some("bench") {
+        println!("# Of the simulated beam, lever 15 mm, pipe of 0.3 m: forces to 0.5 N, tilts to 0.1 deg.");
+        println!("infill_percent,force_n,thrust_n,tilt_deg,pressure_pa");
+        for infill in INFILLS {
+            let lever = TENDON_LEVER;
+            Tried { infill, lever }.bench();
+        }
+        return;
+    }
+    for infill in INFILLS {
+        for lever in [0.0125, TENDON_LEVER, 0.020, 0.025] {
+            Tried { infill, lever }.print();
         }
     }
-    let beam = BeamSpec::of(
-        &ArmSpec::new(6.9, 7.75, 1.0, 0.0, 0.15),
-        Masses::of(&BodySpec::default()),
-        0.15,
-    );
+    let print = ArmSpec::new(6.9, 7.75, 1.0, 0.0, 0.15);
+    let beam = BeamSpec::of(&print, Masses::of(&BodySpec::default()), 0.15);
     for thrust in [1.0, 4.425] {
         let [first, second] = beam.modes(thrust);
-        println!("beam, infill 6.9 %, {thrust} N: {first:.2} and {second:.1} Hz");
+        println!("infill 6.9 %, {thrust} N: {first:.2} and {second:.1} Hz");
     }
 }

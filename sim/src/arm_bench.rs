@@ -14,21 +14,21 @@ use sophie_control::params::Params;
 use sophie_control::tendon::{Drive, Reel, TendonDrive};
 
 use crate::plant::arm::ArmSpec;
-use crate::plant::beam::{BeamArm, BeamSpec};
-use crate::plant::body::Load;
-use crate::plant::contact::{BELLY_Z, Pipe, Pose};
+use crate::plant::beam::rest::pipe_under;
+use crate::plant::beam::{BeamArm, BeamSpec, Masses};
+use crate::plant::body::{BodySpec, Load};
+use crate::plant::contact::{Pipe, Pose};
 use crate::plant::flexible::{Acceleration, Carrier, Drive as Driven, Flexible, Nearby};
 use crate::plant::hinged::HingedArm;
 use crate::plant::tendon::{ServoSpec, Tendon, TendonSpec};
 use crate::plant::{GRAVITY, STEP};
 use crate::scenario::ArmBending;
-use crate::sensors::fsr::FsrSensor;
+use crate::sensors::fsr::{FsrBreak, FsrSensor};
 
 /// Before closing, s.
 const REST: f64 = 1.0;
-/// Fore-aft distance of the belly pads from the pipe's crown line, and their indentation under a quarter of 10 N each,
-/// m.
-const PADS: (f64, f64) = (0.03, 0.6e-3);
+/// Damping ratio of a [`Closing`]'s arm.
+const DAMPING: f64 = 0.15;
 /// RMS of the arm sensor, rad.
 const TILT_NOISE: f64 = 0.004;
 /// Of a [`Closing`]: rotor, s, and pipe.
@@ -98,6 +98,8 @@ pub struct BenchArm {
     pub friction: f64,
     /// Of the arm's rotor while it closes, N.
     pub thrust: f64,
+    /// Fault of the pressure sensor.
+    pub broken: Option<FsrBreak>,
 }
 
 impl BenchArm {
@@ -123,16 +125,18 @@ impl From<&Closing> for BenchArm {
             servo_range: what.servo.range as f32,
             ..Params::default()
         };
+        let spec = ArmSpec::new(what.infill, f64::from(params.gain_k), 1.0, 0.0, DAMPING);
         Self {
             arm: 0,
-            spec: ArmSpec::new(what.infill, f64::from(params.gain_k), 1.0, 0.0, 0.15),
-            beam: None,
+            spec,
+            beam: Some(BeamSpec::of(&spec, Masses::of(&BodySpec::default()), DAMPING)),
             servo: what.servo,
             rotor_tau: ROTOR_TAU,
             params,
             diameter: what.diameter,
             friction: FRICTION,
             thrust: what.thrust,
+            broken: None,
         }
     }
 }
@@ -146,16 +150,18 @@ pub struct Tried {
     pub asked: f64,
     /// Mean servo torque over the last half second, N·m.
     pub steady: f64,
+    /// Largest true pressure, Pa.
+    pub peak: f64,
 }
 
 /// Closes `arm` until it has held with its rotor stopped for `AFTER`, the gripper gives up, or `longest` s have passed.
 #[must_use]
 pub fn try_grip(arm: &BenchArm, longest: f64) -> Tried {
     let mut bench = ArmBench::new(arm, 1);
-    let (mut asked, mut last) = (0.0_f64, VecDeque::new());
+    let (mut asked, mut peak, mut last) = (0.0_f64, 0.0_f64, VecDeque::new());
     let (mut stopped, mut held) = (0.0, false);
     for step in 1..=((REST + longest) / STEP) as u64 {
-        bench.step(step, arm.thrust);
+        peak = peak.max(bench.step(step, arm.thrust));
         if !step.is_multiple_of(GRIPPER_STEPS) {
             continue;
         }
@@ -181,6 +187,7 @@ pub fn try_grip(arm: &BenchArm, longest: f64) -> Tried {
         grip: bench.grip,
         asked,
         steady: last.iter().sum::<f64>() / last.len().max(1) as f64,
+        peak,
     }
 }
 
@@ -278,7 +285,8 @@ impl ArmBench {
     fn new(what: &BenchArm, seed: u64) -> Self {
         let params = &what.params;
         let mut rng = Pcg64Mcg::seed_from_u64(seed);
-        let sensor = FsrSensor::new(&mut rng);
+        let mut sensor = FsrSensor::new(&mut rng);
+        sensor.set_broken(what.broken);
         let reel = Reel::from_params(params, what.arm);
         let drive = TendonDrive::new();
         let order = drive.hold(&reel);
@@ -288,7 +296,7 @@ impl ArmBench {
         };
         Self {
             rng,
-            pipe: pipe(0.5 * what.diameter, what.friction),
+            pipe: pipe_under(0.5 * what.diameter, what.friction),
             arm,
             tendon: Tendon::new(what.servo, TendonSpec::of(bending)),
             sensor,
@@ -384,17 +392,6 @@ impl ArmBench {
             let dt = (self.drive_steps as f64 * STEP) as f32;
             self.order = self.drive.step(&self.reel, self.grip.force, self.tilt, dt);
         }
-    }
-}
-
-fn pipe(radius: f64, friction: f64) -> Pipe {
-    Pipe {
-        north: 0.0,
-        half_length: 1.0,
-        east: 0.0,
-        down: BELLY_Z + (radius * radius - PADS.0 * PADS.0).sqrt() - PADS.1,
-        radius,
-        friction,
     }
 }
 

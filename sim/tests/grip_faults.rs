@@ -47,7 +47,7 @@ impl Arm {
         } else {
             0.0
         };
-        let bend = ArmModel::from_params(p).slope(0.0) * p.tendon_lever / p.arm_d;
+        let bend = ArmModel::from_params(p).slope(0.0) * p.tendon_bend * p.tendon_lever / p.arm_d;
         let force = |tilt: f32| {
             let stretch = p.reel_radius * angle - p.tendon_lever * (REFERENCE_TILT - tilt);
             (p.tendon_stiffness * stretch).max(0.0)

@@ -85,7 +85,10 @@ enum Command {
     /// Fit the arm equation to thrust-bench data and write the arm for the simulator and the flight stack.
     ///
     /// BENCH.csv has a header line with the columns infill_percent (%), thrust_n (N), tilt_deg (degrees, tip up
-    /// positive) and, if wanted, power_ratio (P/P0, 1 without it). Exit status: 0 done, 2 bad input or unwritable output.
+    /// positive) and, if wanted, power_ratio (P/P0, 1 without it). TENDON.csv has infill_percent, force_n (along the
+    /// tendon, N), thrust_n, tilt_deg and, of an arm on the pipe, pressure_pa.
+    ///
+    /// Exit status: 0 done, 2 bad input or unwritable output.
     FitArm(FitArgs),
     /// Print the timing of a board's log.
     ///
@@ -138,6 +141,12 @@ pub struct FitArgs {
     /// Bench data.
     #[arg(value_name = "BENCH.csv")]
     pub bench: PathBuf,
+    /// Bench data of the tendon: a second table, for tendon_bend and tendon_relief.
+    #[arg(long, value_name = "TENDON.csv")]
+    pub tendon: Option<PathBuf>,
+    /// Distance of that tendon from the arm's neutral line, 5 to 100 mm.
+    #[arg(long, value_name = "MM", value_parser = lever, default_value = "15", allow_negative_numbers = true)]
+    pub lever: f64,
     /// Directory for fit.html, fit.json, arm.toml and arm.console.
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
@@ -497,6 +506,11 @@ fn spread(text: &str) -> Result<f64, String> {
 fn heading(text: &str) -> Result<f64, String> {
     let degrees = text.parse().ok().filter(|degrees| (0.0..=45.0).contains(degrees));
     degrees.ok_or_else(|| "allowed 0 to 45 degrees".to_owned())
+}
+
+fn lever(text: &str) -> Result<f64, String> {
+    let mm = text.parse().ok().filter(|mm| (5.0..=100.0).contains(mm));
+    mm.ok_or_else(|| "allowed 5 to 100 mm".to_owned())
 }
 
 fn speed(text: &str) -> Result<f64, String> {

@@ -7,8 +7,10 @@ use sophie_report::terminal::output::OutDir;
 use super::PROGRAM;
 use super::args::{FitArgs, PaperArgs};
 use super::publish::Publisher;
+use sophie_paper::fit::Fit;
 use sophie_paper::printed::Printed;
-use sophie_paper::{self as paper, bench_data, fit, fit_report, json, page, text};
+use sophie_paper::tendon_fit::TendonFit;
+use sophie_paper::{self as paper, bench_data, fit, fit_report, json, page, tendon_data, tendon_fit, text};
 
 const FIT_FILES: [&str; 4] = ["fit.html", "fit.json", "arm.toml", "arm.console"];
 
@@ -34,11 +36,12 @@ pub fn fit_arm(args: &FitArgs) -> Result<bool, String> {
     let t = Printed::read().table_1;
     let fitted = fit::fit(&points, [t.a1, t.a2, t.b1, t.b2]).map_err(|why| format!("{file}: {why}"))?;
     fit_report::check_units(&points).map_err(|why| format!("{file}: {why}"))?;
-    let parameters =
-        fit_report::parameters(&points, &fitted, &file).map_err(|why| format!("{file}: {why}"))?;
+    let tendon = fit_tendon(args, &fitted, fit_report::infill(&points))?;
+    let parameters = fit_report::parameters(&points, &fitted, tendon.as_ref(), &file)
+        .map_err(|why| format!("{file}: {why}"))?;
     let out = OutDir::prepare(&args.out, &FIT_FILES)?;
     let console = Console::new(args.json);
-    let sections = [fit_report::section(&points, &fitted)];
+    let sections = [fit_report::section(&points, &fitted, tendon.as_ref())];
     for line in text::lines(1, &sections[0]) {
         console.say(&line);
     }
@@ -62,4 +65,16 @@ pub fn fit_arm(args: &FitArgs) -> Result<bool, String> {
     }
     console.end()?;
     Ok(true)
+}
+
+/// Fits the tendon to the second table, where one is given.
+fn fit_tendon(args: &FitArgs, arm: &Fit, infill: f64) -> Result<Option<TendonFit>, String> {
+    let Some(path) = &args.tendon else {
+        return Ok(None);
+    };
+    let rows = tendon_data::load(path)?;
+    let fitted = tendon_fit::fit(&rows, arm, 1e-3 * args.lever, infill);
+    fitted
+        .map(Some)
+        .map_err(|why| format!("{}: {why}", path.display()))
 }

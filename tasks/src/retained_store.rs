@@ -4,6 +4,7 @@
 //! message changes nothing.
 
 use crate::retained_state::RetainedState;
+use sophie_control::gripper::force_per_thrust;
 use sophie_control::mounting::Mounting;
 use sophie_control::wrench::PerArm;
 
@@ -43,7 +44,7 @@ impl<R: Retain> RetainedStore<R> {
                 .fresh()
                 .filter(|m| m.running)
                 .map_or([0.0; 4], |m| m.thrusts);
-            let per_thrust = links.params.arm_d / links.params.tendon_lever;
+            let per_thrust = force_per_thrust(&links.params);
             for ((slot, asked), thrust) in self.retained.force.iter_mut().zip(tendons.arms).zip(thrusts) {
                 *slot = asked.force - per_thrust * thrust;
             }

@@ -1,6 +1,6 @@
 //! Controller of one arm: free, approach, grip, release, and its faults.
 
-use super::bend_watch::{BendSample, BendWatch};
+use super::bend_watch::{BendSample, BendWatch, Response};
 use super::ceiling_watch::{CeilingSample, CeilingWatch};
 use super::input::{Contact, InputFilters, Measured};
 use super::pressure_loop::PressureLoop;
@@ -47,6 +47,8 @@ pub struct ArmGripper {
     pub(super) force: f32,
     filters: InputFilters,
     bend_watch: Option<BendWatch>,
+    /// Learnt in this closing.
+    pub(super) response: Response,
     ceiling_watch: CeilingWatch,
     fault: Option<GripFault>,
     /// Time without a tilt, s.
@@ -213,6 +215,7 @@ impl ArmGripper {
         Some(Contact {
             pressure: measured.pressure?,
             feed_forward: cfg.per_thrust * measured.thrust?,
+            lifted: measured.thrust? / cfg.thrust_per_force,
             tension: measured.tension.unwrap_or(self.force),
             tilt: measured.tilt?,
         })
@@ -240,9 +243,13 @@ impl ArmGripper {
         self.phase = if contact.touches() {
             Phase::Grip(PressureLoop::new(contact, self.force, 0.0))
         } else {
-            self.bend_watch = Some(BendWatch::of_a_start(contact.tilt, contact.tension));
+            self.bend_watch = Some(BendWatch::of_a_start(&self.bend_sample(contact)));
             Phase::Approach
         };
+        // It may lie on the pipe unfelt.
+        if !self.response.is_known() {
+            self.response = Response::ASSUMED;
+        }
     }
 
     /// Controls the pressure after touch, raises the force by the arm's stiffness before.
@@ -267,7 +274,10 @@ impl ArmGripper {
                 let transient = math::clamp(lag, 0.0, cfg.limit);
                 self.phase = Phase::Grip(PressureLoop::new(contact, self.force, transient));
             }
-            _ => self.force = math::clamp(self.force + cfg.approach_rate * dt, FORCE_MIN, cfg.limit),
+            _ => {
+                let rise = cfg.approach_rate / self.response.value() * dt;
+                self.force = math::clamp(self.force + rise, FORCE_MIN, cfg.limit);
+            }
         }
     }
 
@@ -283,16 +293,22 @@ impl ArmGripper {
         }
     }
 
+    fn bend_sample(&self, contact: &Contact) -> BendSample {
+        BendSample {
+            tilt: contact.tilt,
+            load: contact.tension - contact.lifted,
+            tension: contact.tension,
+            force: self.force,
+        }
+    }
+
     /// An arm without touch must bend as the force rises; otherwise the force returns to its value before.
     fn watch_bending(&mut self, cfg: &Config, contact: &Contact, dt: f32) {
         self.ceiling_watch.pause();
-        let start = BendWatch::new(contact.tilt, contact.tension);
-        let sample = BendSample {
-            tilt: contact.tilt,
-            tension: contact.tension,
-            force: self.force,
-        };
-        if let Some(before) = self.bend_watch.get_or_insert(start).step(cfg, sample, dt) {
+        let sample = self.bend_sample(contact);
+        let free = self.phase == Phase::Approach;
+        let watch = self.bend_watch.get_or_insert(BendWatch::new(&sample));
+        if let Some(before) = watch.step(cfg, sample, &mut self.response, free, dt) {
             self.fault = Some(GripFault::Unfelt);
             self.force = match self.phase {
                 Phase::Grip(pressure_loop) => math::clamp(pressure_loop.mean_force(), FORCE_MIN, self.force),

@@ -6,6 +6,11 @@ use crate::math;
 use crate::params::Params;
 use crate::tendon::ForceLimit;
 
+/// Tendon force that a newton of the rotor's thrust relieves on the pipe, N/N.
+pub fn force_per_thrust(p: &Params) -> f32 {
+    p.tendon_relief * p.arm_d / p.tendon_lever
+}
+
 /// Derived from the parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Config {
@@ -19,8 +24,10 @@ pub struct Config {
     pub(super) release_rate: f32,
     /// Largest force, N.
     pub(super) limit: f32,
-    /// Tendon force relieved by a rotor's thrust, N/N.
+    /// Tendon force relieved by a rotor's thrust on the pipe, N/N.
     pub(super) per_thrust: f32,
+    /// Thrust that bends a free arm as much as a newton of tendon force, N/N.
+    pub(super) thrust_per_force: f32,
     /// Tilt loss of a free arm by tendon force, rad/N.
     pub(super) bend_per_force: f32,
     pub(super) demand: GripDemand,
@@ -29,9 +36,10 @@ pub struct Config {
 impl Config {
     /// From the parameters.
     pub fn from_params(p: &Params) -> Self {
-        // The moment h F bends like the thrust F h/d; below level thrust the arm is linear.
+        // A newton of tendon bends a free arm as much as this thrust; below level thrust the arm is linear.
+        let thrust_per_force = math::clamp(p.tendon_bend * p.tendon_lever / p.arm_d, 1e-3, 10.0);
         let compliance = math::clamp(ArmModel::from_params(p).slope(0.0), 1e-3, 10.0);
-        let bend_per_force = compliance * p.tendon_lever / p.arm_d;
+        let bend_per_force = compliance * thrust_per_force;
         let limit = ForceLimit::from_params(p).asked;
         Self {
             p: p.clamp_p,
@@ -40,7 +48,8 @@ impl Config {
             approach_rate: math::clamp(p.clamp_approach / bend_per_force, 0.0, 1e3),
             release_rate: p.clamp_release,
             limit,
-            per_thrust: p.arm_d / p.tendon_lever,
+            per_thrust: force_per_thrust(p),
+            thrust_per_force,
             bend_per_force,
             demand: GripDemand::from_params(p, limit),
         }

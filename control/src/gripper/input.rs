@@ -98,8 +98,10 @@ impl InputFilters {
 pub(super) struct Contact {
     /// Contact pressure, Pa.
     pub pressure: f32,
-    /// Tendon force against the rotor's thrust, N.
+    /// Tendon force against the rotor's thrust on the pipe, N.
     pub feed_forward: f32,
+    /// Tendon force against the rotor's thrust on a free arm, N.
+    pub lifted: f32,
     /// Tension, N; the demanded force if unknown.
     pub tension: f32,
     /// Tilt, rad.

@@ -246,8 +246,16 @@ params! {
     servo_range = 4.71, "rad", 0.5 ..= 6.3;
     /// Radius of the reel on the servo (assumed).
     reel_radius = 0.015, "m", 0.002 ..= 0.05;
-    /// Distance of the tendon from the arm's neutral line (assumed).
-    tendon_lever = 0.025, "m", 0.005 ..= 0.1;
+    /// Distance of the tendon from the arm's neutral line: along the underside (derived, half the root's height).
+    tendon_lever = 0.015, "m", 0.005 ..= 0.1;
+    /// Tilt of a free arm by its tendon over that by a thrust of the same moment at the root: 2 for a beam alike along its
+    /// length, 1 for a hinge (derived; of your own arm from `sophie fit-arm`). Times tendon_lever / arm_d and the tilt per
+    /// thrust it is the tilt per tendon force.
+    tendon_bend = 2.0, "1", 0.5 ..= 6.0;
+    /// Tendon force that balances a thrust at equal pressure on the pipe, over that of the same moment at the root: 0.55 for a
+    /// beam on a pipe of 0.3 m, 1 for a hinge (derived; of your own arm from `sophie fit-arm`). Times arm_d / tendon_lever it
+    /// is tendon force per thrust.
+    tendon_relief = 0.55, "1", 0.1 ..= 2.0;
     /// Stiffness along the tendon: nylon of 1 mm and 0.25 m, E 2.5 GPa (derived, 30 %).
     tendon_stiffness = 8000.0, "N/m", 200.0 ..= 100000.0;
     /// Pressure loop: proportional gain, tendon force per pressure.
@@ -256,7 +264,8 @@ params! {
     clamp_i = 0.05, "N/(Pa s)", 0.0 ..= 1.0;
     /// Pressure loop: derivative gain on the measured pressure.
     clamp_d = 0.00003, "N s/Pa", 0.0 ..= 0.05;
-    /// Speed at which an arm is bent down until it touches; the force's rise follows from infill and gain_k.
+    /// Speed at which an arm is bent down until it touches; the force's rise follows from infill,
+    /// gain_k and tendon_bend, then from the bending measured in the closing.
     clamp_approach = 0.7, "rad/s", 0.05 ..= 3.0;
     /// Fastest fall of the tendon force on release.
     clamp_release = 80.0, "N/s", 5.0 ..= 500.0;

@@ -15,7 +15,7 @@ use sophie_sim::crsf::{FRAME_HZ, rc_frame};
 use sophie_sim::flight::aircraft::Aircraft;
 use sophie_sim::flight::stack::Stack;
 use sophie_sim::plant::Plant;
-use sophie_sim::plant::contact::{ArmSkin, BELLY_Z, STATIONS};
+use sophie_sim::plant::contact::BELLY_Z;
 use sophie_sim::scenario::Scenario;
 
 /// s.
@@ -233,7 +233,7 @@ impl Try {
             self.plant.pose().attitude,
             touch.offset,
             radius,
-            self.plant.tilt(),
+            &self.plant.underside(),
         ) + axis;
         self.plant.place(
             DVec3::new(north, east + touch.offset, down - ABOVE),
@@ -244,12 +244,11 @@ impl Try {
 }
 
 /// Distance of the centre of mass below the pipe's axis (negative above) at the first contact of belly or arms, m.
-fn touch_height(attitude: DQuat, offset: f64, radius: f64, tilt: [f64; 4]) -> f64 {
+fn touch_height(attitude: DQuat, offset: f64, radius: f64, arms: &[[DVec3; 3]; 4]) -> f64 {
     let belly = [-0.03, 0.03].map(|y| DVec3::new(0.0, y, BELLY_Z));
-    let arms = (0..4).flat_map(|arm| STATIONS.map(|s| ArmSkin::new(arm).point(tilt[arm], s).0));
     belly
         .into_iter()
-        .chain(arms)
+        .chain(arms.iter().flatten().copied())
         .filter_map(|point| {
             let r = attitude * point;
             let beside = offset + r.y;

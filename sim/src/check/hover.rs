@@ -4,8 +4,9 @@ use sophie_control::effectiveness::{Effectiveness, Geometry};
 use sophie_control::wrench::PerArm;
 
 use crate::plant::arm::ArmSpec;
+use crate::plant::beam::BeamSpec;
 use crate::plant::contact::{ARM_LENGTH, ARM_X};
-use crate::plant::{GRAVITY, arm_spec};
+use crate::plant::{GRAVITY, arm_spec, beam_spec};
 use crate::scenario::{Scenario, Vehicle};
 
 /// For the hover thrust: to 1e-6 of the largest.
@@ -19,6 +20,7 @@ const TILT_MAX: f64 = 0.7;
 #[derive(Clone, Debug)]
 pub struct Built {
     arms: PerArm<ArmSpec>,
+    beams: PerArm<BeamSpec>,
     geometry: Geometry,
     chi: f64,
     /// Weight, N.
@@ -35,6 +37,7 @@ impl Built {
         let chi = f64::from(v.configuration.chi());
         let mut built = Self {
             arms: std::array::from_fn(|arm| arm_spec(v, arm)),
+            beams: std::array::from_fn(|arm| beam_spec(v, arm)),
             geometry: Geometry::new(
                 ARM_LENGTH as f32,
                 ARM_X as f32,
@@ -98,16 +101,11 @@ impl Built {
         1.0 - mean / f64::from(self.geometry.drag.abs())
     }
 
-    /// Lowest bending mode in hover, body held, Hz: √(k/m)/2π, k = dT/dα / L the tangent stiffness at the tip, N/m, m
-    /// its mass.
+    /// Lowest bending mode of the softest arm in hover, body held, Hz.
     #[must_use]
     pub fn arm_mode(&self) -> f64 {
-        let slope = |arm: &ArmSpec| {
-            let tilt = arm.static_tilt(self.hover);
-            (arm.static_load(tilt + 1e-4) - arm.static_load(tilt - 1e-4)) / 2e-4
-        };
-        let softest = self.arms.iter().map(slope).fold(f64::INFINITY, f64::min);
-        (softest / ARM_LENGTH / crate::plant::arm::TIP_MASS).sqrt() / std::f64::consts::TAU
+        let first = |beam: &BeamSpec| beam.modes(self.hover)[0];
+        self.beams.iter().map(first).fold(f64::INFINITY, f64::min)
     }
 
     /// rad, limited to `TILT_MAX`.

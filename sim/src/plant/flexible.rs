@@ -64,6 +64,9 @@ pub trait Flexible: Carried {
     /// Tilt of the tip, rad.
     fn tilt(&self) -> f64;
 
+    /// Points of the underside that may touch the pipe, m, body.
+    fn underside(&self) -> [DVec3; 3];
+
     /// Finds the contact forces, adds them to `load` and keeps what they do to the arm for [`Flexible::drive`]; returns
     /// the pressure at the sensor, Pa.
     fn touch(&mut self, dt: f64, pose: &Pose, nearby: &Nearby, load: &mut Load) -> f64;

@@ -1,8 +1,10 @@
 //! The arm on one hinge with its contacts.
 
+use glam::DVec3;
+
 use super::arm::{Arm, ArmSpec};
 use super::body::Load;
-use super::contact::{ArmSkin, ArmTip, Pose};
+use super::contact::{ArmSkin, ArmTip, Pose, STATIONS};
 use super::flexible::{Acceleration, Carried, Carrier, Drive, Flexible, Nearby};
 use super::mass_matrix::MassMatrix;
 
@@ -42,6 +44,10 @@ impl Carried for HingedArm {
 impl Flexible for HingedArm {
     fn tilt(&self) -> f64 {
         self.arm.tilt
+    }
+
+    fn underside(&self) -> [DVec3; 3] {
+        STATIONS.map(|station| self.skin.point(self.arm.tilt, station).0)
     }
 
     fn touch(&mut self, dt: f64, pose: &Pose, nearby: &Nearby, load: &mut Load) -> f64 {

@@ -214,6 +214,15 @@ impl Plant {
         }
     }
 
+    /// Points of each arm's underside that may touch the pipe, m, body.
+    #[must_use]
+    pub fn underside(&self) -> PerArm<[DVec3; 3]> {
+        match &self.arms {
+            Arms::Hinged(arms) => arms.each_ref().map(Flexible::underside),
+            Arms::Beams(arms) => arms.each_ref().map(Flexible::underside),
+        }
+    }
+
     /// Thrust of each rotor, N.
     #[must_use]
     pub fn thrust(&self) -> PerArm<f64> {

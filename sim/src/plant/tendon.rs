@@ -107,6 +107,16 @@ impl TendonSpec {
     }
 }
 
+/// What the stack has to believe of arms that bend as `bending` says: the tendon's lever, and what tendon and thrust do to
+/// a free arm and to one on a pipe.
+pub fn believe(params: &mut Params, bending: ArmBending) {
+    params.tendon_lever = TendonSpec::of(bending).lever as f32;
+    (params.tendon_bend, params.tendon_relief) = match bending {
+        ArmBending::Hinge => (1.0, 1.0),
+        ArmBending::Beam => (Params::DEFAULT.tendon_bend, Params::DEFAULT.tendon_relief),
+    };
+}
+
 impl Default for TendonSpec {
     fn default() -> Self {
         Self {

@@ -25,7 +25,7 @@ impl Default for Vehicle {
             gain_k: 7.75,
             configuration: Configuration::B,
             arm_coefficients: TABLE_1,
-            arm_bending: ArmBending::Hinge,
+            arm_bending: ArmBending::Beam,
             arm_taper: 1.0,
             arm_level_share: 0.5,
             arm_gain: [1.0; 4],

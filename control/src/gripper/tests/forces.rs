@@ -20,9 +20,9 @@ impl Bench {
         }
     }
 
-    /// Tilt of an arm that bends by 0.020152 rad/N (the paper's arm at 6.9 %), rad.
+    /// Tilt of an arm that bends by 0.024182 rad/N (the paper's arm at 6.9 %), rad.
     fn bent(&self) -> f32 {
-        -0.2 - 0.020_152 * self.arm.force
+        -0.2 - 0.024_182 * self.arm.force
     }
 
     /// Closes for one step with the tension at the force; returns the change of force, N.
@@ -141,7 +141,7 @@ fn a_touch_lost_for_good_falls_back_to_the_force_it_was_held_with() {
 
 #[test]
 fn a_touch_lost_at_once_falls_back_to_the_tendons_own_force() {
-    // 2.5 N of thrust take 0.178/0.025·2.5 = 17.8 N of the tendon's force.
+    // 2.5 N of thrust take 0.55·0.178/0.015·2.5 = 16.3 N of the tendon's force.
     let mut bench = Bench::new(&Params::default());
     bench.thrust = 2.5;
     let touched = bench.run(0.0, 150);

@@ -5,6 +5,7 @@ mod ceiling_watch;
 mod closing;
 mod faults;
 mod forces;
+mod response;
 
 use super::arm::Phase;
 use super::pressure_loop::LAG_MAX;

@@ -34,8 +34,12 @@ pub struct BeamArm {
     contact: BeamContact,
     /// Middle and tip, as `q` and `rate` have them.
     places: [Point; 2],
+    /// Of the tilt.
     sin: f64,
     cos: f64,
+    /// Of the twist.
+    twist_sin: f64,
+    twist_cos: f64,
     thrust: f64,
     /// Of this step.
     equations: Equations,
@@ -73,6 +77,8 @@ impl BeamArm {
             places: [Point::default(); 2],
             sin: 0.0,
             cos: 1.0,
+            twist_sin: 0.0,
+            twist_cos: 1.0,
             thrust: 0.0,
             equations: Equations::default(),
         };
@@ -98,9 +104,19 @@ impl BeamArm {
         self.twist
     }
 
+    fn bent(&self) -> Bent {
+        Bent {
+            q: self.q,
+            rate: self.rate,
+            x: self.x,
+            side: -self.side,
+        }
+    }
+
     fn place(&mut self) {
         self.places = points(&self.q, &self.rate, [MIDDLE, 1.0]);
         (self.sin, self.cos) = self.tilt().sin_cos();
+        (self.twist_sin, self.twist_cos) = self.twist.sin_cos();
     }
 
     /// In body axes.
@@ -126,7 +142,7 @@ impl BeamArm {
     #[must_use]
     pub fn rotor_axis(&self) -> DVec3 {
         let (_, normal) = self.tip_axes();
-        normal * self.twist.cos() + self.axis() * self.twist.sin()
+        normal * self.twist_cos + self.axis() * self.twist_sin
     }
 
     fn tip_rate(&self) -> f64 {
@@ -198,7 +214,7 @@ impl BeamArm {
         let damping = &self.spec.damping;
         let mut forces = self.spec.elastic(&self.q);
         // The thrust's part across the arm, and the rotor's moment about the bending axis.
-        let (across, about) = (drive.thrust * self.twist.cos(), moment.dot(self.axis()));
+        let (across, about) = (drive.thrust * self.twist_cos, moment.dot(self.axis()));
         for k in 0..TERMS {
             forces[k] += across * (self.cos * tip.up_by[k] - self.sin * tip.out_by[k]) + about + drive.tendon;
             forces[k] -= damping[k][0] * self.rate[0] + damping[k][1] * self.rate[1];
@@ -246,14 +262,12 @@ impl Flexible for BeamArm {
         self.q[0] + self.q[1]
     }
 
+    fn underside(&self) -> [DVec3; 3] {
+        self.bent().underside().map(|spot| spot.place)
+    }
+
     fn touch(&mut self, dt: f64, pose: &Pose, nearby: &Nearby, load: &mut Load) -> f64 {
-        let (x, side) = (self.x, -self.side);
-        let bent = Bent {
-            q: self.q,
-            rate: self.rate,
-            x,
-            side,
-        };
+        let bent = self.bent();
         self.contact.step(dt, &bent, pose, nearby, load)
     }
 
@@ -278,7 +292,7 @@ impl Flexible for BeamArm {
             coupled: false,
         };
         let carrier = if carrier.coupled { carrier } else { &bench };
-        let nutation = 0.5 * drive.dt * drive.momentum * self.twist.cos();
+        let nutation = 0.5 * drive.dt * drive.momentum * self.twist_cos;
         self.equations = self.equations(carrier, forces, twisting, nutation);
     }
 

@@ -8,6 +8,7 @@
 
 mod arm;
 mod masses;
+pub mod rest;
 mod section;
 mod shape;
 mod skin;

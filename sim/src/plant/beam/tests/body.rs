@@ -112,9 +112,9 @@ fn tumbling(spec: BeamSpec) -> Loose {
     loose.pose.omega = DVec3::new(2.0, -1.5, 1.0);
     for (i, arm) in loose.arms.iter_mut().enumerate() {
         let share = 1.0 - 0.4 * i as f64;
+        arm.twist = 0.1 * share;
         arm.bend([0.3 * share, 0.1 * share]);
         arm.rate = [1.0, -2.0 * share];
-        arm.twist = 0.1 * share;
         arm.twist_rate = 3.0;
     }
     loose
