@@ -70,7 +70,7 @@ impl Past {
             if moment.at_us >= at_us {
                 let lag = seconds(at_us, moment.at_us);
                 let [x, y, z] = changes.map(|change| change.position_after(lag));
-                moment.position = moment.position + Vec3::new(x, y, z);
+                moment.position += Vec3::new(x, y, z);
             }
         }
     }

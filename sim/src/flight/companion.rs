@@ -8,6 +8,7 @@ use sophie_mavlink::dialect::ATT_POS_MOCAP_DATA;
 use sophie_tasks::links::Links;
 use sophie_tasks::mavlink;
 use sophie_tasks::mavlink::signing::Stored;
+use sophie_tasks::shell::Shell;
 
 use crate::clock::VirtualTime;
 use crate::live::Live;
@@ -51,12 +52,14 @@ impl Companion {
             signing: Cell::new(None),
         }));
         let port = LinePort(self.line);
-        let rate = mavlink::Line {
-            bytes_per_second: BYTES_PER_SECOND,
-            signing: Stored::None,
+        let lines = mavlink::Lines {
+            inputs: [port],
+            outputs: [port],
+            bytes_per_second: [BYTES_PER_SECOND],
         };
-        // The computer orders no restart.
-        time.spawn(mavlink::run(links, port, port, Port(memory), || (), rate));
+        // The computer types nothing, and orders no restart.
+        let shell: &'static Shell = Box::leak(Box::default());
+        time.spawn(mavlink::run(links, lines, shell, Port(memory), || (), Stored::None));
     }
 
     /// Takes in where the vehicle is, each millisecond.
@@ -72,7 +75,7 @@ impl Companion {
                 self.line.receive(&frame);
             }
         }
-        // Nobody reads what the board says on a line of its own.
+        // No one reads what the board says on a line of its own.
         while !self.shared && self.line.said().is_some() {}
     }
 
@@ -104,7 +107,7 @@ impl Companion {
         let mut raw = MAVLinkV2MessageRaw::new();
         let header = MavHeader {
             system_id: SYSTEM.into(),
-            component_id: COMPONENT.into(),
+            component_id: COMPONENT,
             sequence: self.sequence,
         };
         raw.serialize_message_data(header, &message);

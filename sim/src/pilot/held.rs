@@ -25,7 +25,7 @@ impl Mission {
         if self.phase == Phase::Start && self.step_time <= dt {
             self.spot = v.seen.position.truncate();
         }
-        match self.into_hold(v, self.spot, self.height, dt) {
+        match self.enter_hold(v, self.spot, self.height, dt) {
             Err(progress) => progress,
             Ok(()) => {
                 let wish = self.centred(v);
@@ -43,7 +43,7 @@ impl Mission {
         if self.phase == Phase::Start && self.step_time <= dt {
             self.spot = v.seen.position.truncate();
         }
-        if let Err(progress) = self.into_hold(v, self.spot, self.height, dt) {
+        if let Err(progress) = self.enter_hold(v, self.spot, self.height, dt) {
             return progress;
         }
         let away = target - v.seen.position.truncate();
@@ -72,7 +72,7 @@ impl Mission {
     }
 
     /// Flies by hand at `spot` until the display shows the hold.
-    fn into_hold(&mut self, v: &View<'_>, spot: DVec2, height: f64, dt: f64) -> Result<(), Progress> {
+    fn enter_hold(&mut self, v: &View<'_>, spot: DVec2, height: f64, dt: f64) -> Result<(), Progress> {
         match (self.phase, v.mode) {
             (Phase::Fly, Some(Mode::Hold)) => return Ok(()),
             (Phase::Wait, Some(Mode::Hold)) => {
