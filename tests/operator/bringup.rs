@@ -401,6 +401,7 @@ fn radio(builder: &mut Builder, board: &Board) {
         arm_switch: on,
         perch_switch: on,
         stick_mode: if on { StickMode::Direct } else { StickMode::Angle },
+        hold_switch: on,
         arms: if on { ArmChoice::Rear } else { ArmChoice::All },
     };
     builder.hears("Enter once they have followed");
