@@ -56,14 +56,23 @@ impl UsbPort {
     }
 }
 
-/// The core has its supply, answers as one that is known, and is idle: what the driver waits for without end.
+/// The core has its supply, answers as one that is known, is idle, and its flags can be cleared: what the driver waits for,
+/// or would serve, without end. Of the emulated chips' cores the flags cannot.
 fn answers() -> bool {
     if !has_supply() {
         return false;
     }
     enable_clock();
     let core = pac::USB_OTG_FS;
-    CORES.contains(&core.cid().read().0) && core.grstctl().read().ahbidl()
+    if !CORES.contains(&core.cid().read().0) || !core.grstctl().read().ahbidl() {
+        return false;
+    }
+    core.gintsts().write(|w| {
+        w.set_usbrst(true);
+        w.set_enumdne(true);
+    });
+    let flags = core.gintsts().read();
+    !flags.usbrst() && !flags.enumdne()
 }
 
 /// Starts the detector of the transceiver's own supply.

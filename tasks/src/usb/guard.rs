@@ -120,6 +120,8 @@ impl<B: Bus> Bus for Watched<'_, B> {
     async fn poll(&mut self) -> Event {
         loop {
             let event = self.bus.poll().await;
+            // A core that reports without end must not take the background.
+            embassy_futures::yield_now().await;
             match event {
                 // A cable without a host looks the same.
                 Event::Suspend | Event::PowerRemoved => self.port.suspend(true),

@@ -119,8 +119,6 @@ pub static PADS: Pads = Pads {
         (At(0, 3), 7),
         (At(2, 10), 7),
         (At(2, 11), 7),
-        (At(0, 11), 10),
-        (At(0, 12), 10),
     ],
     resting_high: &[
         At(1, 8),

@@ -112,8 +112,6 @@ pub static MATEK: Pads = Pads {
         (At(4, 8), 7),
         (At(0, 9), 7),
         (At(0, 10), 7),
-        (At(0, 11), 10),
-        (At(0, 12), 10),
     ],
     resting_high: &[
         At(1, 6),
