@@ -59,7 +59,14 @@ impl Companion {
         };
         // The computer types nothing, and orders no restart.
         let shell: &'static Shell = Box::leak(Box::default());
-        time.spawn(mavlink::run(links, lines, shell, Port(memory), || (), Stored::None));
+        time.spawn(mavlink::run(
+            links,
+            lines,
+            shell,
+            Port(memory),
+            || (),
+            Stored::None,
+        ));
     }
 
     /// Takes in where the vehicle is, each millisecond.

@@ -234,6 +234,7 @@ fn ends(sign: f32, on: bool) -> Sticks {
         arm_switch: on,
         perch_switch: on,
         stick_mode: if on { StickMode::Direct } else { StickMode::Angle },
+        hold_switch: on,
         arms: if on { ArmChoice::Rear } else { ArmChoice::All },
     }
 }

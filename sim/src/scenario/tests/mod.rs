@@ -125,7 +125,7 @@ fn the_command_line_wins_over_the_file() {
     let overrides = Overrides {
         infill: Some(9.0),
         gain_k: Some(2.0),
-        arm_bending: Some(ArmBending::Beam),
+        arm_bending: Some(ArmBending::Hinge),
         configuration: Some(Configuration::A),
         mixer: Some(Variant::Paper),
         arms: Some(ArmChoice::Rear),
@@ -135,10 +135,14 @@ fn the_command_line_wins_over_the_file() {
     let s = Scenario::parse(text, "f", &overrides).unwrap();
     assert_eq!((s.vehicle.infill, s.vehicle.gain_k, s.seed), (9.0, 2.0, 77));
     assert_eq!((s.params.infill, s.params.gain_k), (9.0, 2.0));
-    // The stack's lever follows the tendon's place.
+    // What the stack believes of the tendon follows the arm.
+    let p = &s.params;
     assert_eq!(
-        (s.vehicle.arm_bending, s.params.tendon_lever),
-        (ArmBending::Beam, 0.015)
+        (
+            s.vehicle.arm_bending,
+            [p.tendon_lever, p.tendon_bend, p.tendon_relief]
+        ),
+        (ArmBending::Hinge, [0.025, 1.0, 1.0])
     );
     assert_eq!(
         (s.vehicle.configuration, s.mixer, s.arms),
