@@ -128,6 +128,8 @@ fn the_command_line_wins_over_the_file() {
         arm_bending: Some(ArmBending::Hinge),
         configuration: Some(Configuration::A),
         mixer: Some(Variant::Paper),
+        sensors: Some(PositionSensor::Pose),
+        assist: Some(Assist::Hold),
         arms: Some(ArmChoice::Rear),
         seed: Some(77),
     };
@@ -137,6 +139,10 @@ fn the_command_line_wins_over_the_file() {
     assert_eq!((s.params.infill, s.params.gain_k), (9.0, 2.0));
     // What the stack believes of the tendon follows the arm.
     let p = &s.params;
+    assert_eq!(
+        (s.sensors.position, s.pilot.assist),
+        (PositionSensor::Pose, Assist::Hold)
+    );
     assert_eq!(
         (
             s.vehicle.arm_bending,
