@@ -29,9 +29,9 @@ const CASES: [Case; 10] = [
         change: |_| (),
     },
     Case {
-        what: "`rate_p` 24, too high",
+        what: "`rate_p` 32, too high",
         seen: "shakes as soon as it lifts",
-        change: |s| s.params.rate_p = 24.0,
+        change: |s| s.params.rate_p = 32.0,
     },
     Case {
         what: "`rate_p` 3, too low",
@@ -44,9 +44,9 @@ const CASES: [Case; 10] = [
         change: |s| s.params.rate_i = 90.0,
     },
     Case {
-        what: "`attitude_p` 12, too high",
+        what: "`attitude_p` 10, too high",
         seen: "nods after each stick",
-        change: |s| s.params.attitude_p = 12.0,
+        change: |s| s.params.attitude_p = 10.0,
     },
     Case {
         what: "`estimator_kp` 2, too high",

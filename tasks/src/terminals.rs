@@ -1,6 +1,6 @@
 //! Two terminals at one console: what is typed at either is obeyed, and answered where something was typed last.
 //!
-//! There is one console, so that there is one working copy of the parameters and one who gives orders.
+//! There is one console for both, so that there is one working copy of the parameters and one who gives orders.
 
 use core::cell::Cell;
 

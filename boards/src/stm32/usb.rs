@@ -57,7 +57,7 @@ impl UsbPort {
 }
 
 /// The core has its supply, answers as one that is known, is idle, and its flags can be cleared: what the driver waits for,
-/// or would serve, without end. Of the emulated chips' cores the flags cannot.
+/// or would serve, without end.
 fn answers() -> bool {
     if !has_supply() {
         return false;

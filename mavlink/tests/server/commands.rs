@@ -54,7 +54,8 @@ fn a_message_is_sent_when_asked_for() {
         station.got::<AVAILABLE_MODES_DATA>()[0].custom_mode,
         Mode::Flight as u32
     );
-    assert_eq!(station.command(ask, [435.0, 12.0]), [DENIED]);
+    let none = Mode::ALL.len() as f32 + 1.0;
+    assert_eq!(station.command(ask, [435.0, none]), [DENIED]);
     assert_eq!(station.command(ask, [33.0, 0.0]), [UNSUPPORTED]);
     for bad in [f32::NAN, -1.0, 0.5, f32::INFINITY] {
         assert_eq!(station.command(ask, [bad, 0.0]), [DENIED], "{bad}");

@@ -86,7 +86,7 @@ const GROUPS: [Group; 9] = [
     },
     Group {
         name: "pos",
-        what: "estimated position m, velocity m/s, wind across m/s2, age of the newest pose s",
+        what: "position m, velocity m/s, wind m/s2, age of the newest pose s",
         columns: "       x       y       z      vx      vy      vz      wx      wy     age",
         places: 2,
         read: position,

@@ -56,7 +56,7 @@ fn frames_come_at_the_servos_rate() {
 
 #[test]
 fn arms_found_wound_pay_out_slowly_from_where_their_tendons_are_taut() {
-    // Just taut at -1.2 rad: 25 mm/15 mm·(0.4 + 1.2) = 2.667 rad, 1626 µs; from there 3 rad/s, 0.06 rad a frame.
+    // Just taut at -1.2 rad: 15 mm/15 mm·(0.4 + 1.2) = 1.6 rad, 1195 µs; from there 3 rad/s, 0.06 rad a frame.
     let (mut rig, port) = started(Start::COLD);
     rig.run_with(100, |links, at| speak(links, at, None, CLOSED));
     assert!(
@@ -69,14 +69,14 @@ fn arms_found_wound_pay_out_slowly_from_where_their_tendons_are_taut() {
     });
     let pulses = port.pulses.borrow();
     for (frame, pulses) in pulses.iter().enumerate() {
-        let angle = (2.667 - 0.06 * (frame + 1) as f32).max(0.0);
+        let angle = (1.6 - 0.06 * (frame + 1) as f32).max(0.0);
         assert!(
             near(*pulses, pulse(angle)),
             "frame {frame}: {pulses:?}, {}",
             pulse(angle)
         );
     }
-    // Home for good after 0.89 s, though the arms are still reported as found.
+    // Home for good after 0.53 s, though the arms are still reported as found.
     assert!(pulses.len() == 60 && near(pulses[59], 550.0));
 }
 
@@ -97,7 +97,7 @@ fn arms_not_found_wound_are_at_release_from_the_first_pulse_on() {
 #[test]
 fn forces_wind_at_nine_tenths_of_the_servos_speed_and_old_ones_hold() {
     let (mut rig, port) = started(Start::COLD);
-    // At 0 N 0.9·6.16 = 5.54 rad/s: 1.66 rad in 15 frames; at -1.2 rad the tendon is still slack.
+    // At 0 N 0.9·6.16 = 5.54 rad/s: 1.66 rad in 15 frames; at -1.2 rad the tendon is hardly taut.
     rig.run_with(301, |links, at| {
         speak(links, at, Some(forces(60.0, false)), CLOSED)
     });
@@ -106,11 +106,11 @@ fn forces_wind_at_nine_tenths_of_the_servos_speed_and_old_ones_hold() {
         angle.iter().all(|a| (a - 15.5 * 0.1109).abs() < 0.06),
         "{angle:?}"
     );
-    // Takes up 2.667 rad and stretches by 60 N/(8 kN/m)/15 mm = 0.5 rad.
+    // Takes up 1.6 rad and stretches by 60 N/(8 kN/m)/15 mm = 0.5 rad.
     rig.run_with(2000, |links, at| {
         speak(links, at, Some(forces(60.0, false)), CLOSED)
     });
-    assert!(near(port.now(), pulse(3.167)), "{:?}", port.now());
+    assert!(near(port.now(), pulse(2.1)), "{:?}", port.now());
     let tension = rig.links.tension.fresh().unwrap();
     assert!(tension.iter().all(|t| (t - 60.0).abs() < 0.5), "{tension:?}");
     rig.run_with(250, |links, at| speak(links, at, None, CLOSED));
@@ -133,7 +133,7 @@ fn an_arm_that_is_to_stay_stays_whatever_its_force() {
     rig.run_with(2000, |links, at| speak(links, at, Some(order), CLOSED));
     let [a, b, c, d] = port.now();
     assert!(
-        near([a, c, a, c], 550.0) && near([b, d, b, d], pulse(3.167)),
+        near([a, c, a, c], 550.0) && near([b, d, b, d], pulse(2.1)),
         "{:?}",
         port.now()
     );

@@ -18,6 +18,7 @@ mod pads;
 pub mod rig;
 mod rtt;
 mod serial;
+mod usb;
 
 use std::collections::BTreeMap;
 use std::path::Path;

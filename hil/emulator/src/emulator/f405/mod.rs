@@ -24,6 +24,7 @@ use rigless::soc::stm32f427::generated::rcc::Register as Clocks;
 use rigless::soc::stm32f427::generated::usart6::Register as Serial;
 use rigless::soc::stm32f427::peripherals::dma::{Dma, Wire};
 use rigless::soc::stm32f427::peripherals::i2c::I2c;
+use rigless::soc::stm32f427::peripherals::otg::Otg;
 use rigless::soc::stm32f427::peripherals::rcc::HSI_HZ;
 use rigless::soc::stm32f427::peripherals::tim::{Advanced, Channel, Counter, Tim, UPDATE_REQUEST};
 use rigless::soc::stm32f427::peripherals::{CONTROLLERS, SERIAL_PORTS, TIMERS};
@@ -44,6 +45,7 @@ use super::edge_probe::{Edge, EdgeProbe};
 use super::ignore_dma::IgnoreDma;
 use super::pads::{AnalogPad, At, Pads, ServoPin, TimerPins};
 use super::serial::Setup;
+use super::usb::UsbCore;
 
 /// Supply and converter reference, mV.
 const SUPPLY: u32 = 3300;
@@ -180,6 +182,7 @@ pub struct F405 {
     buses: [ClockStretch<DmaI2c>; 2],
     exti: Exti,
     syscfg: Syscfg,
+    usb: UsbCore<Otg>,
     slots: Slots,
     pulses: u64,
     /// The next reset is by a supply that broke down.
@@ -201,6 +204,7 @@ struct Slots {
     buses: [usize; 2],
     exti: usize,
     syscfg: usize,
+    usb: usize,
     unused: Vec<bool>,
 }
 
@@ -227,6 +231,7 @@ impl F405 {
             buses: [slot("I2C1")?, slot("I2C2")?],
             exti: slot("EXTI")?,
             syscfg: slot("SYSCFG")?,
+            usb: slot("OTG_FS_GLOBAL")?,
             unused,
         };
         let buses = BUS_COUNTS.map(|count| {
@@ -242,6 +247,7 @@ impl F405 {
             buses,
             exti: Exti::default(),
             syscfg: Syscfg,
+            usb: UsbCore::default(),
             slots,
             pulses: 0,
             browned_out: false,
@@ -404,6 +410,7 @@ impl Mcu for F405 {
         }
         self.dma = controller();
         self.exti = Exti::default();
+        Device::reset(&mut self.usb);
     }
 
     fn poll(&mut self, now: VirtualNanos) {
@@ -428,6 +435,8 @@ impl Mcu for F405 {
             &mut self.exti
         } else if slot == self.slots.syscfg {
             &mut self.syscfg
+        } else if slot == self.slots.usb {
+            &mut self.usb
         } else if self.slots.unused.get(slot) == Some(&true) {
             return (self.inner.bus_mut(), None);
         } else {

@@ -18,6 +18,7 @@ use rigless::soc::stm32h743::generated::rcc::Register as Clocks;
 use rigless::soc::stm32h743::generated::usart1::Register as Serial;
 use rigless::soc::stm32h743::peripherals::flash::OptionBytes;
 use rigless::soc::stm32h743::peripherals::i2c::I2c;
+use rigless::soc::stm32h743::peripherals::otg::Otg;
 use rigless::soc::stm32h743::peripherals::rcc::HSI_HZ;
 use rigless::soc::stm32h743::peripherals::tim::{Channel, General, TIMERS, Tim};
 use rigless::time::VirtualNanos;
@@ -33,6 +34,7 @@ use super::edge_probe::{Edge, EdgeProbe};
 use super::ignore_dma::IgnoreDma;
 use super::pads::{AnalogPad, At, Pads, ServoPin, TimerPins};
 use super::serial::Setup;
+use super::usb::UsbCore;
 
 /// Supply and converter reference, mV.
 const SUPPLY: u32 = 3300;
@@ -150,6 +152,7 @@ pub struct H743 {
     motors: EdgeProbe<General>,
     watchdog: Watchdog,
     buses: [ClockStretch<I2c>; 2],
+    usb: UsbCore<Otg>,
     slots: Slots,
     pulses: u64,
     /// The next reset is by a supply that broke down.
@@ -169,6 +172,7 @@ struct Slots {
     debug: usize,
     buses: [usize; 2],
     serial: Vec<usize>,
+    usb: usize,
     unused: Vec<bool>,
 }
 
@@ -193,6 +197,7 @@ impl H743 {
             clocks: slot("RCC")?,
             debug: slot("DBGMCU")?,
             buses: [slot("I2C1")?, slot("I2C2")?],
+            usb: slot("OTG2_HS_GLOBAL")?,
             serial: SERIAL.into_iter().map(slot).collect::<Result<_, _>>()?,
             unused,
         };
@@ -203,6 +208,7 @@ impl H743 {
             watchdog: Watchdog::default(),
             // Their places are taken by `Mcu::split`.
             buses: [(); 2].map(|()| ClockStretch::new(I2c::with_kernel_clock(HSI_HZ))),
+            usb: UsbCore::default(),
             slots,
             pulses: 0,
             browned_out: false,
@@ -362,6 +368,7 @@ impl Mcu for H743 {
             Device::reset(own);
         }
         self.watchdog = Watchdog::default();
+        Device::reset(&mut self.usb);
         self.time = IgnoreDma(Tim::new(TIMERS[TIME_TIMER]));
         self.motors.restart(at);
         self.mark_revision();
@@ -395,6 +402,9 @@ impl Mcu for H743 {
         }
         if slot == self.slots.time {
             return (self.inner.bus_mut(), Some(&mut self.time));
+        }
+        if slot == self.slots.usb {
+            return (self.inner.bus_mut(), Some(&mut self.usb));
         }
         if slot == self.slots.motors {
             return (self.inner.bus_mut(), Some(&mut self.motors));
