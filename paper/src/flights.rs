@@ -3,7 +3,8 @@
 use crate::study::rig::{Flown, Moment, rms};
 use sophie_control::wrench::Configuration;
 use sophie_sim::mixers::Variant;
-use sophie_sim::scenario::Scenario;
+use sophie_sim::plant::tendon::believe;
+use sophie_sim::scenario::{ArmBending, Scenario};
 
 use super::model::{Cell, num};
 
@@ -12,12 +13,15 @@ pub const GUSTS: (f64, f64) = (0.35, 0.015);
 /// The paper's two senses of rotation.
 pub const BOTH: [Configuration; 2] = [Configuration::A, Configuration::B];
 
-/// In still air; infill (%) and gain K also in the stack's parameters.
+/// In still air; infill (%) and gain K also in the stack's parameters. Arms turn on a hinge, as the paper's do: its tables
+/// know no other.
 pub fn vehicle(configuration: Configuration, gain_k: f64, infill: f64, mixer: Variant) -> Scenario {
     let mut s = Scenario::default_mission();
     (s.vehicle.gain_k, s.vehicle.infill, s.vehicle.configuration) = (gain_k, infill, configuration);
     (s.params.gain_k, s.params.infill) = (gain_k as f32, infill as f32);
     (s.world.gust_force, s.world.gust_moment) = (0.0, 0.0);
+    s.vehicle.arm_bending = ArmBending::Hinge;
+    believe(&mut s.params, s.vehicle.arm_bending);
     s.mixer = mixer;
     s
 }
