@@ -18,6 +18,10 @@ from mavsdk.plugins.shell.shell import Device, Shell
 from mavsdk.plugins.telemetry.telemetry import Telemetry
 
 
+# Seconds after which an unanswered line is typed again.
+AGAIN = 8
+
+
 def tried(call, refusal, *args):
     try:
         return call(*args).name
@@ -25,14 +29,21 @@ def tried(call, refusal, *args):
         return why.result.name
 
 
-def waited(what, seconds, so_far):
+def soon(what, seconds):
     end = time.monotonic() + seconds
     while time.monotonic() < end:
         value = what()
         if value is not None:
             return value
         time.sleep(0.05)
-    raise SystemExit(f"MAVSDK has waited in vain: {so_far}")
+    return None
+
+
+def waited(what, seconds, so_far):
+    value = soon(what, seconds)
+    if value is None:
+        raise SystemExit(f"MAVSDK has waited in vain: {so_far}")
+    return value
 
 
 def main():
@@ -67,8 +78,14 @@ def main():
     }
     shell, said = Shell(system), []
     shell.subscribe_receive(lambda received, _: said.append(received.data))
-    shell.send("get infill", Device.SHELL)
-    waited(lambda: "".join(said) if "".join(said).endswith("\n> ") else None, seconds, result)
+    answered = None
+    end = time.monotonic() + seconds
+    # Datagrams may be lost: asked again as a person would.
+    while answered is None and time.monotonic() < end:
+        shell.send("get infill", Device.SHELL)
+        answered = soon(lambda: "".join(said).endswith("\n> ") or None, AGAIN)
+    if answered is None:
+        raise SystemExit(f"MAVSDK's shell has waited in vain: heard {said}, did {result}")
     print(json.dumps({**result, "shell": "".join(said), "texts": texts}))
     sdk.destroy()
 
