@@ -1,8 +1,5 @@
 //! Fixed rates and deadlines: misses are counted, not made up for by a burst.
 
-use core::pin::Pin;
-use core::task::{Context, Poll};
-
 use embassy_time::{Duration, Instant, Timer};
 
 use crate::links::Links;
@@ -57,35 +54,6 @@ pub fn begins_next(now: Instant, period: Duration, phase: Duration) -> Instant {
     let passed = (now.as_ticks() % period + period - phase.as_ticks() % period) % period;
     let left = if passed == 0 { 0 } else { period - passed };
     now + Duration::from_ticks(left)
-}
-
-/// Completes at an instant, however often it is polled before.
-///
-/// embassy's timer has the whole timer queue searched each time it is polled, with interrupts masked: in a `select` with a
-/// line's input, for each byte that comes. Asked for one tick later, the queue is left alone: the task is in it already.
-struct At {
-    at: Instant,
-    asked: bool,
-}
-
-impl At {
-    const fn new(at: Instant) -> Self {
-        Self { at, asked: false }
-    }
-}
-
-impl Future for At {
-    type Output = ();
-
-    fn poll(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<()> {
-        let again = core::mem::replace(&mut self.asked, true);
-        if again && Instant::now() >= self.at {
-            return Poll::Ready(());
-        }
-        let ticks = u64::from(again);
-        let mut timer = Timer::at(self.at + Duration::from_ticks(ticks));
-        Pin::new(&mut timer).poll(context)
-    }
 }
 
 /// Start of a period.
@@ -150,7 +118,7 @@ impl<'a> FixedRate<'a> {
             );
         }
         self.skipped = 0;
-        At::new(self.next).await;
+        Timer::at(self.next).await;
         let started = Instant::now();
         let late = started.saturating_duration_since(self.next);
         let missed = late.as_ticks() / self.period.as_ticks().max(1);
