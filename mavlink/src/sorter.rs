@@ -40,7 +40,7 @@ pub enum For {
     /// The console, in place of the line that took the line back.
     Return,
     /// Neither.
-    Nobody,
+    Neither,
 }
 
 /// Where the next byte belongs.
@@ -193,7 +193,7 @@ impl Sorter {
             self.leave_frame();
             return For::Unreadable;
         }
-        if old { For::Nobody } else { For::Mavlink }
+        if old { For::Neither } else { For::Mavlink }
     }
 }
 

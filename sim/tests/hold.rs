@@ -93,7 +93,7 @@ fn in_wind_and_gusts_the_place_is_held_to_centimetres() {
 }
 
 #[test]
-#[ignore = "fifty flights of a minute: run with --ignored --nocapture"]
+#[ignore = "fifty flights of a minute: .ci/campaign flies them"]
 fn in_wind_and_gusts_the_place_is_held_to_centimetres_by_every_seed() {
     judge(1..=50, 60.0);
 }

@@ -69,7 +69,7 @@ fn of_version_1_a_heartbeat_alone_takes_the_line() {
     }
     let (mut sorter, mut now) = (Sorter::new(), 0);
     let to = sort(&mut sorter, &mut now, &old(&HEARTBEAT_DATA::DEFAULT));
-    assert_eq!((to, sorter.speaks()), (vec![For::Nobody; 17], Speaks::Mavlink));
+    assert_eq!((to, sorter.speaks()), (vec![For::Neither; 17], Speaks::Mavlink));
 }
 
 #[test]

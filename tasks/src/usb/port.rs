@@ -135,7 +135,7 @@ impl State {
                 For::Unreadable => text.push(UNREADABLE),
                 For::Return => text.push(b'\r'),
                 For::Mavlink => frames.push(byte),
-                For::Nobody => Ok(()),
+                For::Neither => Ok(()),
             };
             if before == Speaks::Text && self.sorter.speaks() == Speaks::Mavlink {
                 let _ = text.push(CANCEL);
