@@ -1,0 +1,79 @@
+//! Which board's console, and what is done there.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
+
+use clap::{Args, ValueEnum};
+use sophie_console::Failure;
+use sophie_console::port::PortName;
+use sophie_console::session::Session;
+
+use super::values::within;
+use crate::cli::key;
+
+/// Which console, and how patient to be with it.
+#[derive(Args, Debug)]
+pub struct LineArgs {
+    /// Console of the board: /dev/ttyUSB0, COM3 or tcp:HOST:PORT, serial ports at 115,200 baud; or over MAVLink
+    /// mavlink:/dev/ttyUSB0 (another rate behind a comma), mavlink:tcp:HOST:PORT, udpin:HOST:PORT (listens) or udpout:HOST:PORT.
+    #[arg(long, value_name = "PORT")]
+    pub port: PortName,
+    /// File with the key that signs MAVLink, 64 hexadecimal digits, where the board has one.
+    #[arg(long, value_name = "FILE")]
+    pub mavlink_key: Option<PathBuf>,
+    /// Longest silence of the board while an answer is due, 1 to 600 s.
+    #[arg(long, value_name = "SECONDS", default_value = "10", value_parser = patience, allow_negative_numbers = true)]
+    pub patience: Duration,
+}
+
+impl LineArgs {
+    /// A session at that console, until `stop` is raised.
+    ///
+    /// # Errors
+    /// One line: the port cannot be opened, no console answers there, or the key is none.
+    pub fn session(&self, stop: Arc<AtomicBool>) -> Result<Session, Failure> {
+        let key = self.mavlink_key.as_deref().map(key::read).transpose();
+        Session::open(&self.port, key.map_err(Failure::Input)?, self.patience, stop)
+    }
+}
+
+/// Which vehicle, and where its protocol is.
+#[derive(Args, Debug)]
+pub struct BringupArgs {
+    #[command(flatten)]
+    pub line: LineArgs,
+    /// Protocol: begun, or continued where it is there.
+    #[arg(long, value_name = "FILE", default_value = "bringup.toml")]
+    pub protocol: PathBuf,
+    /// Do this step again though it has passed, such as arm-2; may be given more than once.
+    #[arg(long, value_name = "STEP")]
+    pub again: Vec<String>,
+}
+
+/// What to do with a board's parameters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ParamsVerb {
+    /// Write them into the file.
+    Dump,
+    /// Show where the file differs.
+    Diff,
+    /// Set them from the file.
+    Load,
+}
+
+/// Which parameters, and where.
+#[derive(Args, Debug)]
+pub struct ParamsArgs {
+    /// What to do.
+    pub verb: ParamsVerb,
+    /// Parameter file; - is stdout for `dump`.
+    pub file: PathBuf,
+    #[command(flatten)]
+    pub line: LineArgs,
+}
+
+fn patience(text: &str) -> Result<Duration, String> {
+    within(text, &(1.0..=600.0), " s").map(Duration::from_secs_f64)
+}

@@ -1,0 +1,64 @@
+//! What is shown instead of a flight.
+
+use std::process::ExitCode;
+
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use sophie_report::terminal::console;
+
+use crate::cli::refuse;
+
+/// The subcommands, as messages name them.
+const VERBS: [&str; 9] = [
+    "fly", "check", "bringup", "params", "capture", "study", "paper", "fit-arm", "timing",
+];
+
+/// Something to show instead of a flight: help, version, or a refusal.
+pub struct Message(pub(super) clap::Error);
+
+impl Message {
+    /// Shows it and gives the exit status.
+    pub fn show(&self) -> ExitCode {
+        match self.0.kind() {
+            ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => match console::written(self.0.print()) {
+                Ok(()) => ExitCode::SUCCESS,
+                Err(line) => refuse(&line),
+            },
+            _ => refuse(&self.line()),
+        }
+    }
+
+    /// clap's message without its usage and hints at help, as one line.
+    pub(super) fn line(&self) -> String {
+        // Only behind `help` may no file stand in a subcommand's place.
+        if self.0.kind() == ErrorKind::InvalidSubcommand
+            && let Some(ContextValue::String(topic)) = self.0.get(ContextKind::InvalidSubcommand)
+        {
+            return format!("no help on '{topic}': allowed are {}", VERBS.join(", "));
+        }
+        // clap takes a second file for a subcommand where one could stand.
+        let extra = match self.0.kind() {
+            ErrorKind::UnknownArgument => self.0.get(ContextKind::InvalidArg),
+            ErrorKind::ArgumentConflict => self.0.get(ContextKind::InvalidSubcommand),
+            _ => None,
+        };
+        if let Some(ContextValue::String(extra)) = extra
+            && !extra.starts_with('-')
+            && !VERBS.contains(&extra.as_str())
+        {
+            let allowed = match std::env::args().nth(1).as_deref() {
+                Some("paper" | "capture") => "no file",
+                Some("study") => "vehicles and no file",
+                Some("fit-arm") => "one CSV file",
+                Some("params") => "one parameter file",
+                Some("bringup") => "no file",
+                _ => "one scenario file",
+            };
+            return format!("unexpected argument '{extra}': allowed is {allowed}");
+        }
+        let text = self.0.to_string();
+        let lines = text.lines().map(str::trim).filter(|l| !l.is_empty());
+        let first = lines.take_while(|l| !l.starts_with("Usage:") && !l.starts_with("For more information"));
+        let line = first.collect::<Vec<_>>().join("; ").replace(":; ", ": ");
+        line.strip_prefix("error: ").unwrap_or(&line).to_owned()
+    }
+}

@@ -1,0 +1,37 @@
+//! Values of options; a refusal says what is allowed.
+
+use std::fmt::Display;
+use std::ops::RangeInclusive;
+use std::str::FromStr;
+
+use sophie_sim::scenario::keys::{self, Range};
+
+/// A number within `range`, of which `unit` is named with its space.
+pub(super) fn within<T: FromStr + PartialOrd + Display>(
+    text: &str,
+    range: &RangeInclusive<T>,
+    unit: &str,
+) -> Result<T, String> {
+    let value = text.parse().ok().filter(|value| range.contains(value));
+    value.ok_or_else(|| format!("allowed {} to {}{unit}", range.start(), range.end()))
+}
+
+/// A number within a scenario key's range, in SI units.
+pub(super) fn number(text: &str, range: Range) -> Result<f64, String> {
+    let value = text.parse().ok().and_then(|v| range.to_si(v));
+    value.ok_or_else(|| format!("allowed {}", range.allowed()))
+}
+
+pub(super) fn seed(text: &str) -> Result<u64, String> {
+    let seed = text.parse().ok().and_then(keys::seed);
+    seed.ok_or_else(|| format!("allowed {}", keys::SEED_ALLOWED))
+}
+
+/// One of the words.
+pub(super) fn word<'a>(text: &'a str, allowed: &[&str]) -> Result<&'a str, String> {
+    if allowed.contains(&text) {
+        Ok(text)
+    } else {
+        Err(format!("allowed {}", allowed.join(", ")))
+    }
+}
