@@ -9,15 +9,12 @@ use sophie_control::arming::ArmingInhibit;
 use sophie_control::mode::{Mode, Reason};
 use sophie_control::params::Params;
 use sophie_drivers::param_store::ParamStore;
-use sophie_fakes::Flash;
-use sophie_fakes::{Answer, BrokenLine, FakeAnalog, FakeImu, FakeLine, FakeServos, Part};
+use sophie_fakes::{Answer, BrokenLine, FakeAnalog, FakeChip, FakeImu, FakeLine, FakeServos, Flash, Part};
 use sophie_sim::clock::VirtualTime;
 use sophie_tasks::deadline::TaskId;
 use sophie_tasks::links::{Links, Status};
 use sophie_tasks::mavlink::signing::Record;
-use sophie_tasks::ports::{
-    AnalogFrame, Chip, Loaded, Look, NotSet, PortError, SerialOutput, Storage, StorageError,
-};
+use sophie_tasks::ports::{AnalogFrame, Loaded, Look, PortError, SerialOutput, Storage, StorageError};
 use sophie_tasks::{analog, clamp, commander, console, estimator, imu, parameters, servos};
 
 /// A terminal at 115,200 baud, or one that takes nothing.
@@ -65,56 +62,14 @@ fn looks(level: u8) -> [Look; 2] {
     ]
 }
 
-/// A chip with restart counter and brown-out level, which it may refuse to set.
-#[derive(Clone)]
-struct FakeChip {
-    restarts: Rc<Cell<u32>>,
-    level: Rc<Cell<u8>>,
-    refuses: bool,
-    looks: [Look; 2],
-}
-
-impl FakeChip {
-    fn at(level: u8) -> Self {
-        Self {
-            restarts: Rc::default(),
-            level: Rc::new(Cell::new(level)),
-            refuses: false,
-            looks: looks(level),
-        }
-    }
-}
-
-impl Chip for FakeChip {
-    fn restart(&mut self) {
-        self.restarts.set(self.restarts.get() + 1);
-    }
-
-    fn enter_loader(&mut self) {}
-
-    fn board(&self) -> &'static str {
-        "table"
-    }
-
-    fn build(&self) -> u32 {
-        0x1234_ABCD
-    }
-
-    fn looks(&self) -> &[Look] {
-        &self.looks
-    }
-
-    fn brown_out_volts(&self) -> f32 {
-        2.7
-    }
-
-    async fn set_brown_out(&mut self) -> Result<(), NotSet> {
-        if self.refuses {
-            return Err(NotSet);
-        }
-        self.level.set(3);
-        Ok(())
-    }
+/// A chip at brown-out `level`, which its start-up looked at.
+fn chip_at(level: u8) -> FakeChip {
+    let chip = FakeChip {
+        looks: looks(level).into(),
+        ..FakeChip::default()
+    };
+    chip.level.set(level);
+    chip
 }
 
 /// Saved parameters, and the commander's status then.
@@ -163,7 +118,7 @@ impl Bench {
             links: Box::leak(Box::new(Links::new(params))),
             line: FakeLine::default(),
             screen: Screen::default(),
-            chip: FakeChip::at(3),
+            chip: chip_at(3),
             ms: 0,
         }
     }
@@ -616,7 +571,7 @@ fn the_whole_list_fits_its_lines_and_misspelt_commands_are_helped() {
 #[test]
 fn what_the_start_looked_at_is_a_table() {
     let mut bench = Bench::new(Params::default());
-    bench.chip = FakeChip::at(0);
+    bench.chip = chip_at(0);
     let mut bench = bench.fake_storage(Ok(())).0;
     assert_eq!(
         bench.types("silicon\r"),
@@ -628,7 +583,7 @@ fn what_the_start_looked_at_is_a_table() {
 #[test]
 fn the_brown_out_level_is_set_on_purpose_after_what_it_does_was_said() {
     let mut bench = Bench::new(Params::default()).commander(Mode::Disarmed, Mode::Disarmed);
-    bench.chip = FakeChip::at(0);
+    bench.chip = chip_at(0);
     let mut bench = bench.fake_storage(Ok(())).0;
     bench.run(100);
     let said = bench.types("brownout\r");
@@ -650,7 +605,7 @@ fn the_brown_out_level_is_set_on_purpose_after_what_it_does_was_said() {
 #[test]
 fn a_level_that_is_set_is_left_alone() {
     let mut bench = Bench::new(Params::default()).commander(Mode::Disarmed, Mode::Disarmed);
-    bench.chip = FakeChip::at(3);
+    bench.chip = chip_at(3);
     let mut bench = bench.fake_storage(Ok(())).0;
     bench.run(100);
     assert_eq!(
@@ -668,7 +623,7 @@ fn a_level_that_is_set_is_left_alone() {
 fn the_brown_out_level_is_not_set_while_rotors_may_turn_nor_where_the_chip_refuses() {
     for (mode, then) in [(Mode::Armed, Mode::Armed), (Mode::Disarmed, Mode::Armed)] {
         let mut bench = Bench::new(Params::default()).commander(mode, then);
-        bench.chip = FakeChip::at(0);
+        bench.chip = chip_at(0);
         let mut bench = bench.fake_storage(Ok(())).0;
         bench.run(100);
         assert_eq!(
@@ -681,7 +636,7 @@ fn the_brown_out_level_is_not_set_while_rotors_may_turn_nor_where_the_chip_refus
     let mut bench = Bench::new(Params::default()).commander(Mode::Disarmed, Mode::Disarmed);
     bench.chip = FakeChip {
         refuses: true,
-        ..FakeChip::at(0)
+        ..chip_at(0)
     };
     let mut bench = bench.fake_storage(Ok(())).0;
     bench.run(100);

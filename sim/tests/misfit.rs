@@ -10,13 +10,13 @@ use sophie_control::params::{ImuMounting, Params};
 use sophie_control::vector::Vec3;
 use sophie_control::wrench::Configuration;
 use sophie_drivers::param_store::ParamStore;
-use sophie_fakes::{FakeImu, FakeLine, Flash};
+use sophie_fakes::{FakeChip, FakeImu, FakeLine, Flash};
 use sophie_sim::clock::VirtualTime;
 use sophie_sim::flight_level::{Errors, Rig, level, vehicle};
 use sophie_sim::mixers::Variant;
 use sophie_sim::sensors::imu::Misfit;
 use sophie_tasks::links::Links;
-use sophie_tasks::ports::{Chip, ImuReading, Look, NotSet, PortError, SerialOutput};
+use sophie_tasks::ports::{ImuReading, PortError, SerialOutput};
 use sophie_tasks::{commander, console, estimator, imu, parameters};
 
 /// Turned by 90 degrees to the left, 3 % off along two axes.
@@ -35,35 +35,6 @@ impl SerialOutput for Screen {
         Timer::after_micros(87 * bytes.len() as u64).await;
         self.0.borrow_mut().push_str(str::from_utf8(bytes).unwrap());
         Ok(())
-    }
-}
-
-/// Nothing of it is asked here but the restart.
-struct PlainChip;
-
-impl Chip for PlainChip {
-    fn restart(&mut self) {}
-
-    fn enter_loader(&mut self) {}
-
-    fn board(&self) -> &'static str {
-        "table"
-    }
-
-    fn build(&self) -> u32 {
-        0x1234_ABCD
-    }
-
-    fn looks(&self) -> &[Look] {
-        &[]
-    }
-
-    fn brown_out_volts(&self) -> f32 {
-        2.7
-    }
-
-    async fn set_brown_out(&mut self) -> Result<(), NotSet> {
-        Err(NotSet)
     }
 }
 
@@ -109,7 +80,7 @@ impl Hands {
         hands.time.spawn(estimator::run(links));
         hands.time.spawn(commander::run(links));
         let (line, screen) = (hands.line.clone(), hands.screen.clone());
-        let console = console::run(links, line, screen, store(flash), PlainChip);
+        let console = console::run(links, line, screen, store(flash), FakeChip::default());
         hands.time.spawn(console);
         hands.run(4000);
         hands

@@ -1,0 +1,51 @@
+//! A chip without silicon.
+
+use std::cell::Cell;
+use std::rc::Rc;
+
+use sophie_tasks::ports::{Chip, Look, NotSet};
+
+/// A chip that counts its restarts and may refuse its brown-out level.
+#[derive(Clone, Default)]
+pub struct FakeChip {
+    /// Restarts so far.
+    pub restarts: Rc<Cell<u32>>,
+    /// Brown-out level, 0 to 3.
+    pub level: Rc<Cell<u8>>,
+    /// The level cannot be set.
+    pub refuses: bool,
+    /// What the start-up looked at.
+    pub looks: Vec<Look>,
+}
+
+impl Chip for FakeChip {
+    fn restart(&mut self) {
+        self.restarts.set(self.restarts.get() + 1);
+    }
+
+    fn enter_loader(&mut self) {}
+
+    fn board(&self) -> &'static str {
+        "table"
+    }
+
+    fn build(&self) -> u32 {
+        0x1234_ABCD
+    }
+
+    fn looks(&self) -> &[Look] {
+        &self.looks
+    }
+
+    fn brown_out_volts(&self) -> f32 {
+        2.7
+    }
+
+    async fn set_brown_out(&mut self) -> Result<(), NotSet> {
+        if self.refuses {
+            return Err(NotSet);
+        }
+        self.level.set(3);
+        Ok(())
+    }
+}
