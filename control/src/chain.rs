@@ -5,8 +5,8 @@
 //! replays run them as one [`FlightChain`], with identical bits for a recorded mission.
 
 mod control;
-mod messages;
-mod mixing;
+pub(crate) mod messages;
+pub(crate) mod mixing;
 mod sensing;
 mod step_clock;
 
@@ -14,16 +14,13 @@ pub use control::{Command, Control};
 pub use messages::{Attitude, Demand, ImuReading, ImuSample, MixOutput};
 pub use mixing::{ArmReading, Mixing, Surroundings};
 pub use sensing::Sensing;
-pub use step_clock::StepClock;
+pub use step_clock::{CONTROL_RATE_HZ, StepClock};
 
 use crate::attitude::Target;
 use crate::estimator::Estimator;
 use crate::mixer::{Allocation, Flexible};
 use crate::params::Params;
 use crate::rate::Feedback;
-
-/// Rate of the step, Hz.
-pub const CONTROL_RATE_HZ: f32 = 1000.0;
 
 /// Messages of the last step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -3,7 +3,7 @@
 //! In free flight the accelerometer feels thrust, not gravity, so the pull is weak (default time constant 10 s) and
 //! fades when the specific force is not 1 g. Without a compass, heading is integrated.
 
-use crate::chain::{Attitude, ImuSample};
+use crate::chain::messages::{Attitude, ImuSample};
 use crate::math::{self, GRAVITY};
 use crate::params::Params;
 use crate::vector::{Quat, Vec3};

@@ -11,7 +11,8 @@ pub use flexible::{Flexible, YAW_FLOOR};
 pub use limits::Limits;
 pub use split::{Split, moment_patterns, stiff};
 
-use crate::chain::{Demand, MixOutput, Mixing, Surroundings};
+use crate::chain::messages::{Demand, MixOutput};
+use crate::chain::mixing::{Mixing, Surroundings};
 use crate::desaturation::Given;
 use crate::tilt::TiltModel;
 use crate::wrench::{PerArm, Wrench};

@@ -1,13 +1,40 @@
-//! Frames that are sent.
+//! The layout of a MAVLink 2 frame, and frames that are sent.
 
 use mavlink_core::{MAVLinkV2MessageRaw, MavHeader, MessageData, calculate_crc};
 
-use crate::parser::{HEADER, SIGNED};
-
+/// First byte of a MAVLink 2 frame; MAVLink 1 is not spoken.
+pub(crate) const STX: u8 = 0xFD;
+/// Bytes around the payload of a frame without signature: start, header, checksum.
+pub const OVERHEAD: usize = 12;
+/// Bytes before the payload.
+pub(crate) const HEADER: usize = 10;
+/// Bytes of a signature.
+pub const SIGNATURE: usize = 13;
+/// The longest frame.
+pub const LONGEST: usize = OVERHEAD + 255 + SIGNATURE;
+/// The incompatibility flag of a signed frame, the only one that is known.
+pub(crate) const SIGNED: u8 = 1;
 /// The vehicle's number among systems: the first, as autopilots have it.
 pub const SYSTEM: u8 = 1;
 /// The autopilot's number among the vehicle's components (MAV_COMP_ID_AUTOPILOT1).
 pub const COMPONENT: u8 = 1;
+
+/// A frame whose checksum is right.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Frame<'a> {
+    /// Number of the message.
+    pub id: u32,
+    /// The sender's system.
+    pub system: u8,
+    /// The sender's component.
+    pub component: u8,
+    /// The message, without the zeros at its end.
+    pub payload: &'a [u8],
+    /// It carries a signature.
+    pub signed: bool,
+    /// All of it, from the first byte to the checksum or the signature.
+    pub bytes: &'a [u8],
+}
 
 /// Makes frames, numbered as they are sent.
 pub struct Encoder {

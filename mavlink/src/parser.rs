@@ -5,41 +5,13 @@
 use heapless::Vec;
 use mavlink_core::calculate_crc;
 
+use crate::frame::{Frame, HEADER, LONGEST, SIGNATURE, SIGNED, STX};
 use crate::requests::crc_extra;
 
-/// First byte of a MAVLink 2 frame; MAVLink 1 is not spoken.
-pub(crate) const STX: u8 = 0xFD;
-/// Bytes around the payload of a frame without signature: start, header, checksum.
-pub const OVERHEAD: usize = 12;
-/// Bytes before the payload.
-pub(crate) const HEADER: usize = 10;
-/// Bytes of a signature.
-pub const SIGNATURE: usize = 13;
-/// The longest frame.
-pub const LONGEST: usize = OVERHEAD + 255 + SIGNATURE;
-/// The incompatibility flag of a signed frame, the only one that is known.
-pub(crate) const SIGNED: u8 = 1;
 /// Beginnings of frames looked at for one byte that arrives.
 const CANDIDATES: usize = 4;
 /// Silence after which an unfinished frame is given up, µs: three of the longest at 57,600 baud.
 pub(crate) const GAP: u64 = 150_000;
-
-/// A frame whose checksum is right.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Frame<'a> {
-    /// Number of the message.
-    pub id: u32,
-    /// The sender's system.
-    pub system: u8,
-    /// The sender's component.
-    pub component: u8,
-    /// The message, without the zeros at its end.
-    pub payload: &'a [u8],
-    /// It carries a signature.
-    pub signed: bool,
-    /// All of it, from the first byte to the checksum or the signature.
-    pub bytes: &'a [u8],
-}
 
 /// What the buffer begins with.
 enum Look {

@@ -3,8 +3,7 @@
 use mavlink_core::{MavlinkVersion, MessageData};
 
 use crate::dialect::*;
-use crate::frame::{COMPONENT, SYSTEM};
-use crate::parser::Frame;
+use crate::frame::{COMPONENT, Frame, SYSTEM};
 
 /// Who asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,8 +3,9 @@
 #[cfg(test)]
 mod tests;
 
+use super::messages::{Attitude, Demand};
+use super::step_clock::CONTROL_RATE_HZ;
 use crate::attitude::{AttitudeLoop, AttitudeSetpoint, Target};
-use crate::chain::{Attitude, CONTROL_RATE_HZ, Demand};
 use crate::math;
 use crate::params::Params;
 use crate::rate::{Feedback, RateLoop};

@@ -3,8 +3,9 @@
 #[cfg(test)]
 mod tests;
 
+use super::messages::{Demand, MixOutput};
+use super::step_clock::StepClock;
 use crate::bench::Spin;
-use crate::chain::{Demand, MixOutput, StepClock};
 use crate::mixer::{Allocation, Conditions, Flexible};
 use crate::params::Params;
 use crate::thrust_curve::ThrustCurve;

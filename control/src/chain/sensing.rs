@@ -1,6 +1,7 @@
 //! First stage: filters the inertial sensor at its own rate, outputs at 1 kHz.
 
-use crate::chain::{CONTROL_RATE_HZ, ImuReading, ImuSample, StepClock};
+use super::messages::{ImuReading, ImuSample};
+use super::step_clock::{CONTROL_RATE_HZ, StepClock};
 use crate::imu_filter::ImuFilter;
 use crate::math;
 use crate::mounting::Mounting;

@@ -1,7 +1,9 @@
 //! Time from step to step.
 
-use crate::chain::CONTROL_RATE_HZ;
 use crate::math;
+
+/// Rate of the step, Hz.
+pub const CONTROL_RATE_HZ: f32 = 1000.0;
 
 /// Bounds of a law's step time, s: half and five times the nominal one. A longer gap is a fault reported elsewhere;
 /// integrating over it would jump.

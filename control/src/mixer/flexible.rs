@@ -6,7 +6,8 @@
 #[cfg(test)]
 mod tests;
 
-use crate::chain::{Demand, MixOutput, Mixing, Surroundings};
+use crate::chain::messages::{Demand, MixOutput};
+use crate::chain::mixing::{Mixing, Surroundings};
 use crate::desaturation::Patterns;
 use crate::effectiveness::{Effectiveness, Geometry, Inverse, Load};
 use crate::math;

@@ -8,7 +8,15 @@ use object::{Architecture, Object, ObjectSection, ObjectSymbol};
 
 use crate::boards::EmulatedBoard;
 use crate::chain::Window;
-use crate::loader::Loader;
+
+/// Flash contents besides the firmware.
+#[derive(Clone, Debug)]
+pub struct Loader {
+    /// Address.
+    pub at: u64,
+    /// Contents.
+    pub bytes: Vec<u8>,
+}
 
 /// A firmware image.
 pub struct Firmware {

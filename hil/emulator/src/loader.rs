@@ -4,7 +4,7 @@
 use object::{Object, ObjectSection};
 
 use crate::boards::Kind;
-use crate::elf::Firmware;
+use crate::elf::{Firmware, Loader};
 
 /// Flash of every emulated chip outside firmware and parameters.
 const AT: u32 = 0x080E_0000;
@@ -12,15 +12,6 @@ const AT: u32 = 0x080E_0000;
 const VECTORS: u32 = 256;
 /// Vector table offset register (ARMv7-M, B3.2.5).
 const VTOR: u32 = 0xE000_ED08;
-
-/// Flash contents besides the firmware.
-#[derive(Clone, Debug)]
-pub struct Loader {
-    /// Address.
-    pub at: u64,
-    /// Contents.
-    pub bytes: Vec<u8>,
-}
 
 impl Firmware {
     /// Puts a loader where the chip's own is. It starts the firmware again, without a reset, if its vector table is active;
