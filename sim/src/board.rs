@@ -7,8 +7,6 @@ use embassy_sync::pipe::Pipe;
 use embassy_sync::signal::Signal;
 use embassy_time::{Instant, Timer};
 use heapless::Vec;
-use rand::SeedableRng;
-use rand_pcg::Pcg64Mcg;
 use sophie_control::motor_map::at_rotors;
 use sophie_control::params::{MotorMap, Params};
 use sophie_control::vector::Vec3;
@@ -22,6 +20,7 @@ use crate::sensors::analog::{BatteryInputs, PIN_VOLTS_PER_COUNT};
 use crate::sensors::arm_imu::{self, ArmImu};
 use crate::sensors::fsr::FsrSensor;
 use crate::sensors::imu::{Imu, Misfit};
+use crate::streams::Streams;
 
 /// Half a hardware ring of 512.
 const LINE_BYTES: usize = 256;
@@ -65,25 +64,23 @@ struct Sensors {
     arms: PerArm<ArmImu>,
     fsr: PerArm<FsrSensor>,
     battery: BatteryInputs,
-    rng: Pcg64Mcg,
     arm_clock: f64,
 }
 
 impl Board {
-    /// Default parameters; errors of the parts drawn from `rng`.
+    /// Default parameters; parts with the errors of `streams`.
     #[must_use]
-    pub fn new(rng: &mut Pcg64Mcg) -> Self {
-        Self::configured(&Params::default(), rng)
+    pub fn new(streams: Streams) -> Self {
+        Self::configured(&Params::default(), streams)
     }
 
-    /// With `params`, motors wired as they say; errors of the parts drawn from `rng`.
+    /// With `params`, motors wired as they say; parts with the errors of `streams`.
     #[must_use]
-    pub fn configured(params: &Params, rng: &mut Pcg64Mcg) -> Self {
-        let mut imu = Imu::new(params, Pcg64Mcg::from_rng(rng));
+    pub fn configured(params: &Params, streams: Streams) -> Self {
+        let imu = Imu::new(params, streams);
         let accel_bias = imu.bench_bias().as_vec3().to_array();
-        let arms = std::array::from_fn(|arm| ArmImu::new(arm, Pcg64Mcg::from_rng(rng)));
-        let fsr = std::array::from_fn(|_| FsrSensor::new(rng));
-        let battery = BatteryInputs::new(rng);
+        let arms = std::array::from_fn(|arm| ArmImu::new(arm, streams));
+        let fsr = std::array::from_fn(|arm| FsrSensor::new(arm, streams));
         Self {
             imu_ready: Signal::new(),
             actuators: Cell::default(),
@@ -93,8 +90,7 @@ impl Board {
                 imu,
                 arms,
                 fsr,
-                battery,
-                rng: Pcg64Mcg::from_rng(rng),
+                battery: BatteryInputs::new(streams),
                 arm_clock: 0.0,
             }),
             truth: Cell::default(),
@@ -243,16 +239,14 @@ impl ports::Analog for Port {
             elapsed: 0.0,
             ..truth
         });
-        let Sensors {
-            fsr, battery, rng, ..
-        } = &mut *self.0.sensors.borrow_mut();
+        let Sensors { fsr, battery, .. } = &mut *self.0.sensors.borrow_mut();
         let mut frame = AnalogFrame {
             fsr: [0; 4],
-            battery_voltage: battery.voltage(truth.voltage, rng),
-            battery_current: battery.current(truth.current, rng),
+            battery_voltage: battery.voltage(truth.voltage),
+            battery_current: battery.current(truth.current),
         };
         for ((counts, sensor), pressure) in frame.fsr.iter_mut().zip(fsr).zip(truth.pressure) {
-            *counts = sensor.sample(pressure, truth.elapsed, rng);
+            *counts = sensor.sample(pressure, truth.elapsed);
         }
         Ok(frame)
     }

@@ -28,6 +28,7 @@ use sophie_tasks::start::StartCause;
 
 use crate::plant::body::BodySpec;
 use crate::plant::rotor::RotorSpec;
+use crate::streams::Streams;
 
 /// A flight to fly.
 #[derive(Clone, Debug)]
@@ -56,6 +57,14 @@ pub struct Scenario {
     pub steps: Vec<Step>,
     /// Expected outcome, for tests.
     pub expect: Expect,
+}
+
+impl Scenario {
+    /// The random numbers of its flight.
+    #[must_use]
+    pub const fn streams(&self) -> Streams {
+        Streams::new(self.seed)
+    }
 }
 
 /// The vehicle as built, for the plant.

@@ -3,11 +3,12 @@
 use std::collections::VecDeque;
 
 use glam::{DQuat, DVec3};
-use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 use sophie_control::vector::Vec3;
 use sophie_control::wrench::SIDE;
+
+use crate::streams::Streams;
 
 /// Fusion steps per second (datasheet).
 pub const RATE_HZ: f64 = 100.0;
@@ -33,16 +34,16 @@ pub struct ArmImu {
 }
 
 impl ArmImu {
-    /// Sensor of `arm`, 0 to 3, with a random mounting error.
+    /// Sensor of `arm`, 0 to 3, with the mounting error of `streams`.
     #[must_use]
-    pub fn new(arm: usize, mut rng: Pcg64Mcg) -> Self {
-        let mounting = rng.random_range(-MOUNTING..MOUNTING);
+    pub fn new(arm: usize, streams: Streams) -> Self {
+        let name = format!("arm_imu.{}", arm + 1);
         Self {
             side: f64::from(SIDE[arm]),
-            mounting,
+            mounting: streams.within(&format!("{name}.mounting"), -MOUNTING, MOUNTING),
             leaked: DVec3::ZERO,
             pipeline: VecDeque::with_capacity(LATENCY + 1),
-            rng,
+            rng: streams.of(&name),
         }
     }
 
@@ -74,7 +75,7 @@ mod tests {
 
     #[test]
     fn a_tilted_arm_sees_gravity_turned_20_ms_late() {
-        let mut imu = ArmImu::new(0, Pcg64Mcg::new(5));
+        let mut imu = ArmImu::new(0, Streams::new(5));
         let rest = DVec3::new(0.0, 0.0, -9.806_65);
         for _ in 0..10 {
             imu.sample(DQuat::IDENTITY, 0.0, rest);

@@ -4,8 +4,10 @@
 //! force (10 kΩ at 1 N), with part-to-part spread, hysteresis and creep: in all the paper's error of about 50 N/m² at
 //! 950 N/m².
 
-use rand::Rng;
-use rand_distr::{Distribution, StandardNormal, Uniform};
+use rand_distr::{Distribution, StandardNormal};
+use rand_pcg::Pcg64Mcg;
+
+use crate::streams::Streams;
 
 /// m²: 38 mm square (datasheet).
 const AREA: f64 = 0.038 * 0.038;
@@ -50,19 +52,23 @@ pub struct FsrSensor {
     felt: f64,
     creep: f64,
     broken: Option<FsrBreak>,
+    rng: Pcg64Mcg,
 }
 
 impl FsrSensor {
-    /// A sensor with errors drawn from `rng`.
-    pub fn new(rng: &mut impl Rng) -> Self {
-        let mut within = |low: f64, high: f64| Uniform::new(low, high).map_or(low, |u| u.sample(rng));
+    /// The sensor of `arm`, 0 to 3, with the errors of `streams`.
+    #[must_use]
+    pub fn new(arm: usize, streams: Streams) -> Self {
+        let within =
+            |what: &str, low: f64, high: f64| streams.within(&format!("fsr.{}.{what}", arm + 1), low, high);
         Self {
-            gain: GAIN * within(1.0 - PART_ERROR, 1.0 + PART_ERROR),
-            exponent: within(EXPONENT_MIN, 1.0),
-            divider: DIVIDER.0 * within(1.0 - DIVIDER.1, 1.0 + DIVIDER.1),
+            gain: GAIN * within("gain", 1.0 - PART_ERROR, 1.0 + PART_ERROR),
+            exponent: within("exponent", EXPONENT_MIN, 1.0),
+            divider: DIVIDER.0 * within("divider", 1.0 - DIVIDER.1, 1.0 + DIVIDER.1),
             felt: 0.0,
             creep: 0.0,
             broken: None,
+            rng: streams.of(&format!("fsr.{}", arm + 1)),
         }
     }
 
@@ -72,7 +78,8 @@ impl FsrSensor {
     }
 
     /// 12-bit counts at the true `pressure` (Pa), `dt` s after the last sample.
-    pub fn sample(&mut self, pressure: f64, dt: f64, rng: &mut impl Rng) -> u16 {
+    pub fn sample(&mut self, pressure: f64, dt: f64) -> u16 {
+        let rng = &mut self.rng;
         let mut normal = || -> f64 { StandardNormal.sample(rng) };
         let force = pressure.max(0.0) * AREA;
         // Play: the felt force moves only when pushed by either edge.
@@ -103,29 +110,25 @@ impl FsrSensor {
 
 #[cfg(test)]
 mod tests {
-    use rand::SeedableRng;
-    use rand_pcg::Pcg64Mcg;
-
     use super::*;
 
     #[test]
     fn the_error_at_the_grip_pressure_is_the_paper_s() {
-        let mut rng = Pcg64Mcg::seed_from_u64(7);
         let (mut square, mut worst) = (0.0, 0.0_f64);
         let n = 400;
-        for _ in 0..n {
-            let mut s = FsrSensor::new(&mut rng);
+        for seed in 0..n {
+            let mut s = FsrSensor::new(0, Streams::new(seed));
             let mut counts = 0.0;
             for i in 0..500 {
                 let p = 950.0 * (f64::from(i) / 300.0).min(1.0);
-                counts = f64::from(s.sample(p, 0.002, &mut rng));
+                counts = f64::from(s.sample(p, 0.002));
             }
             let x = counts / 4095.0;
             let error = x / (1.0 - x) / 10_000.0 / 1e-4 / AREA - 950.0;
             square += error * error;
             worst = worst.max(error.abs());
         }
-        let rms = (square / f64::from(n)).sqrt();
+        let rms = (square / n as f64).sqrt();
         assert!(
             (20.0..40.0).contains(&rms) && (50.0..950.0 * LARGEST_ERROR).contains(&worst),
             "{rms} {worst}"
@@ -134,15 +137,9 @@ mod tests {
 
     #[test]
     fn it_feels_nothing_below_its_threshold_and_remembers_where_it_came_from() {
-        let mut rng = Pcg64Mcg::seed_from_u64(3);
-        let mut s = FsrSensor::new(&mut rng);
-        assert!(s.sample(60.0, 0.002, &mut rng) == 0);
-        let mut mean = |p: f64| {
-            (0..2000)
-                .map(|_| f64::from(s.sample(p, 0.0, &mut rng)))
-                .sum::<f64>()
-                / 2000.0
-        };
+        let mut s = FsrSensor::new(0, Streams::new(3));
+        assert!(s.sample(60.0, 0.002) == 0);
+        let mut mean = |p: f64| (0..2000).map(|_| f64::from(s.sample(p, 0.0))).sum::<f64>() / 2000.0;
         let up = mean(900.0);
         mean(1500.0);
         let down = mean(900.0);
@@ -151,11 +148,10 @@ mod tests {
 
     #[test]
     fn broken_leads() {
-        let mut rng = Pcg64Mcg::seed_from_u64(3);
-        let mut s = FsrSensor::new(&mut rng);
+        let mut s = FsrSensor::new(0, Streams::new(3));
         s.set_broken(Some(FsrBreak::Open));
-        assert!(s.sample(950.0, 0.002, &mut rng) == 0);
+        assert!(s.sample(950.0, 0.002) == 0);
         s.set_broken(Some(FsrBreak::Short));
-        assert!(s.sample(950.0, 0.002, &mut rng) == 4095);
+        assert!(s.sample(950.0, 0.002) == 4095);
     }
 }

@@ -224,7 +224,7 @@ fn a_vehicle_that_loads_can_be_stepped() {
             continue;
         };
         loaded += 1;
-        let mut plant = Plant::new(&scenario, Pcg64Mcg::seed_from_u64(loaded));
+        let mut plant = Plant::new(&scenario);
         let mut actuators = Actuators {
             servos: [550.0; 4],
             ..Default::default()
