@@ -16,8 +16,9 @@ use sophie_tasks::ports::{self, AnalogFrame, IMU_BATCH, ImuReading, PortError};
 use sophie_tasks::retained_state::{WORDS, Words};
 
 use crate::plant::{Actuators, Plant, STEP};
+use crate::scenario::{Faults, Scenario};
 use crate::sensors::analog::{BatteryInputs, PIN_VOLTS_PER_COUNT};
-use crate::sensors::arm_imu::{self, ArmImu};
+use crate::sensors::arm_imu::{self, ArmImu, TiltBreak};
 use crate::sensors::fsr::FsrSensor;
 use crate::sensors::imu::{Imu, Misfit};
 use crate::streams::Streams;
@@ -39,7 +40,8 @@ pub struct Board {
     telemetry: Pipe<Raw, LINE_BYTES>,
     sensors: RefCell<Sensors>,
     truth: Cell<AnalogTruth>,
-    arm_gravity: Cell<PerArm<Vec3>>,
+    /// `None`: no answer.
+    arm_gravity: Cell<PerArm<Option<Vec3>>>,
     /// Hz.
     imu_rate: f64,
     /// Memory that outlives a reset.
@@ -71,16 +73,20 @@ impl Board {
     /// Default parameters; parts with the errors of `streams`.
     #[must_use]
     pub fn new(streams: Streams) -> Self {
-        Self::configured(&Params::default(), streams)
+        Self::with(&Params::default(), streams, &Faults::default())
     }
 
-    /// With `params`, motors wired as they say; parts with the errors of `streams`.
+    /// That of `scenario`, motors wired as its parameters say.
     #[must_use]
-    pub fn configured(params: &Params, streams: Streams) -> Self {
+    pub fn of(scenario: &Scenario) -> Self {
+        Self::with(&scenario.params, scenario.streams(), &scenario.faults)
+    }
+
+    fn with(params: &Params, streams: Streams, faults: &Faults) -> Self {
         let imu = Imu::new(params, streams);
         let accel_bias = imu.bench_bias().as_vec3().to_array();
-        let arms = std::array::from_fn(|arm| ArmImu::new(arm, streams));
-        let fsr = std::array::from_fn(|arm| FsrSensor::new(arm, streams));
+        let arms = std::array::from_fn(|arm| ArmImu::new(arm, streams).with(arm, faults));
+        let fsr = std::array::from_fn(|arm| FsrSensor::new(arm, streams).with(arm, faults));
         Self {
             imu_ready: Signal::new(),
             actuators: Cell::default(),
@@ -94,7 +100,7 @@ impl Board {
                 arm_clock: 0.0,
             }),
             truth: Cell::default(),
-            arm_gravity: Cell::default(),
+            arm_gravity: Cell::new([Some(Vec3::default()); 4]),
             memory: Cell::new([[0; WORDS]; 2]),
             accel_bias,
             wiring: Cell::new(params.motor_map),
@@ -141,7 +147,8 @@ impl Board {
             let (attitude, force, tilt) = (plant.pose().attitude, plant.specific_force(), plant.tilt());
             let mut gravity = self.arm_gravity.get();
             for ((g, arm), tilt) in gravity.iter_mut().zip(&mut sensors.arms).zip(tilt) {
-                *g = arm.sample(attitude, tilt, force);
+                let sent = arm.sample(attitude, tilt, force);
+                *g = (arm.broken() != Some(TiltBreak::Silent)).then_some(sent);
             }
             self.arm_gravity.set(gravity);
         }
@@ -223,6 +230,7 @@ impl ports::ArmImus for Port {
             .get()
             .get(arm)
             .copied()
+            .flatten()
             .ok_or(PortError::Absent)
     }
 }

@@ -84,7 +84,7 @@ impl Rig {
     /// The vehicle of `scenario` at rest on the ground.
     pub fn new(scenario: &Scenario) -> Self {
         let plant = Plant::new(scenario);
-        let board = Board::configured(&scenario.params, scenario.streams());
+        let board = Board::of(scenario);
         let (variant, configuration) = (scenario.mixer, scenario.vehicle.configuration);
         Self::assembled(plant, board, scenario.params, move |p: &_| {
             Mixer::new(variant, configuration, p)
@@ -111,7 +111,7 @@ impl Rig {
         allocation: impl FnOnce(&Params) -> A + 'static,
     ) -> Self {
         let plant = Plant::new(scenario);
-        let board = Board::configured(&scenario.params, scenario.streams());
+        let board = Board::of(scenario);
         let [accel_bias_x, accel_bias_y, accel_bias_z] = board.accel_bias;
         let params = Params {
             accel_bias_x,

@@ -32,7 +32,7 @@ fn held(seed: u64, seconds: f64) -> Scenario {
     s.world.gust_moment = 0.012;
     s.world.steady_wind = 1.0;
     // The golden angle spreads the seeds about the compass.
-    s.world.steady_wind_from = seed as f64 * 0.381_966 * TAU;
+    s.world.steady_wind_from = Some(seed as f64 * 0.381_966 * TAU);
     s.sensors.position = PositionSensor::Pose;
     s.pilot.assist = Assist::Hold;
     s

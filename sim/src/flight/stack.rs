@@ -62,8 +62,7 @@ impl Stack {
     }
 
     fn with(scenario: &Scenario, live: Option<Live>) -> Self {
-        let streams = scenario.streams();
-        let board: &'static Board = Box::leak(Box::new(Board::configured(&scenario.params, streams)));
+        let board: &'static Board = Box::leak(Box::new(Board::of(scenario)));
         let params = calibrated(scenario.params, board);
         let companion = match scenario.sensors.position {
             PositionSensor::None => None,
@@ -79,7 +78,7 @@ impl Stack {
             reset: None,
             resets: 0,
             overruns: 0,
-            noise: streams.of("memory"),
+            noise: scenario.streams().of("memory"),
             live,
             companion,
         };

@@ -138,7 +138,7 @@ impl Pilot {
         }
         if self.outcome.is_none()
             && self.index > 0
-            && let Some(why) = self.referee.judge(&seen, mission::HEADING, dt)
+            && let Some(why) = self.referee.judge(&seen, self.mission.heading, dt)
         {
             self.fail(&why, &mut out);
         }

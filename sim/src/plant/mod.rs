@@ -268,8 +268,12 @@ impl Base {
             rotor: Rotor::new(i, chi, v.rotor),
             tendon: Tendon::new(
                 ServoSpec::from(v.servo).measured(&scenario.params, i),
-                TendonSpec::of(v.arm_bending),
-            ),
+                TendonSpec {
+                    slack_error: scenario.faults.tendon_slack[i],
+                    ..TendonSpec::of(v.arm_bending)
+                },
+            )
+            .breaking(scenario.faults.tendon[i], scenario.faults.at),
             pressure: 0.0,
         };
         let body = match v.arm_bending {
@@ -290,7 +294,7 @@ impl Base {
             limbs: std::array::from_fn(limb),
             battery: Battery::new(v.battery_charge),
             gust: Gust::new(w.gust_force, w.gust_moment, scenario.streams())
-                .in_wind(w.steady_wind, w.steady_wind_from),
+                .in_wind(w.steady_wind, scenario.wind_from()),
             ground_belly: Belly::default(),
             pipe_belly: Belly::default(),
             pipe: Pipe {

@@ -6,6 +6,7 @@
 mod arm;
 mod defaults;
 mod error;
+pub mod faults;
 pub mod keys;
 mod load;
 mod nearest;
@@ -18,6 +19,7 @@ mod tests;
 
 pub use defaults::MISSION;
 pub use error::{Place, ScenarioError};
+pub use faults::Faults;
 pub use load::Overrides;
 pub use steps::{STEPS, StepKind, StepNumber};
 
@@ -51,6 +53,8 @@ pub struct Scenario {
     pub world: World,
     /// Sensors beside those of every board.
     pub sensors: Sensors,
+    /// Parts that fail or are off.
+    pub faults: Faults,
     /// The pilot's limits.
     pub pilot: Pilot,
     /// The pilot's steps, in order.
@@ -64,6 +68,13 @@ impl Scenario {
     #[must_use]
     pub const fn streams(&self) -> Streams {
         Streams::new(self.seed)
+    }
+
+    /// Where the steady wind comes from, clockwise from north, rad.
+    #[must_use]
+    pub fn wind_from(&self) -> f64 {
+        let drawn = || self.streams().within("wind", 0.0, core::f64::consts::TAU);
+        self.world.steady_wind_from.unwrap_or_else(drawn)
     }
 }
 
@@ -129,8 +140,8 @@ pub struct World {
     pub gust_moment: f64,
     /// Force of the steady wind, N.
     pub steady_wind: f64,
-    /// Where it comes from, clockwise from north, rad.
-    pub steady_wind_from: f64,
+    /// Where it comes from, clockwise from north, rad; `None`: drawn by the seed.
+    pub steady_wind_from: Option<f64>,
     /// Outer, m.
     pub pipe_diameter: f64,
     /// North and east of the perch spot, m; the pipe runs north-south.
@@ -152,6 +163,45 @@ pub struct Pilot {
     pub eye_noise: f64,
     /// What he leaves to the vehicle where its mode takes it.
     pub assist: Assist,
+    /// What he takes the pipe to be.
+    pub believes: Assumed,
+}
+
+/// What the pilot takes the pipe to be, each value `None` where it is the true one.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Assumed {
+    /// North of the perch spot, m.
+    pub north: Option<f64>,
+    /// East of it, m.
+    pub east: Option<f64>,
+    /// Height of the pipe's top, m.
+    pub top: Option<f64>,
+    /// Outer diameter, m.
+    pub diameter: Option<f64>,
+}
+
+/// A pipe as the pilot takes it to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AssumedPipe {
+    /// North and east of the perch spot, m.
+    pub position: [f64; 2],
+    /// Height of its top, m.
+    pub top: f64,
+    /// Outer diameter, m.
+    pub diameter: f64,
+}
+
+impl Assumed {
+    /// The pipe of `world` with what is assumed otherwise.
+    #[must_use]
+    pub fn pipe(&self, world: &World) -> AssumedPipe {
+        let [north, east] = world.pipe_position;
+        AssumedPipe {
+            position: [self.north.unwrap_or(north), self.east.unwrap_or(east)],
+            top: self.top.unwrap_or(world.pipe_top),
+            diameter: self.diameter.unwrap_or(world.pipe_diameter),
+        }
+    }
 }
 
 /// What the pilot leaves to the vehicle.
@@ -232,6 +282,13 @@ pub enum Step {
     Open,
     /// Spool up, release the tendons, wait for free arms, climb 1 m.
     Release,
+    /// Turn the nose and keep it there; later steps keep it too, until the pipe.
+    Yaw {
+        /// Clockwise from north, rad.
+        heading: f64,
+        /// s, from when it is there.
+        seconds: f64,
+    },
     /// Fly to a point.
     FlyTo {
         /// From take-off, m.

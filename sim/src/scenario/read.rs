@@ -114,6 +114,7 @@ impl Source<'_> {
         };
         match kind {
             Kind::Number(range, field) => *field(scenario) = self.number(name, value, range)?,
+            Kind::Optional(range, field) => *field(scenario) = Some(self.number(name, value, range)?),
             Kind::PerArm(range, field) => {
                 let allowed = || format!("four numbers, each {}", range.allowed());
                 let items = value.get_ref().as_array().filter(|a| a.len() == 4);
@@ -144,6 +145,19 @@ impl Source<'_> {
                     scenario,
                     word.ok_or_else(|| self.bad(name, value, words.join(", ")))?,
                 );
+            }
+            Kind::PerArmChoice(words, set) => {
+                let items = value.get_ref().as_array().filter(|a| a.len() == 4);
+                let allowed = || format!("four words, each {}", words.join(", "));
+                let items = items.ok_or_else(|| self.bad(name, value, allowed()))?;
+                for (arm, item) in items.iter().enumerate() {
+                    let word = item.get_ref().as_str().filter(|w| words.contains(w));
+                    set(
+                        scenario,
+                        arm,
+                        word.ok_or_else(|| self.bad(name, item, words.join(", ")))?,
+                    );
+                }
             }
             Kind::Seed(field) => {
                 let seed = as_number(value).and_then(keys::seed);

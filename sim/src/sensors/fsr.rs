@@ -7,6 +7,7 @@
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 
+use crate::scenario::Faults;
 use crate::streams::Streams;
 
 /// m²: 38 mm square (datasheet).
@@ -41,6 +42,8 @@ pub enum FsrBreak {
     Open,
     /// Shorted leads.
     Short,
+    /// It goes on reading what it read last.
+    Stuck,
 }
 
 /// One sensor with its divider.
@@ -52,6 +55,11 @@ pub struct FsrSensor {
     felt: f64,
     creep: f64,
     broken: Option<FsrBreak>,
+    /// What breaks, and when, s after power-up.
+    breaks: Option<(FsrBreak, f64)>,
+    /// s.
+    time: f64,
+    counts: u16,
     rng: Pcg64Mcg,
 }
 
@@ -68,8 +76,20 @@ impl FsrSensor {
             felt: 0.0,
             creep: 0.0,
             broken: None,
+            breaks: None,
+            time: 0.0,
+            counts: 0,
             rng: streams.of(&format!("fsr.{}", arm + 1)),
         }
+    }
+
+    /// The same with the faults of `arm`.
+    #[must_use]
+    pub fn with(mut self, arm: usize, faults: &Faults) -> Self {
+        self.gain *= faults.pressure_gain.get(arm).copied().unwrap_or(1.0);
+        let broken = faults.pressure.get(arm).copied().flatten();
+        self.breaks = broken.map(|broken| (broken, faults.at));
+        self
     }
 
     /// Sets or clears a fault.
@@ -79,6 +99,19 @@ impl FsrSensor {
 
     /// 12-bit counts at the true `pressure` (Pa), `dt` s after the last sample.
     pub fn sample(&mut self, pressure: f64, dt: f64) -> u16 {
+        self.time += dt;
+        if let Some((broken, at)) = self.breaks
+            && self.time >= at
+        {
+            self.broken = Some(broken);
+        }
+        if self.broken != Some(FsrBreak::Stuck) {
+            self.counts = self.measure(pressure, dt);
+        }
+        self.counts
+    }
+
+    fn measure(&mut self, pressure: f64, dt: f64) -> u16 {
         let rng = &mut self.rng;
         let mut normal = || -> f64 { StandardNormal.sample(rng) };
         let force = pressure.max(0.0) * AREA;
@@ -91,8 +124,8 @@ impl FsrSensor {
         let x = match self.broken {
             Some(FsrBreak::Open) => 0.0,
             Some(FsrBreak::Short) => 1.0,
-            None if force < THRESHOLD => 0.0,
-            None => {
+            None | Some(FsrBreak::Stuck) if force < THRESHOLD => 0.0,
+            None | Some(FsrBreak::Stuck) => {
                 let drift = 1.0 + self.creep + NOISE * normal();
                 let load = self.gain * self.felt.powf(self.exponent) * drift * self.divider;
                 load / (1.0 + load)
@@ -153,5 +186,27 @@ mod tests {
         assert!(s.sample(950.0, 0.002) == 0);
         s.set_broken(Some(FsrBreak::Short));
         assert!(s.sample(950.0, 0.002) == 4095);
+        s.set_broken(None);
+        let before = s.sample(950.0, 0.002);
+        s.set_broken(Some(FsrBreak::Stuck));
+        assert!(before > 1000 && (0..100).all(|_| s.sample(0.0, 0.002) == before));
+    }
+
+    #[test]
+    fn a_fault_begins_when_it_is_due_and_a_wrong_gain_at_once() {
+        let mut faults = Faults {
+            at: 1.0,
+            ..Faults::default()
+        };
+        faults.pressure[2] = Some(FsrBreak::Open);
+        faults.pressure_gain[2] = 0.5;
+        let sound = || FsrSensor::new(2, Streams::new(3));
+        let mut s = sound().with(2, &faults);
+        let half = s.sample(950.0, 0.5);
+        assert!(half < sound().sample(950.0, 0.5) && half > 500, "{half}");
+        assert!(s.sample(950.0, 0.4) > 0);
+        assert_eq!(s.sample(950.0, 0.2), 0);
+        let mut other = FsrSensor::new(1, Streams::new(3)).with(1, &faults);
+        assert!(other.sample(950.0, 2.0) > 1000);
     }
 }
