@@ -96,6 +96,9 @@ pub struct Mission {
     pub(super) pipe: DVec2,
     pub(super) pipe_top: f64,
     pub(super) pipe_radius: f64,
+    /// How far beside the crown he sets down, m, and how fast he may drift across then, m/s.
+    pub(super) within: f64,
+    pub(super) drift: f64,
     pub(super) stick_angle: f64,
     pub(super) arm_switch: bool,
     pub(super) perch_switch: bool,
@@ -115,7 +118,7 @@ pub struct Mission {
     pub(super) height: f64,
     /// Throttle set by hand when not flying.
     pub(super) throttle: f64,
-    /// Failed landings on the pipe.
+    /// Touches that came to nothing.
     pub(super) missed: u32,
     /// The displayed reason of the failsafe that ended the flight.
     pub(super) trouble: Option<String>,
@@ -130,6 +133,8 @@ impl Mission {
             pipe: DVec2::from_array(pipe.position),
             pipe_top: pipe.top,
             pipe_radius: 0.5 * pipe.diameter,
+            within: super::perch::within(&scenario.pilot, pipe.diameter),
+            drift: scenario.pilot.touch_drift,
             stick_angle: f64::from(scenario.params.stick_angle),
             arm_switch: false,
             perch_switch: false,

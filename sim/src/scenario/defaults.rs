@@ -62,6 +62,8 @@ impl Default for Pilot {
             bandwidth: 2.0,
             eye_noise: 0.01,
             assist: Assist::None,
+            touch_within: None,
+            touch_drift: 0.08,
             believes: Assumed::default(),
         }
     }

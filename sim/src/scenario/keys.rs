@@ -412,6 +412,16 @@ pub const KEYS: &[Key] = &[
         name: "pilot.assist",
         kind: Kind::Choice(ASSISTS, |s, v| s.pilot.assist = assist(v)),
     },
+    optional!(
+        "pilot.touch_within_m",
+        Range::new(0.005, 0.15, "m"),
+        pilot.touch_within
+    ),
+    number!(
+        "pilot.touch_drift_m_s",
+        Range::new(0.01, 0.5, "m/s"),
+        pilot.touch_drift
+    ),
     optional!("pilot.believes_pipe_north_m", PIPE_PLACE, pilot.believes.north),
     optional!("pilot.believes_pipe_east_m", PIPE_PLACE, pilot.believes.east),
     optional!("pilot.believes_pipe_top_m", PIPE_TOP, pilot.believes.top),

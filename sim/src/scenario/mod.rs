@@ -163,6 +163,11 @@ pub struct Pilot {
     pub eye_noise: f64,
     /// What he leaves to the vehicle where its mode takes it.
     pub assist: Assist,
+    /// How far beside the crown he sets down, m; `None`: what the capture map has held on a pipe of the diameter that he
+    /// takes it to have.
+    pub touch_within: Option<f64>,
+    /// How fast he may drift across the pipe then, m/s.
+    pub touch_drift: f64,
     /// What he takes the pipe to be.
     pub believes: Assumed,
 }
