@@ -18,7 +18,7 @@ use sophie_control::wrench::Configuration;
 use sophie_report::terminal::console;
 use sophie_sim::mixers::Variant;
 use sophie_sim::scenario::keys::{self, Range};
-use sophie_sim::scenario::{ArmBending, Assist, Overrides, PositionSensor, Scenario};
+use sophie_sim::scenario::{Assist, Overrides, PositionSensor, Scenario};
 
 use super::key;
 
@@ -333,9 +333,6 @@ pub struct MissionArgs {
     /// Infill of the arms, 4 to 10 %.
     #[arg(long, visible_alias = "infill", value_name = "PERCENT", value_parser = infill, allow_negative_numbers = true)]
     rho: Option<f64>,
-    /// How the simulated arms bend: hinge or beam.
-    #[arg(long, value_name = "NAME", value_parser = bending)]
-    arm_bending: Option<ArmBending>,
     /// Sense of rotation: A or B.
     #[arg(long, value_name = "A|B", value_parser = configuration)]
     config: Option<Configuration>,
@@ -376,7 +373,6 @@ impl MissionArgs {
         Overrides {
             infill: self.rho,
             gain_k: self.gain_k,
-            arm_bending: self.arm_bending,
             configuration: self.config,
             mixer: self.mixer,
             arms: self.arms,
@@ -535,10 +531,6 @@ fn configuration(text: &str) -> Result<Configuration, String> {
     word(&text.to_uppercase(), keys::CONFIGURATIONS).map(keys::configuration)
 }
 
-fn bending(text: &str) -> Result<ArmBending, String> {
-    word(text, keys::BENDINGS).map(keys::bending)
-}
-
 fn position_sensor(text: &str) -> Result<PositionSensor, String> {
     word(text, keys::POSITION_SENSORS).map(keys::position_sensor)
 }
@@ -649,10 +641,6 @@ mod tests {
             (
                 "--config C",
                 "invalid value 'C' for '--config <A|B>': allowed A, B",
-            ),
-            (
-                "--arm-bending soft",
-                "invalid value 'soft' for '--arm-bending <NAME>': allowed hinge, beam",
             ),
             (
                 "--mixer best",

@@ -7,7 +7,7 @@ use sophie_control::wrench::{Configuration, PerArm};
 use sophie_mixers::Variant;
 
 use super::faults;
-use super::{ArmBending, Assist, PositionSensor, Scenario, ServoProfile};
+use super::{Assist, PositionSensor, Scenario, ServoProfile};
 
 /// One key.
 pub struct Key {
@@ -95,9 +95,6 @@ pub const POSITION_SENSORS: &[&str] = &["none", "pose"];
 /// Words for what the pilot leaves to the vehicle.
 pub const ASSISTS: &[&str] = &["none", "hold"];
 
-/// Words for how the arms bend.
-pub const BENDINGS: &[&str] = &["hinge", "beam"];
-
 /// Infill that Eq. 1 of the paper covers.
 pub const INFILL: Range = Range::new(4.0, 10.0, "%");
 /// Gain on Eq. 1's elastic term: 1 is the literal equation, Table III needs 5.0 to 8.4.
@@ -174,23 +171,6 @@ pub fn assist(word: &str) -> Assist {
         Assist::Hold
     } else {
         Assist::None
-    }
-}
-
-/// A word from [`BENDINGS`].
-pub fn bending(word: &str) -> ArmBending {
-    if word == "beam" {
-        ArmBending::Beam
-    } else {
-        ArmBending::Hinge
-    }
-}
-
-/// The word of how the arms bend.
-pub const fn bending_word(bending: ArmBending) -> &'static str {
-    match bending {
-        ArmBending::Hinge => "hinge",
-        ArmBending::Beam => "beam",
     }
 }
 
@@ -298,10 +278,6 @@ pub const KEYS: &[Key] = &[
     Key {
         name: "vehicle.arm_coefficients",
         kind: Kind::PerArm(Range::new(-10.0, 30.0, ""), |s| &mut s.vehicle.arm_coefficients),
-    },
-    Key {
-        name: "vehicle.arm_bending",
-        kind: Kind::Choice(BENDINGS, |s, v| s.vehicle.arm_bending = bending(v)),
     },
     // Where two terms hold the ratio of tendon to thrust within 3 %.
     number!("vehicle.arm_taper", Range::new(0.25, 2.0, ""), vehicle.arm_taper),

@@ -89,7 +89,7 @@ pub struct Vehicle {
     pub configuration: Configuration,
     /// A1, A2, B1, B2 of Eq. 1, °/N, °/(N %), °/N², °/(N² %): Table I or a fitted arm.
     pub arm_coefficients: [f64; 4],
-    /// How the arms bend.
+    /// How the arms bend: no file says it.
     pub arm_bending: ArmBending,
     /// Bending stiffness of a beam's tip over its root's.
     pub arm_taper: f64,
@@ -116,7 +116,7 @@ pub struct Vehicle {
 /// How the plant's arms bend.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArmBending {
-    /// Rigid, on a hinge at the centre line.
+    /// Rigid, on a hinge at the centre line: the paper's arm, for its tables.
     Hinge,
     /// Along their length.
     Beam,

@@ -171,7 +171,6 @@ fn the_command_line_wins_over_the_file() {
     let overrides = Overrides {
         infill: Some(9.0),
         gain_k: Some(2.0),
-        arm_bending: Some(ArmBending::Hinge),
         configuration: Some(Configuration::A),
         mixer: Some(Variant::Paper),
         sensors: Some(PositionSensor::Pose),
@@ -183,18 +182,9 @@ fn the_command_line_wins_over_the_file() {
     let s = Scenario::parse(text, "f", &overrides).unwrap();
     assert_eq!((s.vehicle.infill, s.vehicle.gain_k, s.seed), (9.0, 2.0, 77));
     assert_eq!((s.params.infill, s.params.gain_k), (9.0, 2.0));
-    // What the stack believes of the tendon follows the arm.
-    let p = &s.params;
     assert_eq!(
         (s.sensors.position, s.pilot.assist),
         (PositionSensor::Pose, Assist::Hold)
-    );
-    assert_eq!(
-        (
-            s.vehicle.arm_bending,
-            [p.tendon_lever, p.tendon_bend, p.tendon_relief]
-        ),
-        (ArmBending::Hinge, [0.025, 1.0, 1.0])
     );
     assert_eq!(
         (s.vehicle.configuration, s.mixer, s.arms),
