@@ -12,6 +12,9 @@ use sophie_sim::parallel;
 use sophie_sim::record::{FlightRecord, Silent};
 use sophie_sim::scenario::Scenario;
 
+/// Gusts act so far from the centre of mass, m.
+const GUST_LEVER: f64 = 0.04;
+
 struct Flown {
     seed: u64,
     escapes: usize,
@@ -39,6 +42,7 @@ fn main() {
     scenario.vehicle.infill = of(2, scenario.vehicle.infill);
     scenario.params.infill = scenario.vehicle.infill as f32;
     scenario.world.gust_force = of(3, scenario.world.gust_force);
+    scenario.world.gust_moment = GUST_LEVER * scenario.world.gust_force;
     if of(4, 4.0) < 4.0 {
         scenario.arms = ArmChoice::Front;
     }

@@ -4,7 +4,6 @@
 use std::collections::VecDeque;
 
 use glam::{DQuat, DVec3};
-use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 use sophie_control::fsr::{Fsr, FsrScale};
@@ -24,6 +23,7 @@ use crate::plant::tendon::{ServoSpec, Tendon, TendonSpec};
 use crate::plant::{GRAVITY, STEP};
 use crate::scenario::ArmBending;
 use crate::sensors::fsr::{FsrBreak, FsrSensor};
+use crate::streams::Streams;
 
 /// Before closing, s.
 const REST: f64 = 1.0;
@@ -255,7 +255,7 @@ pub fn close(what: &Closing) -> Closed {
 }
 
 struct ArmBench {
-    rng: Pcg64Mcg,
+    tilt_noise: Pcg64Mcg,
     pipe: Pipe,
     arm: Box<dyn Flexible>,
     tendon: Tendon,
@@ -284,8 +284,8 @@ struct ArmBench {
 impl ArmBench {
     fn new(what: &BenchArm, seed: u64) -> Self {
         let params = &what.params;
-        let mut rng = Pcg64Mcg::seed_from_u64(seed);
-        let mut sensor = FsrSensor::new(&mut rng);
+        let streams = Streams::new(seed);
+        let mut sensor = FsrSensor::new(what.arm, streams);
         sensor.set_broken(what.broken);
         let reel = Reel::from_params(params, what.arm);
         let drive = TendonDrive::new();
@@ -295,7 +295,7 @@ impl ArmBench {
             None => (Box::new(HingedArm::new(what.arm, what.spec)), ArmBending::Hinge),
         };
         Self {
-            rng,
+            tilt_noise: streams.of("tilt"),
             pipe: pipe_under(0.5 * what.diameter, what.friction),
             arm,
             tendon: Tendon::new(what.servo, TendonSpec::of(bending)),
@@ -364,14 +364,14 @@ impl ArmBench {
     /// Runs filter and gripper when due; `pressure` (Pa) and `tilt` (rad) are true.
     fn run_stack(&mut self, step: u64, close: bool, pressure: f64, tilt: f64) {
         if step.is_multiple_of(FSR_STEPS) {
-            let counts = self.sensor.sample(pressure, 0.002, &mut self.rng);
+            let counts = self.sensor.sample(pressure, 0.002);
             self.pressure = self
                 .fsr
                 .step(&self.scale, counts, 0.002)
                 .map_or(Pressure::Faulty, Pressure::Known);
         }
         if step.is_multiple_of(GRIPPER_STEPS) {
-            let noise: f64 = StandardNormal.sample(&mut self.rng);
+            let noise: f64 = StandardNormal.sample(&mut self.tilt_noise);
             self.tilts.push_back(tilt + TILT_NOISE * noise);
             if self.tilts.len() > 2 {
                 self.tilt = self.tilts.pop_front().map(|late| late as f32);

@@ -7,8 +7,6 @@ use embassy_sync::pipe::Pipe;
 use embassy_sync::signal::Signal;
 use embassy_time::{Instant, Timer};
 use heapless::Vec;
-use rand::SeedableRng;
-use rand_pcg::Pcg64Mcg;
 use sophie_control::motor_map::at_rotors;
 use sophie_control::params::{MotorMap, Params};
 use sophie_control::vector::Vec3;
@@ -18,10 +16,12 @@ use sophie_tasks::ports::{self, AnalogFrame, IMU_BATCH, ImuReading, PortError};
 use sophie_tasks::retained_state::{WORDS, Words};
 
 use crate::plant::{Actuators, Plant, STEP};
+use crate::scenario::{Faults, Scenario};
 use crate::sensors::analog::{BatteryInputs, PIN_VOLTS_PER_COUNT};
-use crate::sensors::arm_imu::{self, ArmImu};
+use crate::sensors::arm_imu::{self, ArmImu, TiltBreak};
 use crate::sensors::fsr::FsrSensor;
 use crate::sensors::imu::{Imu, Misfit};
+use crate::streams::Streams;
 
 /// Half a hardware ring of 512.
 const LINE_BYTES: usize = 256;
@@ -40,7 +40,8 @@ pub struct Board {
     telemetry: Pipe<Raw, LINE_BYTES>,
     sensors: RefCell<Sensors>,
     truth: Cell<AnalogTruth>,
-    arm_gravity: Cell<PerArm<Vec3>>,
+    /// `None`: no answer.
+    arm_gravity: Cell<PerArm<Option<Vec3>>>,
     /// Hz.
     imu_rate: f64,
     /// Memory that outlives a reset.
@@ -65,25 +66,27 @@ struct Sensors {
     arms: PerArm<ArmImu>,
     fsr: PerArm<FsrSensor>,
     battery: BatteryInputs,
-    rng: Pcg64Mcg,
     arm_clock: f64,
 }
 
 impl Board {
-    /// Default parameters; errors of the parts drawn from `rng`.
+    /// Default parameters; parts with the errors of `streams`.
     #[must_use]
-    pub fn new(rng: &mut Pcg64Mcg) -> Self {
-        Self::configured(&Params::default(), rng)
+    pub fn new(streams: Streams) -> Self {
+        Self::with(&Params::default(), streams, &Faults::default())
     }
 
-    /// With `params`, motors wired as they say; errors of the parts drawn from `rng`.
+    /// That of `scenario`, motors wired as its parameters say.
     #[must_use]
-    pub fn configured(params: &Params, rng: &mut Pcg64Mcg) -> Self {
-        let mut imu = Imu::new(params, Pcg64Mcg::from_rng(rng));
+    pub fn of(scenario: &Scenario) -> Self {
+        Self::with(&scenario.params, scenario.streams(), &scenario.faults)
+    }
+
+    fn with(params: &Params, streams: Streams, faults: &Faults) -> Self {
+        let imu = Imu::new(params, streams);
         let accel_bias = imu.bench_bias().as_vec3().to_array();
-        let arms = std::array::from_fn(|arm| ArmImu::new(arm, Pcg64Mcg::from_rng(rng)));
-        let fsr = std::array::from_fn(|_| FsrSensor::new(rng));
-        let battery = BatteryInputs::new(rng);
+        let arms = std::array::from_fn(|arm| ArmImu::new(arm, streams).with(arm, faults));
+        let fsr = std::array::from_fn(|arm| FsrSensor::new(arm, streams).with(arm, faults));
         Self {
             imu_ready: Signal::new(),
             actuators: Cell::default(),
@@ -93,12 +96,11 @@ impl Board {
                 imu,
                 arms,
                 fsr,
-                battery,
-                rng: Pcg64Mcg::from_rng(rng),
+                battery: BatteryInputs::new(streams),
                 arm_clock: 0.0,
             }),
             truth: Cell::default(),
-            arm_gravity: Cell::default(),
+            arm_gravity: Cell::new([Some(Vec3::default()); 4]),
             memory: Cell::new([[0; WORDS]; 2]),
             accel_bias,
             wiring: Cell::new(params.motor_map),
@@ -145,7 +147,8 @@ impl Board {
             let (attitude, force, tilt) = (plant.pose().attitude, plant.specific_force(), plant.tilt());
             let mut gravity = self.arm_gravity.get();
             for ((g, arm), tilt) in gravity.iter_mut().zip(&mut sensors.arms).zip(tilt) {
-                *g = arm.sample(attitude, tilt, force);
+                let sent = arm.sample(attitude, tilt, force);
+                *g = (arm.broken() != Some(TiltBreak::Silent)).then_some(sent);
             }
             self.arm_gravity.set(gravity);
         }
@@ -227,6 +230,7 @@ impl ports::ArmImus for Port {
             .get()
             .get(arm)
             .copied()
+            .flatten()
             .ok_or(PortError::Absent)
     }
 }
@@ -243,16 +247,14 @@ impl ports::Analog for Port {
             elapsed: 0.0,
             ..truth
         });
-        let Sensors {
-            fsr, battery, rng, ..
-        } = &mut *self.0.sensors.borrow_mut();
+        let Sensors { fsr, battery, .. } = &mut *self.0.sensors.borrow_mut();
         let mut frame = AnalogFrame {
             fsr: [0; 4],
-            battery_voltage: battery.voltage(truth.voltage, rng),
-            battery_current: battery.current(truth.current, rng),
+            battery_voltage: battery.voltage(truth.voltage),
+            battery_current: battery.current(truth.current),
         };
         for ((counts, sensor), pressure) in frame.fsr.iter_mut().zip(fsr).zip(truth.pressure) {
-            *counts = sensor.sample(pressure, truth.elapsed, rng);
+            *counts = sensor.sample(pressure, truth.elapsed);
         }
         Ok(frame)
     }

@@ -9,7 +9,6 @@ use crate::plant::contact::Pose;
 use crate::scenario::Scenario;
 use crate::sensors::imu::Misfit;
 use embassy_time::Instant;
-use rand_pcg::Pcg64Mcg;
 use sophie_control::mixer::Allocation;
 use sophie_control::params::{MotorMap, Params};
 use sophie_control::wrench::Configuration;
@@ -84,9 +83,8 @@ pub fn vehicle(configuration: Configuration, gain_k: f64, infill: f64, mixer: Va
 impl Rig {
     /// The vehicle of `scenario` at rest on the ground.
     pub fn new(scenario: &Scenario) -> Self {
-        let mut rng = seeded(scenario);
-        let plant = Plant::new(scenario, rng.clone());
-        let board = Board::configured(&scenario.params, &mut rng);
+        let plant = Plant::new(scenario);
+        let board = Board::of(scenario);
         let (variant, configuration) = (scenario.mixer, scenario.vehicle.configuration);
         Self::assembled(plant, board, scenario.params, move |p: &_| {
             Mixer::new(variant, configuration, p)
@@ -112,9 +110,8 @@ impl Rig {
         scenario: &Scenario,
         allocation: impl FnOnce(&Params) -> A + 'static,
     ) -> Self {
-        let mut rng = seeded(scenario);
-        let plant = Plant::new(scenario, rng.clone());
-        let board = Board::new(&mut rng);
+        let plant = Plant::new(scenario);
+        let board = Board::of(scenario);
         let [accel_bias_x, accel_bias_y, accel_bias_z] = board.accel_bias;
         let params = Params {
             accel_bias_x,
@@ -190,10 +187,6 @@ impl Rig {
         }
         judged.errors()
     }
-}
-
-fn seeded(scenario: &Scenario) -> Pcg64Mcg {
-    Pcg64Mcg::new(u128::from(scenario.seed) * 2 + 1)
 }
 
 /// Holds 3 m; thrust ramps up in the first second.

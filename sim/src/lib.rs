@@ -15,6 +15,7 @@ pub mod record;
 pub mod sbus;
 pub mod scenario;
 pub mod sensors;
+pub mod streams;
 
 pub use sophie_clock as clock;
 pub use sophie_mixers as mixers;

@@ -7,7 +7,6 @@
 use std::collections::VecDeque;
 
 use glam::{DQuat, DVec3};
-use rand::{Rng, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 use sophie_control::fsr::{Fsr, FsrScale};
@@ -26,6 +25,7 @@ use sophie_sim::plant::tendon::{ServoSpec, Tendon, TendonSpec};
 use sophie_sim::plant::{GRAVITY, STEP};
 use sophie_sim::scenario::{ArmBending, ServoProfile};
 use sophie_sim::sensors::fsr::{FsrBreak, FsrSensor};
+use sophie_sim::streams::Streams;
 
 /// kgcm per N·m.
 const KGCM: f64 = 10.197;
@@ -51,7 +51,7 @@ fn beam(print: &ArmSpec, damping: f64) -> BeamSpec {
 }
 
 struct Bench {
-    rng: Pcg64Mcg,
+    tilt_noise: Pcg64Mcg,
     arm: BeamArm,
     tendon: Tendon,
     pipe: Pipe,
@@ -101,19 +101,19 @@ impl Bench {
         if servo == ServoProfile::Mg996r {
             (params.servo_stall, params.servo_range) = (0.922, std::f32::consts::PI);
         }
-        let mut rng = Pcg64Mcg::seed_from_u64(seed);
-        let mut within = |x: f64| rng.random_range(-x..x);
+        let streams = Streams::new(seed);
+        let within = |what: &str, x: f64| streams.within(what, -x, x);
         // Unknown to the builder.
-        let gain = 1.0 + within(0.05);
-        let offset = within(0.02);
-        let slack_error = within(0.001);
-        let tilt_offset = within(0.02);
-        let thrust_error = within(0.05);
-        let sensor = FsrSensor::new(&mut rng);
+        let gain = 1.0 + within("gain", 0.05);
+        let offset = within("offset", 0.02);
+        let slack_error = within("slack", 0.001);
+        let tilt_offset = within("tilt offset", 0.02);
+        let thrust_error = within("thrust", 0.05);
+        let sensor = FsrSensor::new(0, streams);
         let reel = Reel::from_params(&params, 0);
         let drive = TendonDrive::new();
         Self {
-            rng,
+            tilt_noise: streams.of("tilt"),
             arm: BeamArm::new(0, beam(&ArmSpec::new(infill, 7.75, gain, offset, 0.15), 0.15)),
             tendon: Tendon::new(
                 ServoSpec::from(servo).measured(&params, 0),
@@ -178,7 +178,7 @@ impl Bench {
 
         self.steps += 1;
         if self.steps.is_multiple_of(4) {
-            let counts = self.sensor.sample(self.pressure, 0.002, &mut self.rng);
+            let counts = self.sensor.sample(self.pressure, 0.002);
             let counts = (f64::from(counts) / self.pad).round() as u16;
             if self.analog_alive {
                 self.sensed = match self.fsr.step(&self.scale, counts, 0.002) {
@@ -190,7 +190,7 @@ impl Bench {
             }
         }
         if self.steps.is_multiple_of(20) {
-            let noise: f64 = StandardNormal.sample(&mut self.rng);
+            let noise: f64 = StandardNormal.sample(&mut self.tilt_noise);
             self.tilts.push_back(alpha + self.tilt_offset + 0.004 * noise);
             if self.tilts.len() > 2 {
                 let late = self.tilts.pop_front().unwrap();

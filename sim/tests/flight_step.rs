@@ -1,7 +1,6 @@
 //! A mission flown by the tasks, replayed from its inputs in a [`FlightChain`], gives the same bits.
 
 use embassy_time::Instant;
-use rand_pcg::Pcg64Mcg;
 use sophie_control::chain::{
     ArmReading, Attitude, Command, Demand, FlightChain, ImuReading, MixOutput, Surroundings,
 };
@@ -175,8 +174,8 @@ fn bits(attitude: &Attitude, mix: &MixOutput) -> Vec<u32> {
 #[test]
 fn a_mission_gives_the_same_bits_through_the_tasks_and_through_the_chain() {
     let scenario = Scenario::default_mission();
-    let recorded = |seeds: &mut Pcg64Mcg| Recorded {
-        stack: Stack::new(&scenario, seeds),
+    let recorded = || Recorded {
+        stack: Stack::new(&scenario),
         tape: vec![],
     };
     let (record, Recorded { stack, tape }) = fly_with(&scenario, recorded, &mut Silent);

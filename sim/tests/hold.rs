@@ -32,7 +32,7 @@ fn held(seed: u64, seconds: f64) -> Scenario {
     s.world.gust_moment = 0.012;
     s.world.steady_wind = 1.0;
     // The golden angle spreads the seeds about the compass.
-    s.world.steady_wind_from = seed as f64 * 0.381_966 * TAU;
+    s.world.steady_wind_from = Some(seed as f64 * 0.381_966 * TAU);
     s.sensors.position = PositionSensor::Pose;
     s.pilot.assist = Assist::Hold;
     s
@@ -124,7 +124,7 @@ fn the_pilot_flies_to_a_point_by_velocities_and_takes_over_by_the_switch() {
 
 /// Held for 20 s with the poses gone for `seconds` in its middle; the record, and the samples from then on for as long.
 fn with_a_failure(seconds: f64) -> (FlightRecord, Vec<Sample>) {
-    let mut s = held(5, 20.0);
+    let mut s = held(8, 20.0);
     s.sensors.pose_fails_at = 22.0;
     s.sensors.pose_fails_for = seconds;
     let record = fly(&s, &mut Silent);

@@ -9,6 +9,7 @@ use sophie_fakes::{Answer, BrokenLine, FakeLine, links};
 use sophie_sim::board::{Board, Port};
 use sophie_sim::clock::VirtualTime;
 use sophie_sim::crsf::{channel_frame, rc_frame};
+use sophie_sim::streams::Streams;
 use sophie_tasks::links::{Links, RcState};
 
 struct Line {
@@ -150,7 +151,7 @@ fn a_broken_line_is_counted_and_leaves_the_processor_alone() {
 #[test]
 fn the_simulated_line_loses_no_byte_that_fits() {
     let (time, links) = (VirtualTime::new(), links());
-    let board: &'static Board = Box::leak(Box::new(Board::new(&mut Pcg64Mcg::seed_from_u64(1))));
+    let board: &'static Board = Box::leak(Box::new(Board::new(Streams::new(1))));
     time.spawn(sophie_tasks::rc::run(links, Port(board), Decoder::new()));
     for i in 1..=100 {
         board.receive(&frame(0.4));

@@ -170,11 +170,12 @@ fn telemetry_keeps_off_a_line_that_has_no_way_back() {
     use embassy_time::Instant;
     use sophie_sim::board::{Board, Port};
     use sophie_sim::clock::VirtualTime;
+    use sophie_sim::streams::Streams;
     use sophie_tasks::links::Status;
 
     for (params, silent) in [(Params::default(), false), (sbus(), true)] {
         let (time, links) = (VirtualTime::new(), sophie_fakes::links_with(params));
-        let board: &'static Board = Box::leak(Box::new(Board::new(&mut Pcg64Mcg::seed_from_u64(1))));
+        let board: &'static Board = Box::leak(Box::new(Board::new(Streams::new(1))));
         time.spawn(sophie_tasks::telemetry::run(links, Port(board)));
         for ms in 1..=500 {
             links.status.send(Instant::now(), Status::default());

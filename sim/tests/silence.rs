@@ -4,13 +4,13 @@ use embassy_time::Instant;
 use sophie_control::params::Params;
 use sophie_sim::board::{Board, Port};
 use sophie_sim::clock::VirtualTime;
+use sophie_sim::streams::Streams;
 use sophie_tasks::links::{Links, MixOutput};
 
 fn rig() -> (VirtualTime, &'static Links, &'static Board) {
     let time = VirtualTime::new();
     let links: &'static Links = Box::leak(Box::new(Links::new(Params::default())));
-    let mut rng = rand_pcg::Pcg64Mcg::new(1);
-    let board: &'static Board = Box::leak(Box::new(Board::new(&mut rng)));
+    let board: &'static Board = Box::leak(Box::new(Board::new(Streams::new(1))));
     time.spawn(sophie_tasks::motors::run(links, Port(board)));
     (time, links, board)
 }

@@ -2,7 +2,6 @@
 
 use std::collections::{BTreeMap, VecDeque};
 
-use rand_pcg::Pcg64Mcg;
 use sophie_control::fsr::FsrScale;
 use sophie_control::grip::{ArmGrip, ArmState, GripState};
 use sophie_control::mode::Mode;
@@ -118,17 +117,16 @@ pub struct Setup {
 }
 
 impl<'a> Bench<'a> {
-    /// Runs `firmware` as in `setup` with the parameters of `scenario` and a calibrated accelerometer; `rng` draws the
-    /// sensors' errors, `logged` receives log lines.
+    /// Runs `firmware` as in `setup` with the parameters of `scenario` and a calibrated accelerometer; `logged` receives
+    /// log lines.
     pub fn new(
         firmware: &'a Firmware,
         scenario: &Scenario,
         setup: Setup,
-        rng: &mut Pcg64Mcg,
         logged: impl FnMut(&Line) + 'a,
     ) -> Self {
         let Setup { speed, plan, sockets } = setup;
-        let sensors = Sensors::new(&scenario.params, rng);
+        let sensors = Sensors::new(scenario);
         let [accel_bias_x, accel_bias_y, accel_bias_z] = sensors.calibration;
         let params = Params {
             accel_bias_x,

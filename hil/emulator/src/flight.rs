@@ -50,7 +50,7 @@ pub fn fly(
     observer: &mut dyn Observer,
 ) -> Result<Flight, String> {
     flyable::check(scenario)?;
-    let make = |rng: &mut _| Bench::new(firmware, scenario, setup, rng, logged);
+    let make = || Bench::new(firmware, scenario, setup, logged);
     let (record, bench) = fly_with(scenario, make, observer);
     let board = bench.finish()?;
     let gaps = gaps::not_allowed(&board.run.gaps)?.into_iter().cloned().collect();
@@ -78,8 +78,8 @@ pub fn stand(
     mut over: impl FnMut() -> bool,
 ) -> Result<Stood, String> {
     flyable::check(scenario)?;
-    let make = |rng: &mut _| {
-        let bench = Bench::new(firmware, scenario, setup, rng, logged);
+    let make = || {
+        let bench = Bench::new(firmware, scenario, setup, logged);
         match hands {
             Some(hands) => bench.in_hands(hands),
             None => bench,

@@ -2,7 +2,7 @@
 
 use sophie_control::wrench::Configuration;
 use sophie_sim::mixers::Variant;
-use sophie_sim::scenario::{PositionSensor, Scenario, Step, keys};
+use sophie_sim::scenario::{Faults, PositionSensor, Scenario, Step, keys};
 use sophie_tasks::start::StartCause;
 
 /// Refuses a scenario that needs another image.
@@ -31,6 +31,11 @@ pub fn check(scenario: &Scenario) -> Result<(), String> {
             keys::position_sensor_word(scenario.sensors.position)
         ));
     }
+    if scenario.faults != Faults::default() {
+        return Err(format!(
+            "{name}: [faults]: the bench breaks parts by its own plan"
+        ));
+    }
     for step in &scenario.steps {
         if let Step::Reset { cause, .. } = step
             && *cause != StartCause::Watchdog
@@ -57,6 +62,9 @@ mod tests {
         scenario.sensors.position = PositionSensor::Pose;
         assert!(check(&scenario).unwrap_err().contains("position pose"));
         scenario.sensors.position = PositionSensor::None;
+        scenario.faults.tilt_offset[0] = 0.1;
+        assert!(check(&scenario).unwrap_err().contains("faults"));
+        scenario.faults = Faults::default();
         scenario.mixer = Variant::Rigid;
         assert!(check(&scenario).unwrap_err().contains("mixer rigid"));
     }

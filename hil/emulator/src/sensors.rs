@@ -1,11 +1,9 @@
 //! Voltages and samples on the wires, with the simulated board's sensor errors.
 
-use rand::SeedableRng;
-use rand_pcg::Pcg64Mcg;
-use sophie_control::params::Params;
 use sophie_control::vector::Vec3;
 use sophie_control::wrench::PerArm;
 use sophie_sim::plant::{Plant, STEP};
+use sophie_sim::scenario::Scenario;
 use sophie_sim::sensors::analog::{AMPS_PER_COUNT, BatteryInputs, VOLTS_PER_COUNT};
 use sophie_sim::sensors::arm_imu::{self, ArmImu};
 use sophie_sim::sensors::fsr::{FsrBreak, FsrSensor};
@@ -29,7 +27,6 @@ pub struct Sensors {
     arms: PerArm<ArmImu>,
     fsr: PerArm<FsrSensor>,
     battery: BatteryInputs,
-    rng: Pcg64Mcg,
     arm_clock: f64,
     gravity: PerArm<Vec3>,
     /// 12 bits.
@@ -39,22 +36,21 @@ pub struct Sensors {
 }
 
 impl Sensors {
-    /// Draws errors in the order of [`sophie_sim::board::Board::configured`]: equal seeds, equal vehicles.
+    /// Parts of the same names as [`sophie_sim::board::Board`] has: equal seeds, equal vehicles.
     #[must_use]
-    pub fn new(params: &Params, rng: &mut Pcg64Mcg) -> Self {
-        let mut imu = Imu::new(params, Pcg64Mcg::from_rng(rng));
+    pub fn new(scenario: &Scenario) -> Self {
+        let (params, streams) = (&scenario.params, scenario.streams());
+        let imu = Imu::new(params, streams);
         let calibration = imu.bench_bias().as_vec3().to_array();
-        let arms = std::array::from_fn(|arm| ArmImu::new(arm, Pcg64Mcg::from_rng(rng)));
-        let fsr = std::array::from_fn(|_| FsrSensor::new(rng));
-        let battery = BatteryInputs::new(rng);
+        let arms = std::array::from_fn(|arm| ArmImu::new(arm, streams));
+        let fsr = std::array::from_fn(|arm| FsrSensor::new(arm, streams));
         Self {
             imu,
             samples: ((f64::from(params.imu_rate.number()) * STEP) as u32).max(1),
             calibration,
             arms,
             fsr,
-            battery,
-            rng: Pcg64Mcg::from_rng(rng),
+            battery: BatteryInputs::new(streams),
             arm_clock: 0.0,
             gravity: [Vec3::new(0.0, 0.0, 9.806_65); 4],
             pressure_counts: [0; 4],
@@ -121,12 +117,12 @@ impl Sensors {
             .zip(pressures)
             .zip(&mut wires.analog)
         {
-            *counts = sensor.sample(pressure + pressed, 1e-3, &mut self.rng);
+            *counts = sensor.sample(pressure + pressed, 1e-3);
             *volt = volts(*counts);
         }
         let voltage = plant.battery_voltage() * self.battery_share;
-        let voltage = f64::from(self.battery.voltage(voltage, &mut self.rng)) * VOLTS_PER_COUNT;
-        let amps = f64::from(self.battery.current(plant.battery_current(), &mut self.rng)) * AMPS_PER_COUNT;
+        let voltage = f64::from(self.battery.voltage(voltage)) * VOLTS_PER_COUNT;
+        let amps = f64::from(self.battery.current(plant.battery_current())) * AMPS_PER_COUNT;
         let [.., v, i] = &mut wires.analog;
         (*v, *i) = (voltage, amps);
     }

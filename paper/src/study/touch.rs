@@ -6,8 +6,6 @@
 use std::collections::VecDeque;
 
 use glam::{DQuat, DVec3};
-use rand::{Rng, SeedableRng};
-use rand_pcg::Pcg64Mcg;
 use sophie_control::mode::Mode;
 use sophie_control::rc::Sticks;
 
@@ -17,6 +15,7 @@ use sophie_sim::flight::stack::Stack;
 use sophie_sim::plant::Plant;
 use sophie_sim::plant::contact::BELLY_Z;
 use sophie_sim::scenario::Scenario;
+use sophie_sim::streams::Streams;
 
 /// s.
 const ARMED_BY: f64 = 12.0;
@@ -78,21 +77,21 @@ impl Touch {
     /// Within ±150 mm, ±25°, pipes of 0.2 to 0.4 m, friction 0.3 to 0.8; half cancelled.
     #[must_use]
     pub fn random(seed: u64) -> Self {
-        let mut rng = Pcg64Mcg::seed_from_u64(seed);
-        let mut within = |from: f64, to: f64| from + (to - from) * rng.random::<f64>();
-        let diameter = within(0.2, 0.4);
+        let streams = Streams::new(seed);
+        let within = |what: &str, from: f64, to: f64| streams.within(&format!("touch.{what}"), from, to);
+        let diameter = within("diameter", 0.2, 0.4);
         Self {
             // Within the width of a thinner pipe.
-            offset: within(-0.15, 0.15).clamp(-0.48 * diameter, 0.48 * diameter),
-            lean: within(-25.0, 25.0).to_radians(),
-            sink: within(0.05, 0.4),
-            sideways: within(-0.1, 0.1),
+            offset: within("offset", -0.15, 0.15).clamp(-0.48 * diameter, 0.48 * diameter),
+            lean: within("lean", -25.0, 25.0).to_radians(),
+            sink: within("sink", 0.05, 0.4),
+            sideways: within("sideways", -0.1, 0.1),
             yaw: 0.0,
             diameter,
-            friction: within(0.3, 0.8),
-            gust: within(0.0, 0.1),
-            throttle: within(0.15, 0.38),
-            cancel: match within(-8.0, 8.0) {
+            friction: within("friction", 0.3, 0.8),
+            gust: within("gust", 0.0, 0.1),
+            throttle: within("throttle", 0.15, 0.38),
+            cancel: match within("cancel", -8.0, 8.0) {
                 t if t < 0.0 => f64::INFINITY,
                 t => t,
             },
@@ -164,9 +163,8 @@ impl Try {
         scenario.world.pipe_friction = touch.friction;
         scenario.world.gust_force = touch.gust;
         scenario.world.gust_moment = 0.04 * touch.gust;
-        let mut seeds = Pcg64Mcg::seed_from_u64(touch.seed);
-        let plant = Plant::new(&scenario, Pcg64Mcg::from_rng(&mut seeds));
-        let stack = Stack::new(&scenario, &mut seeds);
+        let plant = Plant::new(&scenario);
+        let stack = Stack::new(&scenario);
         Self {
             scenario,
             plant,

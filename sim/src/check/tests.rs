@@ -93,7 +93,9 @@ fn draw(rng: &mut Pcg64Mcg, params: f64) -> String {
             }
             let mut within = |range: &crate::scenario::keys::Range| rng.random_range(range.min..=range.max);
             match &key.kind {
-                Kind::Number(range, _) => text += &format!("{name} = {:.6}\n", within(range)),
+                Kind::Number(range, _) | Kind::Optional(range, _) => {
+                    text += &format!("{name} = {:.6}\n", within(range))
+                }
                 Kind::PerAxis([a, b, c], _) => {
                     text += &format!(
                         "{name} = [{:.6}, {:.6}, {:.6}]\n",

@@ -10,8 +10,6 @@ mod why;
 use std::time::Instant as WallInstant;
 
 use glam::DVec3;
-use rand::SeedableRng;
-use rand_pcg::Pcg64Mcg;
 use sophie_control::params::RcProtocol;
 
 use self::aircraft::Aircraft;
@@ -48,16 +46,13 @@ impl<A> Snapshot<'_, A> {
 ///
 /// Scenario and seed determine the record to the bit, whatever other threads do, except [`FlightRecord::wall_seconds`].
 pub fn fly(scenario: &Scenario, observer: &mut dyn Observer) -> FlightRecord {
-    fly_with(scenario, |seeds| Stack::new(scenario, seeds), observer).0
+    fly_with(scenario, || Stack::new(scenario), observer).0
 }
 
 /// Flies `scenario` with the aircraft made by `make`; returns record and aircraft.
-///
-/// `make` gets the random numbers of the aircraft's parts: drawn as [`crate::board::Board::configured`] does, they give
-/// the same parts.
 pub fn fly_with<A: Aircraft>(
     scenario: &Scenario,
-    make: impl FnOnce(&mut Pcg64Mcg) -> A,
+    make: impl FnOnce() -> A,
     observer: &mut dyn Observer,
 ) -> (FlightRecord, A) {
     let mut world = World::new(scenario, make);
@@ -72,7 +67,7 @@ pub fn fly_with<A: Aircraft>(
 /// One line: why the aircraft cannot run on.
 pub fn stand_with<A: Aircraft>(
     scenario: &Scenario,
-    make: impl FnOnce(&mut Pcg64Mcg) -> A,
+    make: impl FnOnce() -> A,
     mut over: impl FnMut(&A) -> bool,
 ) -> Result<A, String> {
     let mut world = World::new(scenario, make);
@@ -94,12 +89,11 @@ pub(crate) struct World<A> {
 
 impl<A: Aircraft> World<A> {
     /// A world before power-up. `make` as in [`fly_with`].
-    pub(crate) fn new(scenario: &Scenario, make: impl FnOnce(&mut Pcg64Mcg) -> A) -> Self {
-        let mut seeds = Pcg64Mcg::seed_from_u64(scenario.seed);
+    pub(crate) fn new(scenario: &Scenario, make: impl FnOnce() -> A) -> Self {
         Self {
-            plant: Plant::new(scenario, Pcg64Mcg::from_rng(&mut seeds)),
-            stack: make(&mut seeds),
-            pilot: Pilot::new(scenario, Pcg64Mcg::from_rng(&mut seeds)),
+            plant: Plant::new(scenario),
+            stack: make(),
+            pilot: Pilot::new(scenario),
             uplink: Uplink::new(scenario),
             ms: 0,
         }

@@ -1,7 +1,7 @@
 //! The flight stack on the simulated board: all tasks on the virtual executor, dropped at a reset.
 
 use glam::DVec3;
-use rand::{Rng, SeedableRng};
+use rand::Rng;
 use rand_pcg::Pcg64Mcg;
 use sophie_control::math;
 use sophie_control::mode::Reason;
@@ -52,17 +52,17 @@ impl Stack {
     /// Powers the board up and spawns the tasks.
     ///
     /// Board and links are leaked: tasks borrow them as `'static`, like statics of a real board.
-    pub fn new(scenario: &Scenario, rng: &mut Pcg64Mcg) -> Self {
-        Self::with(scenario, rng, None)
+    pub fn new(scenario: &Scenario) -> Self {
+        Self::with(scenario, None)
     }
 
     /// The same, at the pace and with the clients of `live`.
-    pub fn live(scenario: &Scenario, rng: &mut Pcg64Mcg, live: Live) -> Self {
-        Self::with(scenario, rng, Some(live))
+    pub fn live(scenario: &Scenario, live: Live) -> Self {
+        Self::with(scenario, Some(live))
     }
 
-    fn with(scenario: &Scenario, rng: &mut Pcg64Mcg, live: Option<Live>) -> Self {
-        let board: &'static Board = Box::leak(Box::new(Board::configured(&scenario.params, rng)));
+    fn with(scenario: &Scenario, live: Option<Live>) -> Self {
+        let board: &'static Board = Box::leak(Box::new(Board::of(scenario)));
         let params = calibrated(scenario.params, board);
         let companion = match scenario.sensors.position {
             PositionSensor::None => None,
@@ -78,7 +78,7 @@ impl Stack {
             reset: None,
             resets: 0,
             overruns: 0,
-            noise: Pcg64Mcg::seed_from_u64(!scenario.seed),
+            noise: scenario.streams().of("memory"),
             live,
             companion,
         };
@@ -293,7 +293,7 @@ mod tests {
     #[test]
     fn the_log_has_no_pressure_while_none_is_fresh() {
         let scenario = Scenario::default_mission();
-        let mut stack = Stack::new(&scenario, &mut Pcg64Mcg::seed_from_u64(1));
+        let mut stack = Stack::new(&scenario);
         assert!(stack.belief().pressure.iter().all(|p| p.is_nan()));
         stack.run_until(50_000).unwrap();
         assert!(stack.belief().pressure.iter().all(|p| p.is_finite()));

@@ -23,7 +23,7 @@ impl<'a> LiveFlight<'a> {
     pub fn new(scenario: &'a Scenario, live: Live) -> Self {
         Self {
             scenario,
-            world: World::new(scenario, |seeds| Stack::live(scenario, seeds, live)),
+            world: World::new(scenario, || Stack::live(scenario, live)),
             transmitter: false,
         }
     }

@@ -3,13 +3,16 @@
 use glam::DVec2;
 
 use super::guidance::Vertical;
-use super::mission::{HEADING, Mission, Phase, Progress, View};
+use super::mission::{Mission, Phase, Progress, View};
 use super::stick_dynamics::StickTarget;
+use super::wrap;
 
 /// Share of the roll angle at which a side is reached, and by which the stick exceeds it: the vehicle's lag would never
 /// close the last degree.
 const ROLL_REACHED: f64 = 0.95;
 const ROLL_LEAD: f64 = 1.05;
+/// How near the nose comes to a heading that is reached, rad.
+const TURNED: f64 = 0.09;
 /// Distance from the spot (m) and speed (m/s) after which the roll manoeuvre is over.
 const RECOVERED: f64 = 0.3;
 const RECOVERED_SPEED: f64 = 0.3;
@@ -25,6 +28,21 @@ impl Mission {
         }
         let wish = self.go_to(v, self.spot, self.height, dt);
         if self.phase_time >= seconds {
+            Progress::Done(wish)
+        } else {
+            Progress::Going(wish)
+        }
+    }
+
+    pub(super) fn yaw(&mut self, v: &View<'_>, heading: f64, seconds: f64, dt: f64) -> Progress {
+        if self.phase == Phase::Start {
+            self.spot = v.seen.position.truncate();
+            self.heading_goal = heading;
+            self.enter(Phase::Fly);
+        }
+        let wish = self.go_to(v, self.spot, self.height, dt);
+        let there = wrap(heading - v.seen.yaw).abs() < TURNED;
+        if self.held_for(there, seconds, dt) {
             Progress::Done(wish)
         } else {
             Progress::Going(wish)
@@ -63,7 +81,7 @@ impl Mission {
         let throttle = self
             .guidance
             .climb(Vertical::Height(self.height), angle.cos(), dt);
-        let yaw = self.guidance.rudder(&v.seen, HEADING);
+        let yaw = self.guidance.rudder(&v.seen, self.heading, 0.0);
         Progress::Going(StickTarget {
             roll: side * ROLL_LEAD * angle / self.stick_angle,
             yaw,

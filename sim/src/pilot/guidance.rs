@@ -53,6 +53,8 @@ pub struct Course {
     pub vertical: Vertical,
     /// Heading of the nose, rad.
     pub heading: f64,
+    /// Speed at which that moves, rad/s.
+    pub turning: f64,
 }
 
 /// How the height is flown.
@@ -148,7 +150,7 @@ impl Guidance {
         StickTarget {
             roll: roll / self.stick_angle,
             pitch: pitch / self.stick_angle,
-            yaw: self.rudder(seen, course.heading),
+            yaw: self.rudder(seen, course.heading, course.turning),
             throttle: self.climb(course.vertical, roll.cos() * pitch.cos(), dt),
             ..Default::default()
         }
@@ -180,9 +182,9 @@ impl Guidance {
         self.throttle
     }
 
-    /// Yaw stick that turns the nose to `heading`.
-    pub fn rudder(&self, seen: &Seen, heading: f64) -> f64 {
-        (HEADING_GAIN * super::wrap(heading - seen.yaw) / self.stick_yaw_rate).clamp(-1.0, 1.0)
+    /// Yaw stick that turns the nose to `heading`, which itself moves at `turning` rad/s.
+    pub fn rudder(&self, seen: &Seen, heading: f64, turning: f64) -> f64 {
+        ((HEADING_GAIN * super::wrap(heading - seen.yaw) + turning) / self.stick_yaw_rate).clamp(-1.0, 1.0)
     }
 }
 

@@ -6,7 +6,7 @@ use sophie_control::mode::Mode;
 use sophie_control::position_hold::{CLIMB_MAX, SPEED_MAX};
 
 use super::air::{REACHED, REACHED_SPEED};
-use super::mission::{HEADING, Mission, Phase, Progress, View};
+use super::mission::{Mission, Phase, Progress, View};
 use super::stick_dynamics::StickTarget;
 
 /// Throttle of the centred stick, and the half width of its zone without a climb with some margin.
@@ -101,7 +101,7 @@ impl Mission {
     fn centred(&mut self, v: &View<'_>) -> StickTarget {
         self.guidance.stand(CENTRE);
         StickTarget {
-            yaw: self.guidance.rudder(&v.seen, HEADING),
+            yaw: self.guidance.rudder(&v.seen, self.heading, 0.0),
             throttle: CENTRE,
             ..StickTarget::default()
         }

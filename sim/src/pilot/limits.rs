@@ -11,6 +11,8 @@ pub fn of(step: &Step) -> f64 {
         // A hold that is lost is flown by hand, and tried again.
         Step::Hover { seconds } => 2.0 * seconds + 20.0,
         Step::Roll { seconds, .. } => 2.0 * seconds + 30.0,
+        // A half turn takes 7 s; gusts may push the nose off for a while.
+        Step::Yaw { seconds, .. } => 2.0 * seconds + 30.0,
         Step::FlyToPipe => 90.0,
         // With room for several tries.
         Step::Touch => 180.0,

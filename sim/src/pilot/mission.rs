@@ -3,14 +3,16 @@
 use glam::DVec2;
 use sophie_control::mode::{Mode, Reason};
 
-use super::Seen;
 use super::guidance::{Course, Guidance, Vertical};
 use super::limits;
 use super::stick_dynamics::StickTarget;
+use super::{Seen, wrap};
 use crate::scenario::{Assist, Scenario, Step};
 
-/// Heading flown throughout, rad: north, along the pipe.
-pub const HEADING: f64 = 0.0;
+/// Heading flown but after a turn, rad: north, along the pipe.
+const HEADING: f64 = 0.0;
+/// Speed at which the nose is swept round, rad/s.
+const SWEEP: f64 = 0.5;
 
 /// Inputs of a step.
 #[derive(Clone, Copy, Debug)]
@@ -94,10 +96,16 @@ pub struct Mission {
     pub(super) pipe: DVec2,
     pub(super) pipe_top: f64,
     pub(super) pipe_radius: f64,
+    /// How far beside the crown he sets down, m, and how fast he may drift across then, m/s.
+    pub(super) within: f64,
+    pub(super) drift: f64,
     pub(super) stick_angle: f64,
     pub(super) arm_switch: bool,
     pub(super) perch_switch: bool,
     pub(super) hold_switch: bool,
+    /// Heading flown now, and the one that it is swept to, rad.
+    pub(super) heading: f64,
+    pub(super) heading_goal: f64,
     pub(super) assist: Assist,
     pub(super) phase: Phase,
     /// Time since the step and the phase began, s.
@@ -110,7 +118,7 @@ pub struct Mission {
     pub(super) height: f64,
     /// Throttle set by hand when not flying.
     pub(super) throttle: f64,
-    /// Failed landings on the pipe.
+    /// Touches that came to nothing.
     pub(super) missed: u32,
     /// The displayed reason of the failsafe that ended the flight.
     pub(super) trouble: Option<String>,
@@ -119,16 +127,20 @@ pub struct Mission {
 impl Mission {
     /// A pilot for `scenario`.
     pub fn new(scenario: &Scenario) -> Self {
-        let [north, east] = scenario.world.pipe_position;
+        let pipe = scenario.pilot.believes.pipe(&scenario.world);
         Self {
             guidance: Guidance::new(&scenario.params, scenario.pilot.delay),
-            pipe: DVec2::new(north, east),
-            pipe_top: scenario.world.pipe_top,
-            pipe_radius: 0.5 * scenario.world.pipe_diameter,
+            pipe: DVec2::from_array(pipe.position),
+            pipe_top: pipe.top,
+            pipe_radius: 0.5 * pipe.diameter,
+            within: super::perch::within(&scenario.pilot, pipe.diameter),
+            drift: scenario.pilot.touch_drift,
             stick_angle: f64::from(scenario.params.stick_angle),
             arm_switch: false,
             perch_switch: false,
             hold_switch: false,
+            heading: HEADING,
+            heading_goal: HEADING,
             assist: scenario.pilot.assist,
             phase: Phase::Start,
             step_time: 0.0,
@@ -169,6 +181,10 @@ impl Mission {
         if let Some(why) = self.stopped(step, view) {
             return Progress::Failed(why);
         }
+        if matches!(step, Step::FlyToPipe) {
+            self.heading_goal = HEADING;
+        }
+        self.sweep(dt);
         let progress = match *step {
             Step::Arm => self.arm(view),
             Step::TakeOff { height } => self.take_off(view, height, dt),
@@ -177,6 +193,7 @@ impl Mission {
                 self.fly_to_held(view, DVec2::new(north, east), height, dt)
             }
             Step::Hover { seconds } => self.hover(view, seconds, dt),
+            Step::Yaw { heading, seconds } => self.yaw(view, heading, seconds, dt),
             Step::Roll { angle, seconds } => self.roll(view, angle, seconds, dt),
             Step::FlyTo { north, east, height } => self.fly_to(view, DVec2::new(north, east), height, dt),
             Step::FlyToPipe => self.fly_to_pipe(view, dt),
@@ -210,6 +227,7 @@ impl Mission {
             Step::TakeOff { .. }
             | Step::Hover { .. }
             | Step::Roll { .. }
+            | Step::Yaw { .. }
             | Step::FlyTo { .. }
             | Step::FlyToPipe
             | Step::Touch
@@ -264,14 +282,14 @@ impl Mission {
     }
 
     pub(super) fn go_to(&mut self, v: &View<'_>, target: DVec2, height: f64, dt: f64) -> StickTarget {
-        self.guidance
-            .steer(&v.seen, &course(target, Vertical::Height(height)), dt)
+        let course = self.course(target, Vertical::Height(height));
+        self.guidance.steer(&v.seen, &course, dt)
     }
 
     /// Climbs at `rate` m/s over `target`; negative: sinks.
     pub(super) fn climb_over(&mut self, v: &View<'_>, target: DVec2, rate: f64, dt: f64) -> StickTarget {
-        self.guidance
-            .steer(&v.seen, &course(target, Vertical::Climb(rate)), dt)
+        let course = self.course(target, Vertical::Climb(rate));
+        self.guidance.steer(&v.seen, &course, dt)
     }
 
     /// Sticks centred, throttle towards `goal` at `rate` 1/s.
@@ -306,6 +324,11 @@ impl Mission {
                 self.missed,
                 v.shown()
             ),
+            Step::Yaw { heading, .. } => format!(
+                "heading {:+.0} deg of {:+.0} deg",
+                v.seen.yaw.to_degrees(),
+                heading.to_degrees()
+            ),
             Step::FlyTo { north, east, height } => {
                 let away = off(DVec2::new(north, east)).hypot(v.height() - height);
                 format!("{away:.2} m from the point, {}", v.shown())
@@ -314,13 +337,26 @@ impl Mission {
             _ => v.shown(),
         }
     }
-}
 
-/// To `target` (north, east, m), nose at [`HEADING`].
-fn course(target: DVec2, vertical: Vertical) -> Course {
-    Course {
-        target,
-        vertical,
-        heading: HEADING,
+    /// Moves the heading flown towards its goal for `dt` s.
+    fn sweep(&mut self, dt: f64) {
+        let left = wrap(self.heading_goal - self.heading);
+        self.heading = wrap(self.heading + left.clamp(-SWEEP * dt, SWEEP * dt));
+    }
+
+    /// Speed at which the heading flown moves, rad/s.
+    fn sweeping(&self) -> f64 {
+        let left = wrap(self.heading_goal - self.heading);
+        if left == 0.0 { 0.0 } else { SWEEP.copysign(left) }
+    }
+
+    /// To `target` (north, east, m), nose at the heading flown.
+    fn course(&self, target: DVec2, vertical: Vertical) -> Course {
+        Course {
+            target,
+            vertical,
+            heading: self.heading,
+            turning: self.sweeping(),
+        }
     }
 }

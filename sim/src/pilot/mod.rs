@@ -24,7 +24,6 @@ mod toy;
 use std::collections::VecDeque;
 
 use glam::DVec3;
-use rand_pcg::Pcg64Mcg;
 use sophie_control::mode::Mode;
 use sophie_control::rc::CHANNELS;
 
@@ -105,9 +104,9 @@ pub struct Pilot {
 }
 
 impl Pilot {
-    /// A pilot for `scenario`, with his own random numbers.
+    /// A pilot for `scenario`.
     #[must_use]
-    pub fn new(scenario: &Scenario, rng: Pcg64Mcg) -> Self {
+    pub fn new(scenario: &Scenario) -> Self {
         let limits = &scenario.pilot;
         Self {
             steps: scenario.steps.clone(),
@@ -116,7 +115,7 @@ impl Pilot {
             outcome: None,
             elapsed: 0.0,
             telemetry: Telemetry::default(),
-            perception: Perception::new(limits.delay, limits.eye_noise, rng),
+            perception: Perception::new(limits.delay, limits.eye_noise, scenario.streams()),
             display: VecDeque::new(),
             display_delay: (limits.delay * FRAME_HZ) as usize,
             mission: Mission::new(scenario),
@@ -139,7 +138,7 @@ impl Pilot {
         }
         if self.outcome.is_none()
             && self.index > 0
-            && let Some(why) = self.referee.judge(&seen, mission::HEADING, dt)
+            && let Some(why) = self.referee.judge(&seen, self.mission.heading, dt)
         {
             self.fail(&why, &mut out);
         }

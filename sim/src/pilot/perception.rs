@@ -7,6 +7,7 @@ use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 
 use super::Seen;
+use crate::streams::Streams;
 
 /// Correlation time of the visual error, s (assumed).
 const ERROR_TIME: f64 = 0.5;
@@ -29,11 +30,11 @@ pub struct Perception {
 
 impl Perception {
     /// A view `delay` s late with an RMS error of `noise` m.
-    pub fn new(delay: f64, noise: f64, rng: Pcg64Mcg) -> Self {
+    pub fn new(delay: f64, noise: f64, streams: Streams) -> Self {
         Self {
             delay,
             noise,
-            rng,
+            rng: streams.of("eyes"),
             position_error: DVec3::ZERO,
             velocity_error: DVec3::ZERO,
             yaw_error: 0.0,

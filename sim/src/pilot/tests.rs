@@ -90,6 +90,43 @@ fn a_step_of_3_m_settles() {
 }
 
 #[test]
+fn the_nose_turns_to_any_heading_stays_there_and_is_back_at_the_pipe() {
+    let degrees = f64::to_radians;
+    for heading in [90.0, -170.0] {
+        let yaw = Step::Yaw {
+            heading: degrees(heading),
+            seconds: 3.0,
+        };
+        let away = Step::FlyTo {
+            north: 1.0,
+            east: 1.0,
+            height: 3.0,
+        };
+        let s = scenario(6, &with(&[yaw, away, Step::FlyToPipe, Step::Touch]));
+        let mut toy = Toy::new(&s);
+        let (mut step, mut turned, mut kept, mut farthest) = (0, false, 0.0_f64, 0.0_f64);
+        toy.fly(120.0, |toy, out| {
+            step = out.step;
+            let off = wrap(toy.seen.yaw - degrees(heading)).abs();
+            turned |= step == 2 && off < degrees(5.0);
+            if step == 2 {
+                farthest = farthest.max(toy.seen.position.truncate().length());
+            }
+            if step == 3 {
+                kept = kept.max(off);
+            }
+        });
+        let outcome = toy.pilot.outcome().unwrap();
+        assert!(outcome.accomplished, "{heading}: {outcome:?}");
+        assert!(
+            turned && kept < degrees(8.0) && farthest < 0.6,
+            "{kept} {farthest}"
+        );
+        assert!(toy.seen.yaw.abs() < degrees(5.0), "{}", toy.seen.yaw);
+    }
+}
+
+#[test]
 fn the_touch_is_within_6_cm_of_the_crown() {
     let mut worst: f64 = 0.0;
     for seed in 10..22 {

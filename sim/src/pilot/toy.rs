@@ -1,8 +1,6 @@
 //! A vehicle just good enough to try the pilot on: a point mass with lags, the real mode logic, a made-up grip.
 
 use glam::{DVec2, DVec3};
-use rand::SeedableRng;
-use rand_pcg::Pcg64Mcg;
 use sophie_control::grip::GripState;
 use sophie_control::grip::{ArmGrip, ArmState};
 use sophie_control::math::GRAVITY;
@@ -53,10 +51,8 @@ pub struct Toy {
 
 impl Toy {
     pub fn new(scenario: &Scenario) -> Self {
-        let mut rng = Pcg64Mcg::seed_from_u64(scenario.seed);
-        let gust_rng = Pcg64Mcg::from_rng(&mut rng);
         Self {
-            pilot: Pilot::new(scenario, rng),
+            pilot: Pilot::new(scenario),
             seen: Seen {
                 position: DVec3::new(0.0, 0.0, -BELLY),
                 ..Default::default()
@@ -70,7 +66,7 @@ impl Toy {
             deaf: false,
             spin: 0.0,
             scenario: scenario.clone(),
-            gust: Gust::new(scenario.world.gust_force, 0.0, gust_rng),
+            gust: Gust::new(scenario.world.gust_force, 0.0, scenario.streams()),
             logic: ModeLogic::new(&scenario.params),
             parser: CrsfParser::new(),
             setpoint: DVec2::ZERO,

@@ -4,6 +4,8 @@ use glam::DVec3;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 
+use crate::streams::Streams;
+
 /// Correlation time, s (assumed).
 const FORCE_TIME: f64 = 1.0;
 /// Correlation time, s (assumed).
@@ -28,12 +30,12 @@ pub struct Gust {
 impl Gust {
     /// `force_rms` in N (world axes; half of it vertically), `moment_rms` in N·m (body axes).
     #[must_use]
-    pub fn new(force_rms: f64, moment_rms: f64, rng: Pcg64Mcg) -> Self {
+    pub fn new(force_rms: f64, moment_rms: f64, streams: Streams) -> Self {
         Self {
             force_rms,
             moment_rms,
             steady: DVec3::ZERO,
-            rng,
+            rng: streams.of("gust"),
             force: DVec3::ZERO,
             moment: DVec3::ZERO,
             count: 0,
@@ -90,13 +92,13 @@ mod tests {
 
     #[test]
     fn a_wind_from_the_east_pushes_west() {
-        let wind = Gust::new(0.0, 0.0, Pcg64Mcg::new(7)).in_wind(2.0, 90_f64.to_radians());
+        let wind = Gust::new(0.0, 0.0, Streams::new(7)).in_wind(2.0, 90_f64.to_radians());
         assert!((wind.force() - DVec3::new(0.0, -2.0, 0.0)).length() < 1e-12);
     }
 
     #[test]
     fn gusts_have_the_stated_rms() {
-        let mut g = Gust::new(0.35, 0.015, Pcg64Mcg::new(7));
+        let mut g = Gust::new(0.35, 0.015, Streams::new(7));
         let (mut force, mut moment, n) = (0.0, 0.0, 4_000_000);
         for _ in 0..n {
             g.step(STEP);

@@ -19,7 +19,6 @@ pub mod servo_power;
 pub mod tendon;
 
 use glam::{DQuat, DVec3};
-use rand_pcg::Pcg64Mcg;
 use sophie_control::wrench::PerArm;
 
 use self::arm::{ArmPrint, ArmSpec, TIP};
@@ -126,7 +125,7 @@ pub fn beam_spec(vehicle: &Vehicle, arm: usize) -> BeamSpec {
 impl Plant {
     /// At rest on the ground at the origin, nose north.
     #[must_use]
-    pub fn new(scenario: &Scenario, rng: Pcg64Mcg) -> Self {
+    pub fn new(scenario: &Scenario) -> Self {
         let v = &scenario.vehicle;
         let arms = match v.arm_bending {
             ArmBending::Hinge => Arms::Hinged(Box::new(std::array::from_fn(|i| {
@@ -138,7 +137,7 @@ impl Plant {
         };
         Self {
             arms,
-            base: Base::new(scenario, rng),
+            base: Base::new(scenario),
             push: DVec3::ZERO,
             moment: DVec3::ZERO,
         }
@@ -261,7 +260,7 @@ impl Plant {
 }
 
 impl Base {
-    fn new(scenario: &Scenario, rng: Pcg64Mcg) -> Self {
+    fn new(scenario: &Scenario) -> Self {
         let (v, w) = (&scenario.vehicle, &scenario.world);
         let chi = f64::from(v.configuration.chi());
         let radius = 0.5 * w.pipe_diameter;
@@ -269,8 +268,12 @@ impl Base {
             rotor: Rotor::new(i, chi, v.rotor),
             tendon: Tendon::new(
                 ServoSpec::from(v.servo).measured(&scenario.params, i),
-                TendonSpec::of(v.arm_bending),
-            ),
+                TendonSpec {
+                    slack_error: scenario.faults.tendon_slack[i],
+                    ..TendonSpec::of(v.arm_bending)
+                },
+            )
+            .breaking(scenario.faults.tendon[i], scenario.faults.at),
             pressure: 0.0,
         };
         let body = match v.arm_bending {
@@ -290,7 +293,8 @@ impl Base {
             },
             limbs: std::array::from_fn(limb),
             battery: Battery::new(v.battery_charge),
-            gust: Gust::new(w.gust_force, w.gust_moment, rng).in_wind(w.steady_wind, w.steady_wind_from),
+            gust: Gust::new(w.gust_force, w.gust_moment, scenario.streams())
+                .in_wind(w.steady_wind, scenario.wind_from()),
             ground_belly: Belly::default(),
             pipe_belly: Belly::default(),
             pipe: Pipe {

@@ -130,6 +130,15 @@ impl Default for TendonSpec {
     }
 }
 
+/// A fault of a tendon or its servo.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TendonBreak {
+    /// The thread is torn.
+    Torn,
+    /// The servo stays where it is.
+    Stuck,
+}
+
 /// Servo, reel and tendon of one arm.
 #[derive(Clone, Debug)]
 pub struct Tendon {
@@ -140,6 +149,8 @@ pub struct Tendon {
     to_next_frame: f64,
     last_tilt: Option<f64>,
     tension: f64,
+    /// What breaks, and in how many s.
+    breaks: Option<(TendonBreak, f64)>,
 }
 
 impl Tendon {
@@ -153,7 +164,22 @@ impl Tendon {
             to_next_frame: 0.0,
             last_tilt: None,
             tension: 0.0,
+            breaks: None,
         }
+    }
+
+    /// The same, breaking after `seconds`.
+    #[must_use]
+    pub fn breaking(self, broken: Option<TendonBreak>, seconds: f64) -> Self {
+        let breaks = broken.map(|broken| (broken, seconds));
+        Self { breaks, ..self }
+    }
+
+    /// What is broken, `dt` s after the last look.
+    fn broken(&mut self, dt: f64) -> Option<TendonBreak> {
+        let (broken, seconds) = self.breaks.as_mut()?;
+        *seconds -= dt;
+        (*seconds <= 0.0).then_some(*broken)
     }
 
     /// Advances by `dt` s under pulses of `pulse_us` µs (0: none) at tilt `alpha` rad; returns the moment on the tilt,
@@ -165,7 +191,10 @@ impl Tendon {
             self.target = self.commanded(pulse_us);
         }
         let before = self.position;
-        self.position += self.speed(dt) * dt;
+        let broken = self.broken(dt);
+        if broken != Some(TendonBreak::Stuck) {
+            self.position += self.speed(dt) * dt;
+        }
         let tilt_change = alpha - self.last_tilt.replace(alpha).unwrap_or(alpha);
 
         let TendonSpec {
@@ -178,7 +207,7 @@ impl Tendon {
         } = self.spec;
         let stretch = r * self.position - slack_error - h * (reference_tilt - alpha);
         let stretch_rate = (r * (self.position - before) + h * tilt_change) / dt;
-        self.tension = if stretch > 0.0 {
+        self.tension = if stretch > 0.0 && broken != Some(TendonBreak::Torn) {
             (stiffness * stretch + damping * stretch_rate).max(0.0)
         } else {
             0.0
@@ -243,6 +272,28 @@ mod tests {
 
     fn run(t: &mut Tendon, pulse: f64, alpha: f64, seconds: f64) -> f64 {
         (0..(seconds / DT) as u64).fold(0.0, |_, _| t.step(DT, pulse, alpha))
+    }
+
+    #[test]
+    fn a_torn_tendon_pulls_nothing_and_a_stuck_servo_stays() {
+        let taut = |broken| {
+            let mut t = paper().breaking(broken, 1.0);
+            run(&mut t, 1500.0, 0.0, 0.9);
+            let pulled = t.tension();
+            run(&mut t, 1500.0, 0.0, 0.2);
+            let held = (pulled, t.servo_angle());
+            run(&mut t, 1000.0, 0.0, 0.9);
+            (held, (t.tension(), t.servo_angle()))
+        };
+        let ((pulled, at), (after, then)) = taut(Some(TendonBreak::Torn));
+        assert!(pulled > 1.0 && after == 0.0 && then < at);
+        let ((pulled, at), (after, then)) = taut(Some(TendonBreak::Stuck));
+        assert!(
+            (after / pulled - 1.0).abs() < 0.05 && (then - at).abs() < 0.3,
+            "{pulled} {after} {at} {then}"
+        );
+        let ((_, at), (_, then)) = taut(None);
+        assert!(at - then > 0.5);
     }
 
     fn paper() -> Tendon {

@@ -8,8 +8,8 @@ use sophie_control::wrench::Configuration;
 use sophie_mixers::Variant;
 
 use super::{
-    ArmBending, Assist, Expect, Overrides, Pilot, Scenario, Sensors, ServoProfile, Step, Vehicle, World,
-    read_steps,
+    ArmBending, Assist, Assumed, Expect, Faults, Overrides, Pilot, Scenario, Sensors, ServoProfile, Step,
+    Vehicle, World, read_steps,
 };
 use crate::plant::arm::TABLE_1;
 use crate::plant::body::BodySpec;
@@ -46,7 +46,7 @@ impl Default for World {
             gust_force: 0.10,
             gust_moment: 0.004,
             steady_wind: 0.0,
-            steady_wind_from: 0.0,
+            steady_wind_from: None,
             pipe_diameter: 0.30,
             pipe_position: [3.0, 0.0],
             pipe_top: 1.5,
@@ -62,6 +62,9 @@ impl Default for Pilot {
             bandwidth: 2.0,
             eye_noise: 0.01,
             assist: Assist::None,
+            touch_within: None,
+            touch_drift: 0.08,
+            believes: Assumed::default(),
         }
     }
 }
@@ -101,6 +104,7 @@ impl Scenario {
             arms: ArmChoice::All,
             world: World::default(),
             sensors: Sensors::default(),
+            faults: Faults::default(),
             pilot: Pilot::default(),
             steps: Vec::new(),
             expect: Expect::default(),

@@ -6,7 +6,8 @@ use sophie_control::rc::ArmChoice;
 use sophie_control::wrench::{Configuration, PerArm};
 use sophie_mixers::Variant;
 
-use super::{ArmBending, Assist, PositionSensor, Scenario, ServoProfile};
+use super::faults;
+use super::{Assist, PositionSensor, Scenario, ServoProfile};
 
 /// One key.
 pub struct Key {
@@ -20,6 +21,8 @@ pub struct Key {
 pub enum Kind {
     /// A number.
     Number(Range, fn(&mut Scenario) -> &mut f64),
+    /// A number; where the file has none another value takes its place.
+    Optional(Range, fn(&mut Scenario) -> &mut Option<f64>),
     /// One number per arm.
     PerArm(Range, fn(&mut Scenario) -> &mut PerArm<f64>),
     /// Roll, pitch and yaw, each with its range.
@@ -28,6 +31,8 @@ pub enum Kind {
     Flag(fn(&mut Scenario) -> &mut bool),
     /// One of a few words.
     Choice(&'static [&'static str], fn(&mut Scenario, &str)),
+    /// One of a few words per arm, set by the arm's index.
+    PerArmChoice(&'static [&'static str], fn(&mut Scenario, usize, &str)),
     /// A whole number from 0.
     Seed(fn(&mut Scenario) -> &mut u64),
     /// A line of text.
@@ -90,9 +95,6 @@ pub const POSITION_SENSORS: &[&str] = &["none", "pose"];
 /// Words for what the pilot leaves to the vehicle.
 pub const ASSISTS: &[&str] = &["none", "hold"];
 
-/// Words for how the arms bend.
-pub const BENDINGS: &[&str] = &["hinge", "beam"];
-
 /// Infill that Eq. 1 of the paper covers.
 pub const INFILL: Range = Range::new(4.0, 10.0, "%");
 /// Gain on Eq. 1's elastic term: 1 is the literal equation, Table III needs 5.0 to 8.4.
@@ -108,6 +110,11 @@ pub fn seed(number: f64) -> Option<u64> {
     let whole = number.fract() == 0.0 && (0.0..=SEED_MAX).contains(&number);
     whole.then_some(number as u64)
 }
+
+/// Of the pipe: north or east, height of its top, diameter.
+const PIPE_PLACE: Range = Range::new(-20.0, 20.0, "m");
+const PIPE_TOP: Range = Range::new(0.5, 10.0, "m");
+const PIPE_DIAMETER: Range = Range::new(0.15, 0.6, "m");
 
 const DEGREE: f64 = PI / 180.0;
 const PERCENT: f64 = 0.01;
@@ -164,23 +171,6 @@ pub fn assist(word: &str) -> Assist {
         Assist::Hold
     } else {
         Assist::None
-    }
-}
-
-/// A word from [`BENDINGS`].
-pub fn bending(word: &str) -> ArmBending {
-    if word == "beam" {
-        ArmBending::Beam
-    } else {
-        ArmBending::Hinge
-    }
-}
-
-/// The word of how the arms bend.
-pub const fn bending_word(bending: ArmBending) -> &'static str {
-    match bending {
-        ArmBending::Hinge => "hinge",
-        ArmBending::Beam => "beam",
     }
 }
 
@@ -241,6 +231,25 @@ macro_rules! number {
     };
 }
 
+macro_rules! optional {
+    ($name:literal, $range:expr, $($field:tt)+) => {
+        Key { name: $name, kind: Kind::Optional($range, |s| &mut s.$($field)+) }
+    };
+}
+
+macro_rules! fault {
+    ($name:literal, $words:expr, $field:ident, $read:expr) => {
+        Key {
+            name: $name,
+            kind: Kind::PerArmChoice($words, |s, arm, word| {
+                if let Some(slot) = s.faults.$field.get_mut(arm) {
+                    *slot = $read(word);
+                }
+            }),
+        }
+    };
+}
+
 /// All keys but those of `steps` and `params`.
 pub const KEYS: &[Key] = &[
     Key {
@@ -269,10 +278,6 @@ pub const KEYS: &[Key] = &[
     Key {
         name: "vehicle.arm_coefficients",
         kind: Kind::PerArm(Range::new(-10.0, 30.0, ""), |s| &mut s.vehicle.arm_coefficients),
-    },
-    Key {
-        name: "vehicle.arm_bending",
-        kind: Kind::Choice(BENDINGS, |s, v| s.vehicle.arm_bending = bending(v)),
     },
     // Where two terms hold the ratio of tendon to thrust within 3 %.
     number!("vehicle.arm_taper", Range::new(0.25, 2.0, ""), vehicle.arm_taper),
@@ -348,27 +353,15 @@ pub const KEYS: &[Key] = &[
         Range::new(0.0, 5.0, "N"),
         world.steady_wind
     ),
-    number!(
+    optional!(
         "world.steady_wind_from_deg",
         Range::new(-360.0, 360.0, "deg").times(DEGREE),
         world.steady_wind_from
     ),
-    number!(
-        "world.pipe_diameter_m",
-        Range::new(0.15, 0.6, "m"),
-        world.pipe_diameter
-    ),
-    number!(
-        "world.pipe_north_m",
-        Range::new(-20.0, 20.0, "m"),
-        world.pipe_position[0]
-    ),
-    number!(
-        "world.pipe_east_m",
-        Range::new(-20.0, 20.0, "m"),
-        world.pipe_position[1]
-    ),
-    number!("world.pipe_top_m", Range::new(0.5, 10.0, "m"), world.pipe_top),
+    number!("world.pipe_diameter_m", PIPE_DIAMETER, world.pipe_diameter),
+    number!("world.pipe_north_m", PIPE_PLACE, world.pipe_position[0]),
+    number!("world.pipe_east_m", PIPE_PLACE, world.pipe_position[1]),
+    number!("world.pipe_top_m", PIPE_TOP, world.pipe_top),
     number!(
         "world.pipe_friction",
         Range::new(0.05, 1.5, ""),
@@ -395,6 +388,44 @@ pub const KEYS: &[Key] = &[
         name: "pilot.assist",
         kind: Kind::Choice(ASSISTS, |s, v| s.pilot.assist = assist(v)),
     },
+    optional!(
+        "pilot.touch_within_m",
+        Range::new(0.005, 0.15, "m"),
+        pilot.touch_within
+    ),
+    number!(
+        "pilot.touch_drift_m_s",
+        Range::new(0.01, 0.5, "m/s"),
+        pilot.touch_drift
+    ),
+    optional!("pilot.believes_pipe_north_m", PIPE_PLACE, pilot.believes.north),
+    optional!("pilot.believes_pipe_east_m", PIPE_PLACE, pilot.believes.east),
+    optional!("pilot.believes_pipe_top_m", PIPE_TOP, pilot.believes.top),
+    optional!(
+        "pilot.believes_pipe_diameter_m",
+        PIPE_DIAMETER,
+        pilot.believes.diameter
+    ),
+    number!("faults.at_s", Range::new(0.0, 3600.0, "s"), faults.at),
+    fault!("faults.pressure", faults::PRESSURE, pressure, faults::pressure),
+    fault!("faults.tilt", faults::TILT, tilt, faults::tilt),
+    fault!("faults.tendon", faults::TENDON, tendon, faults::tendon),
+    Key {
+        name: "faults.pressure_gain",
+        kind: Kind::PerArm(Range::new(0.2, 2.0, ""), |s| &mut s.faults.pressure_gain),
+    },
+    Key {
+        name: "faults.tilt_offset_deg",
+        kind: Kind::PerArm(Range::new(-20.0, 20.0, "deg").times(DEGREE), |s| {
+            &mut s.faults.tilt_offset
+        }),
+    },
+    Key {
+        name: "faults.tendon_slack_mm",
+        kind: Kind::PerArm(Range::new(-10.0, 20.0, "mm").times(1e-3), |s| {
+            &mut s.faults.tendon_slack
+        }),
+    },
     Key {
         name: "expect.accomplished",
         kind: Kind::Flag(|s| &mut s.expect.accomplished),
@@ -406,4 +437,6 @@ pub const KEYS: &[Key] = &[
 ];
 
 /// Tables of a file; `steps` is a list.
-pub const TABLES: &[&str] = &["vehicle", "world", "sensors", "pilot", "params", "expect"];
+pub const TABLES: &[&str] = &[
+    "vehicle", "world", "sensors", "faults", "pilot", "params", "expect",
+];

@@ -10,7 +10,7 @@ use sophie_mixers::Variant;
 
 use super::error::{Place, ScenarioError};
 use super::read::Source;
-use super::{ArmBending, Assist, PositionSensor, Scenario};
+use super::{Assist, PositionSensor, Scenario};
 
 /// Refuses devices and wrong files.
 const MAX_BYTES: u64 = 1 << 20;
@@ -23,8 +23,6 @@ pub struct Overrides {
     pub infill: Option<f64>,
     /// On Eq. 1's elastic term.
     pub gain_k: Option<f64>,
-    /// How the arms bend.
-    pub arm_bending: Option<ArmBending>,
     /// Sense of rotation.
     pub configuration: Option<Configuration>,
     /// Allocation.
@@ -48,7 +46,6 @@ impl Overrides {
         }
         set(&mut scenario.vehicle.infill, self.infill);
         set(&mut scenario.vehicle.gain_k, self.gain_k);
-        set(&mut scenario.vehicle.arm_bending, self.arm_bending);
         set(&mut scenario.vehicle.configuration, self.configuration);
         set(&mut scenario.mixer, self.mixer);
         set(&mut scenario.arms, self.arms);

@@ -6,6 +6,7 @@
 mod arm;
 mod defaults;
 mod error;
+pub mod faults;
 pub mod keys;
 mod load;
 mod nearest;
@@ -18,6 +19,7 @@ mod tests;
 
 pub use defaults::MISSION;
 pub use error::{Place, ScenarioError};
+pub use faults::Faults;
 pub use load::Overrides;
 pub use steps::{STEPS, StepKind, StepNumber};
 
@@ -28,6 +30,7 @@ use sophie_tasks::start::StartCause;
 
 use crate::plant::body::BodySpec;
 use crate::plant::rotor::RotorSpec;
+use crate::streams::Streams;
 
 /// A flight to fly.
 #[derive(Clone, Debug)]
@@ -50,12 +53,29 @@ pub struct Scenario {
     pub world: World,
     /// Sensors beside those of every board.
     pub sensors: Sensors,
+    /// Parts that fail or are off.
+    pub faults: Faults,
     /// The pilot's limits.
     pub pilot: Pilot,
     /// The pilot's steps, in order.
     pub steps: Vec<Step>,
     /// Expected outcome, for tests.
     pub expect: Expect,
+}
+
+impl Scenario {
+    /// The random numbers of its flight.
+    #[must_use]
+    pub const fn streams(&self) -> Streams {
+        Streams::new(self.seed)
+    }
+
+    /// Where the steady wind comes from, clockwise from north, rad.
+    #[must_use]
+    pub fn wind_from(&self) -> f64 {
+        let drawn = || self.streams().within("wind", 0.0, core::f64::consts::TAU);
+        self.world.steady_wind_from.unwrap_or_else(drawn)
+    }
 }
 
 /// The vehicle as built, for the plant.
@@ -69,7 +89,7 @@ pub struct Vehicle {
     pub configuration: Configuration,
     /// A1, A2, B1, B2 of Eq. 1, °/N, °/(N %), °/N², °/(N² %): Table I or a fitted arm.
     pub arm_coefficients: [f64; 4],
-    /// How the arms bend.
+    /// How the arms bend: no file says it.
     pub arm_bending: ArmBending,
     /// Bending stiffness of a beam's tip over its root's.
     pub arm_taper: f64,
@@ -96,7 +116,7 @@ pub struct Vehicle {
 /// How the plant's arms bend.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArmBending {
-    /// Rigid, on a hinge at the centre line.
+    /// Rigid, on a hinge at the centre line: the paper's arm, for its tables.
     Hinge,
     /// Along their length.
     Beam,
@@ -120,8 +140,8 @@ pub struct World {
     pub gust_moment: f64,
     /// Force of the steady wind, N.
     pub steady_wind: f64,
-    /// Where it comes from, clockwise from north, rad.
-    pub steady_wind_from: f64,
+    /// Where it comes from, clockwise from north, rad; `None`: drawn by the seed.
+    pub steady_wind_from: Option<f64>,
     /// Outer, m.
     pub pipe_diameter: f64,
     /// North and east of the perch spot, m; the pipe runs north-south.
@@ -143,6 +163,50 @@ pub struct Pilot {
     pub eye_noise: f64,
     /// What he leaves to the vehicle where its mode takes it.
     pub assist: Assist,
+    /// How far beside the crown he sets down, m; `None`: what the capture map has held on a pipe of the diameter that he
+    /// takes it to have.
+    pub touch_within: Option<f64>,
+    /// How fast he may drift across the pipe then, m/s.
+    pub touch_drift: f64,
+    /// What he takes the pipe to be.
+    pub believes: Assumed,
+}
+
+/// What the pilot takes the pipe to be, each value `None` where it is the true one.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Assumed {
+    /// North of the perch spot, m.
+    pub north: Option<f64>,
+    /// East of it, m.
+    pub east: Option<f64>,
+    /// Height of the pipe's top, m.
+    pub top: Option<f64>,
+    /// Outer diameter, m.
+    pub diameter: Option<f64>,
+}
+
+/// A pipe as the pilot takes it to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AssumedPipe {
+    /// North and east of the perch spot, m.
+    pub position: [f64; 2],
+    /// Height of its top, m.
+    pub top: f64,
+    /// Outer diameter, m.
+    pub diameter: f64,
+}
+
+impl Assumed {
+    /// The pipe of `world` with what is assumed otherwise.
+    #[must_use]
+    pub fn pipe(&self, world: &World) -> AssumedPipe {
+        let [north, east] = world.pipe_position;
+        AssumedPipe {
+            position: [self.north.unwrap_or(north), self.east.unwrap_or(east)],
+            top: self.top.unwrap_or(world.pipe_top),
+            diameter: self.diameter.unwrap_or(world.pipe_diameter),
+        }
+    }
 }
 
 /// What the pilot leaves to the vehicle.
@@ -223,6 +287,13 @@ pub enum Step {
     Open,
     /// Spool up, release the tendons, wait for free arms, climb 1 m.
     Release,
+    /// Turn the nose and keep it there; later steps keep it too, until the pipe.
+    Yaw {
+        /// Clockwise from north, rad.
+        heading: f64,
+        /// s, from when it is there.
+        seconds: f64,
+    },
     /// Fly to a point.
     FlyTo {
         /// From take-off, m.

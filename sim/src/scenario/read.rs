@@ -11,7 +11,7 @@ use super::keys::{self, KEYS, Key, Kind, Range, TABLES};
 use super::nearest::nearest;
 use super::settings::Setting;
 use super::{Overrides, Scenario, defaults};
-use crate::plant::tendon::{ServoSpec, believe};
+use crate::plant::tendon::ServoSpec;
 
 pub(super) type Result<T> = core::result::Result<T, ScenarioError>;
 pub(super) type Value<'a> = Spanned<DeValue<'a>>;
@@ -114,6 +114,7 @@ impl Source<'_> {
         };
         match kind {
             Kind::Number(range, field) => *field(scenario) = self.number(name, value, range)?,
+            Kind::Optional(range, field) => *field(scenario) = Some(self.number(name, value, range)?),
             Kind::PerArm(range, field) => {
                 let allowed = || format!("four numbers, each {}", range.allowed());
                 let items = value.get_ref().as_array().filter(|a| a.len() == 4);
@@ -144,6 +145,19 @@ impl Source<'_> {
                     scenario,
                     word.ok_or_else(|| self.bad(name, value, words.join(", ")))?,
                 );
+            }
+            Kind::PerArmChoice(words, set) => {
+                let items = value.get_ref().as_array().filter(|a| a.len() == 4);
+                let allowed = || format!("four words, each {}", words.join(", "));
+                let items = items.ok_or_else(|| self.bad(name, value, allowed()))?;
+                for (arm, item) in items.iter().enumerate() {
+                    let word = item.get_ref().as_str().filter(|w| words.contains(w));
+                    set(
+                        scenario,
+                        arm,
+                        word.ok_or_else(|| self.bad(name, item, words.join(", ")))?,
+                    );
+                }
             }
             Kind::Seed(field) => {
                 let seed = as_number(value).and_then(keys::seed);
@@ -200,7 +214,6 @@ fn believe_the_vehicle(scenario: &mut Scenario) {
     let [a1, a2, b1, b2] = vehicle.arm_coefficients.map(|c| c as f32);
     (params.arm_a1, params.arm_a2, params.arm_b1, params.arm_b2) = (a1, a2, b1, b2);
     params.arm_level_share = vehicle.arm_level_share as f32;
-    believe(params, vehicle.arm_bending);
     params.mass = vehicle.body.mass as f32;
     let [roll, pitch, yaw] = vehicle.body.inertia.map(|i| i as f32);
     (params.inertia_roll, params.inertia_pitch, params.inertia_yaw) = (roll, pitch, yaw);

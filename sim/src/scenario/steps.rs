@@ -116,6 +116,18 @@ pub const STEPS: &[StepKind] = &[
         build: |_| Step::Release,
     },
     StepKind {
+        name: "yaw",
+        numbers: &[
+            number(
+                "heading_deg",
+                Range::new(-180.0, 180.0, "deg").times(PI / 180.0),
+                90.0,
+            ),
+            number("seconds", Range::new(0.1, 600.0, "s"), 3.0),
+        ],
+        build: |[heading, seconds, _]| Step::Yaw { heading, seconds },
+    },
+    StepKind {
         name: "fly-to",
         numbers: &[
             number("north_m", PLACE, 0.0),
@@ -166,6 +178,7 @@ impl Step {
             Self::Hold { .. } => "hold",
             Self::Open => "open",
             Self::Release => "release",
+            Self::Yaw { .. } => "yaw",
             Self::FlyTo { .. } => "fly-to",
             Self::Land => "land",
             Self::Disarm => "disarm",
@@ -203,7 +216,7 @@ impl Whereabouts {
             Step::TakeOff { .. } => (&[OnGroundArmed], InAir),
             Step::Hover { .. } if self == OverPipe => (&[OverPipe], OverPipe),
             Step::Hover { .. } | Step::FlyTo { .. } => (&[InAir, OverPipe, Sinking], InAir),
-            Step::Roll { .. } => (&[InAir, OverPipe], InAir),
+            Step::Roll { .. } | Step::Yaw { .. } => (&[InAir, OverPipe], InAir),
             Step::FlyToPipe => (&[InAir], OverPipe),
             Step::Touch => (&[OverPipe], OnPipe),
             Step::Clamp { .. } => (&[OnPipe], Closing),

@@ -1,7 +1,9 @@
 //! Battery voltage divider and current sensor.
 
-use rand::Rng;
-use rand_distr::{Distribution, StandardNormal, Uniform};
+use rand_distr::{Distribution, StandardNormal};
+use rand_pcg::Pcg64Mcg;
+
+use crate::streams::Streams;
 
 /// Of the converter, V.
 const REFERENCE: f64 = 3.3;
@@ -29,59 +31,58 @@ pub struct BatteryInputs {
     voltage_gain: f64,
     current_gain: f64,
     current_offset: f64,
+    rng: Pcg64Mcg,
 }
 
 impl BatteryInputs {
-    /// Errors drawn from `rng`.
-    pub fn new(rng: &mut impl Rng) -> Self {
-        let mut within = |size: f64| Uniform::new(-size, size).map_or(0.0, |u| u.sample(rng));
+    /// Inputs with the errors of `streams`.
+    #[must_use]
+    pub fn new(streams: Streams) -> Self {
+        let within = |what: &str, size: f64| streams.within(&format!("battery.{what}"), -size, size);
         Self {
-            voltage_gain: 1.0 + within(GAIN_ERROR.0),
-            current_gain: 1.0 + within(GAIN_ERROR.1),
-            current_offset: within(OFFSET),
+            voltage_gain: 1.0 + within("voltage", GAIN_ERROR.0),
+            current_gain: 1.0 + within("current", GAIN_ERROR.1),
+            current_offset: within("offset", OFFSET),
+            rng: streams.of("battery"),
         }
     }
 
     /// Counts for a true voltage (V).
-    pub fn voltage(&self, volts: f64, rng: &mut impl Rng) -> u16 {
-        counts(volts * self.voltage_gain / VOLTS_PER_COUNT, rng)
+    pub fn voltage(&mut self, volts: f64) -> u16 {
+        counts(volts * self.voltage_gain / VOLTS_PER_COUNT, &mut self.rng)
     }
 
     /// Counts for a true current (A).
-    pub fn current(&self, amps: f64, rng: &mut impl Rng) -> u16 {
+    pub fn current(&mut self, amps: f64) -> u16 {
         counts(
             (amps * self.current_gain + self.current_offset) / AMPS_PER_COUNT,
-            rng,
+            &mut self.rng,
         )
     }
 }
 
-fn counts(ideal: f64, rng: &mut impl Rng) -> u16 {
+fn counts(ideal: f64, rng: &mut Pcg64Mcg) -> u16 {
     let noise: f64 = StandardNormal.sample(rng);
     (ideal + NOISE * noise).round().clamp(0.0, 4095.0) as u16
 }
 
 #[cfg(test)]
 mod tests {
-    use rand::SeedableRng;
-    use rand_pcg::Pcg64Mcg;
-
     use super::*;
 
     #[test]
     fn counts_scale_back_to_volts_and_amperes() {
-        let mut rng = Pcg64Mcg::seed_from_u64(1);
-        for _ in 0..200 {
-            let b = BatteryInputs::new(&mut rng);
-            let v = f64::from(b.voltage(15.2, &mut rng)) * VOLTS_PER_COUNT;
-            let i = f64::from(b.current(40.0, &mut rng)) * AMPS_PER_COUNT;
+        for seed in 0..200 {
+            let mut b = BatteryInputs::new(Streams::new(seed));
+            let v = f64::from(b.voltage(15.2)) * VOLTS_PER_COUNT;
+            let i = f64::from(b.current(40.0)) * AMPS_PER_COUNT;
             // 1 % and four sigma of 2 counts; 3 %, the offset and four sigma.
             assert!(
                 (v - 15.2).abs() < 0.152 + 0.08 && (i - 40.0).abs() < 1.2 + 0.3 + 0.45,
                 "{v} {i}"
             );
         }
-        let b = BatteryInputs::new(&mut rng);
-        assert!(b.voltage(100.0, &mut rng) == 4095 && b.current(-50.0, &mut rng) == 0);
+        let mut b = BatteryInputs::new(Streams::new(1));
+        assert!(b.voltage(100.0) == 4095 && b.current(-50.0) == 0);
     }
 }

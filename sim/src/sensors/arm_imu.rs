@@ -3,11 +3,13 @@
 use std::collections::VecDeque;
 
 use glam::{DQuat, DVec3};
-use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 use sophie_control::vector::Vec3;
 use sophie_control::wrench::SIDE;
+
+use crate::scenario::Faults;
+use crate::streams::Streams;
 
 /// Fusion steps per second (datasheet).
 pub const RATE_HZ: f64 = 100.0;
@@ -22,6 +24,15 @@ const MOUNTING: f64 = 0.0087;
 /// Share of the acceleration that leaks into the vector, and its time constant, s (assumed).
 const LEAK: (f64, f64) = (0.1, 0.3);
 
+/// A fault of a sensor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TiltBreak {
+    /// It does not answer.
+    Silent,
+    /// It goes on sending its last vector.
+    Stuck,
+}
+
 /// One arm's sensor.
 #[derive(Clone, Debug)]
 pub struct ArmImu {
@@ -30,25 +41,56 @@ pub struct ArmImu {
     leaked: DVec3,
     pipeline: VecDeque<Vec3>,
     rng: Pcg64Mcg,
+    /// What breaks, and after how many steps of fusion.
+    breaks: Option<(TiltBreak, u64)>,
+    steps: u64,
+    last: Vec3,
 }
 
 impl ArmImu {
-    /// Sensor of `arm`, 0 to 3, with a random mounting error.
+    /// Sensor of `arm`, 0 to 3, with the mounting error of `streams`.
     #[must_use]
-    pub fn new(arm: usize, mut rng: Pcg64Mcg) -> Self {
-        let mounting = rng.random_range(-MOUNTING..MOUNTING);
+    pub fn new(arm: usize, streams: Streams) -> Self {
+        let name = format!("arm_imu.{}", arm + 1);
         Self {
             side: f64::from(SIDE[arm]),
-            mounting,
+            mounting: streams.within(&format!("{name}.mounting"), -MOUNTING, MOUNTING),
             leaked: DVec3::ZERO,
             pipeline: VecDeque::with_capacity(LATENCY + 1),
-            rng,
+            rng: streams.of(&name),
+            breaks: None,
+            steps: 0,
+            last: Vec3::default(),
         }
+    }
+
+    /// The same with the faults of `arm`.
+    #[must_use]
+    pub fn with(mut self, arm: usize, faults: &Faults) -> Self {
+        self.mounting += faults.tilt_offset.get(arm).copied().unwrap_or(0.0);
+        let broken = faults.tilt.get(arm).copied().flatten();
+        self.breaks = broken.map(|broken| (broken, (faults.at * RATE_HZ) as u64));
+        self
+    }
+
+    /// What is broken now.
+    #[must_use]
+    pub fn broken(&self) -> Option<TiltBreak> {
+        let (broken, at) = self.breaks?;
+        (self.steps > at).then_some(broken)
     }
 
     /// A fusion step at tilt `tilt` rad, body at `attitude` under `specific_force` (m/s², body); returns delayed
     /// gravity, m/s², arm axes.
     pub fn sample(&mut self, attitude: DQuat, tilt: f64, specific_force: DVec3) -> Vec3 {
+        self.steps += 1;
+        if self.broken().is_none() {
+            self.last = self.fuse(attitude, tilt, specific_force);
+        }
+        self.last
+    }
+
+    fn fuse(&mut self, attitude: DQuat, tilt: f64, specific_force: DVec3) -> Vec3 {
         let down = attitude.conjugate() * DVec3::new(0.0, 0.0, 9.806_65);
         let motion = -specific_force - down;
         self.leaked += (motion * LEAK.0 - self.leaked) * (1.0 / (RATE_HZ * LEAK.1));
@@ -74,7 +116,7 @@ mod tests {
 
     #[test]
     fn a_tilted_arm_sees_gravity_turned_20_ms_late() {
-        let mut imu = ArmImu::new(0, Pcg64Mcg::new(5));
+        let mut imu = ArmImu::new(0, Streams::new(5));
         let rest = DVec3::new(0.0, 0.0, -9.806_65);
         for _ in 0..10 {
             imu.sample(DQuat::IDENTITY, 0.0, rest);
@@ -88,5 +130,21 @@ mod tests {
             (f64::from(new.y) - 9.806_65 * 0.5f64.sin()).abs() < 0.25,
             "{new:?}"
         );
+    }
+
+    #[test]
+    fn a_stuck_sensor_sends_its_last_vector_from_when_it_breaks() {
+        let mut faults = Faults {
+            at: 0.1,
+            ..Faults::default()
+        };
+        faults.tilt[1] = Some(TiltBreak::Stuck);
+        let mut imu = ArmImu::new(1, Streams::new(5)).with(1, &faults);
+        let rest = DVec3::new(0.0, 0.0, -9.806_65);
+        let sent: Vec<Vec3> = (0..30).map(|_| imu.sample(DQuat::IDENTITY, 0.2, rest)).collect();
+        let changes = sent.windows(2).filter(|pair| pair[0] != pair[1]).count();
+        assert!((5..=9).contains(&changes), "{changes}");
+        assert!(sent[10..].iter().all(|v| *v == sent[9]));
+        assert_eq!(imu.broken(), Some(TiltBreak::Stuck));
     }
 }

@@ -4,8 +4,11 @@
 //! force (10 kΩ at 1 N), with part-to-part spread, hysteresis and creep: in all the paper's error of about 50 N/m² at
 //! 950 N/m².
 
-use rand::Rng;
-use rand_distr::{Distribution, StandardNormal, Uniform};
+use rand_distr::{Distribution, StandardNormal};
+use rand_pcg::Pcg64Mcg;
+
+use crate::scenario::Faults;
+use crate::streams::Streams;
 
 /// m²: 38 mm square (datasheet).
 const AREA: f64 = 0.038 * 0.038;
@@ -39,6 +42,8 @@ pub enum FsrBreak {
     Open,
     /// Shorted leads.
     Short,
+    /// It goes on reading what it read last.
+    Stuck,
 }
 
 /// One sensor with its divider.
@@ -50,20 +55,41 @@ pub struct FsrSensor {
     felt: f64,
     creep: f64,
     broken: Option<FsrBreak>,
+    /// What breaks, and when, s after power-up.
+    breaks: Option<(FsrBreak, f64)>,
+    /// s.
+    time: f64,
+    counts: u16,
+    rng: Pcg64Mcg,
 }
 
 impl FsrSensor {
-    /// A sensor with errors drawn from `rng`.
-    pub fn new(rng: &mut impl Rng) -> Self {
-        let mut within = |low: f64, high: f64| Uniform::new(low, high).map_or(low, |u| u.sample(rng));
+    /// The sensor of `arm`, 0 to 3, with the errors of `streams`.
+    #[must_use]
+    pub fn new(arm: usize, streams: Streams) -> Self {
+        let within =
+            |what: &str, low: f64, high: f64| streams.within(&format!("fsr.{}.{what}", arm + 1), low, high);
         Self {
-            gain: GAIN * within(1.0 - PART_ERROR, 1.0 + PART_ERROR),
-            exponent: within(EXPONENT_MIN, 1.0),
-            divider: DIVIDER.0 * within(1.0 - DIVIDER.1, 1.0 + DIVIDER.1),
+            gain: GAIN * within("gain", 1.0 - PART_ERROR, 1.0 + PART_ERROR),
+            exponent: within("exponent", EXPONENT_MIN, 1.0),
+            divider: DIVIDER.0 * within("divider", 1.0 - DIVIDER.1, 1.0 + DIVIDER.1),
             felt: 0.0,
             creep: 0.0,
             broken: None,
+            breaks: None,
+            time: 0.0,
+            counts: 0,
+            rng: streams.of(&format!("fsr.{}", arm + 1)),
         }
+    }
+
+    /// The same with the faults of `arm`.
+    #[must_use]
+    pub fn with(mut self, arm: usize, faults: &Faults) -> Self {
+        self.gain *= faults.pressure_gain.get(arm).copied().unwrap_or(1.0);
+        let broken = faults.pressure.get(arm).copied().flatten();
+        self.breaks = broken.map(|broken| (broken, faults.at));
+        self
     }
 
     /// Sets or clears a fault.
@@ -72,7 +98,21 @@ impl FsrSensor {
     }
 
     /// 12-bit counts at the true `pressure` (Pa), `dt` s after the last sample.
-    pub fn sample(&mut self, pressure: f64, dt: f64, rng: &mut impl Rng) -> u16 {
+    pub fn sample(&mut self, pressure: f64, dt: f64) -> u16 {
+        self.time += dt;
+        if let Some((broken, at)) = self.breaks
+            && self.time >= at
+        {
+            self.broken = Some(broken);
+        }
+        if self.broken != Some(FsrBreak::Stuck) {
+            self.counts = self.measure(pressure, dt);
+        }
+        self.counts
+    }
+
+    fn measure(&mut self, pressure: f64, dt: f64) -> u16 {
+        let rng = &mut self.rng;
         let mut normal = || -> f64 { StandardNormal.sample(rng) };
         let force = pressure.max(0.0) * AREA;
         // Play: the felt force moves only when pushed by either edge.
@@ -84,8 +124,8 @@ impl FsrSensor {
         let x = match self.broken {
             Some(FsrBreak::Open) => 0.0,
             Some(FsrBreak::Short) => 1.0,
-            None if force < THRESHOLD => 0.0,
-            None => {
+            None | Some(FsrBreak::Stuck) if force < THRESHOLD => 0.0,
+            None | Some(FsrBreak::Stuck) => {
                 let drift = 1.0 + self.creep + NOISE * normal();
                 let load = self.gain * self.felt.powf(self.exponent) * drift * self.divider;
                 load / (1.0 + load)
@@ -103,29 +143,25 @@ impl FsrSensor {
 
 #[cfg(test)]
 mod tests {
-    use rand::SeedableRng;
-    use rand_pcg::Pcg64Mcg;
-
     use super::*;
 
     #[test]
     fn the_error_at_the_grip_pressure_is_the_paper_s() {
-        let mut rng = Pcg64Mcg::seed_from_u64(7);
         let (mut square, mut worst) = (0.0, 0.0_f64);
         let n = 400;
-        for _ in 0..n {
-            let mut s = FsrSensor::new(&mut rng);
+        for seed in 0..n {
+            let mut s = FsrSensor::new(0, Streams::new(seed));
             let mut counts = 0.0;
             for i in 0..500 {
                 let p = 950.0 * (f64::from(i) / 300.0).min(1.0);
-                counts = f64::from(s.sample(p, 0.002, &mut rng));
+                counts = f64::from(s.sample(p, 0.002));
             }
             let x = counts / 4095.0;
             let error = x / (1.0 - x) / 10_000.0 / 1e-4 / AREA - 950.0;
             square += error * error;
             worst = worst.max(error.abs());
         }
-        let rms = (square / f64::from(n)).sqrt();
+        let rms = (square / n as f64).sqrt();
         assert!(
             (20.0..40.0).contains(&rms) && (50.0..950.0 * LARGEST_ERROR).contains(&worst),
             "{rms} {worst}"
@@ -134,15 +170,9 @@ mod tests {
 
     #[test]
     fn it_feels_nothing_below_its_threshold_and_remembers_where_it_came_from() {
-        let mut rng = Pcg64Mcg::seed_from_u64(3);
-        let mut s = FsrSensor::new(&mut rng);
-        assert!(s.sample(60.0, 0.002, &mut rng) == 0);
-        let mut mean = |p: f64| {
-            (0..2000)
-                .map(|_| f64::from(s.sample(p, 0.0, &mut rng)))
-                .sum::<f64>()
-                / 2000.0
-        };
+        let mut s = FsrSensor::new(0, Streams::new(3));
+        assert!(s.sample(60.0, 0.002) == 0);
+        let mut mean = |p: f64| (0..2000).map(|_| f64::from(s.sample(p, 0.0))).sum::<f64>() / 2000.0;
         let up = mean(900.0);
         mean(1500.0);
         let down = mean(900.0);
@@ -151,11 +181,32 @@ mod tests {
 
     #[test]
     fn broken_leads() {
-        let mut rng = Pcg64Mcg::seed_from_u64(3);
-        let mut s = FsrSensor::new(&mut rng);
+        let mut s = FsrSensor::new(0, Streams::new(3));
         s.set_broken(Some(FsrBreak::Open));
-        assert!(s.sample(950.0, 0.002, &mut rng) == 0);
+        assert!(s.sample(950.0, 0.002) == 0);
         s.set_broken(Some(FsrBreak::Short));
-        assert!(s.sample(950.0, 0.002, &mut rng) == 4095);
+        assert!(s.sample(950.0, 0.002) == 4095);
+        s.set_broken(None);
+        let before = s.sample(950.0, 0.002);
+        s.set_broken(Some(FsrBreak::Stuck));
+        assert!(before > 1000 && (0..100).all(|_| s.sample(0.0, 0.002) == before));
+    }
+
+    #[test]
+    fn a_fault_begins_when_it_is_due_and_a_wrong_gain_at_once() {
+        let mut faults = Faults {
+            at: 1.0,
+            ..Faults::default()
+        };
+        faults.pressure[2] = Some(FsrBreak::Open);
+        faults.pressure_gain[2] = 0.5;
+        let sound = || FsrSensor::new(2, Streams::new(3));
+        let mut s = sound().with(2, &faults);
+        let half = s.sample(950.0, 0.5);
+        assert!(half < sound().sample(950.0, 0.5) && half > 500, "{half}");
+        assert!(s.sample(950.0, 0.4) > 0);
+        assert_eq!(s.sample(950.0, 0.2), 0);
+        let mut other = FsrSensor::new(1, Streams::new(3)).with(1, &faults);
+        assert!(other.sample(950.0, 2.0) > 1000);
     }
 }

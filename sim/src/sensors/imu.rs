@@ -3,13 +3,14 @@
 use std::f64::consts::TAU;
 
 use glam::DVec3;
-use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 use sophie_control::mounting::Mounting;
 use sophie_control::params::Params;
 use sophie_control::vector::Vec3;
 use sophie_tasks::ports::ImuReading;
+
+use crate::streams::Streams;
 
 /// Default, samples/s.
 const RATE_HZ: f64 = 4000.0;
@@ -58,23 +59,25 @@ pub struct Imu {
     accel_bias: DVec3,
     /// `None`: it fits.
     pub misfit: Option<Misfit>,
+    bench_error: DVec3,
     rng: Pcg64Mcg,
     pipeline: ImuReading,
     phase: [f64; 4],
 }
 
 impl Imu {
-    /// A part with random biases, configured by `params`.
+    /// A part with the biases of `streams`, configured by `params`.
     #[must_use]
-    pub fn new(params: &Params, mut rng: Pcg64Mcg) -> Self {
+    pub fn new(params: &Params, streams: Streams) -> Self {
         let rate = f64::from(params.imu_rate.number());
         let (dps, g) = (
             f64::from(params.imu_gyro_range.number()),
             f64::from(params.imu_accel_range.number()),
         );
-        let mut within =
-            |limit: f64| DVec3::from_array(std::array::from_fn(|_| rng.random_range(-limit..limit)));
-        let (gyro_bias, accel_bias) = (within(GYRO_BIAS), within(ACCEL_BIAS));
+        let within = |what: &str, limit: f64| {
+            let axis = |axis: &str| streams.within(&format!("imu.{what}.{axis}"), -limit, limit);
+            DVec3::from_array(["x", "y", "z"].map(axis))
+        };
         Self {
             rate,
             noise: (rate / RATE_HZ).sqrt(),
@@ -82,21 +85,20 @@ impl Imu {
                 dps * (std::f64::consts::PI / 180.0) / 32768.0,
                 g * 9.806_65 / 32768.0,
             ),
-            gyro_bias,
-            accel_bias,
+            gyro_bias: within("gyro", GYRO_BIAS),
+            accel_bias: within("accel", ACCEL_BIAS),
             misfit: None,
-            rng,
+            bench_error: within("bench", BENCH_ERROR),
+            rng: streams.of("imu"),
             pipeline: ImuReading::default(),
             phase: [0.0; 4],
         }
     }
 
     /// Accelerometer bias as measured on a level bench, with its error, m/s².
-    pub fn bench_bias(&mut self) -> DVec3 {
-        self.accel_bias
-            + DVec3::from_array(std::array::from_fn(|_| {
-                self.rng.random_range(-BENCH_ERROR..BENCH_ERROR)
-            }))
+    #[must_use]
+    pub fn bench_bias(&self) -> DVec3 {
+        self.accel_bias + self.bench_error
     }
 
     /// Body rate (rad/s) and specific force (m/s²) with rotors at `rotors` rad/s, a sample late as from the part's
@@ -149,7 +151,7 @@ mod tests {
 
     #[test]
     fn noise_and_bias_are_those_of_the_datasheet() {
-        let mut imu = Imu::new(&Params::default(), Pcg64Mcg::new(3));
+        let mut imu = Imu::new(&Params::default(), Streams::new(3));
         let n = 40_000;
         let (mut sum, mut square) = (0.0, 0.0);
         for _ in 0..n {
@@ -169,7 +171,7 @@ mod tests {
                 imu_rate: rate,
                 ..Params::default()
             };
-            let mut imu = Imu::new(&params, Pcg64Mcg::new(3));
+            let mut imu = Imu::new(&params, Streams::new(3));
             let x: Vec<f64> = (0..20_000)
                 .map(|_| f64::from(imu.sample(DVec3::ZERO, DVec3::ZERO, &[0.0; 4]).gyro.x))
                 .collect();
@@ -185,7 +187,7 @@ mod tests {
             imu_accel_range: ImuAccelRange::G2,
             ..Params::default()
         };
-        let mut imu = Imu::new(&params, Pcg64Mcg::new(3));
+        let mut imu = Imu::new(&params, Streams::new(3));
         imu.sample(DVec3::splat(100.0), DVec3::splat(-500.0), &[0.0; 4]);
         let r = imu.sample(DVec3::ZERO, DVec3::ZERO, &[0.0; 4]);
         assert!((r.gyro.x - 4.363).abs() < 0.001 && (r.accel.y + 19.613).abs() < 0.01);
@@ -193,7 +195,7 @@ mod tests {
 
     #[test]
     fn it_saturates_at_full_scale() {
-        let mut imu = Imu::new(&Params::default(), Pcg64Mcg::new(3));
+        let mut imu = Imu::new(&Params::default(), Streams::new(3));
         imu.sample(DVec3::splat(100.0), DVec3::splat(-500.0), &[0.0; 4]);
         let r = imu.sample(DVec3::ZERO, DVec3::ZERO, &[0.0; 4]);
         assert!((r.gyro.x - 34.905).abs() < 0.01 && (r.accel.y + 156.9).abs() < 0.1);

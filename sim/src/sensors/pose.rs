@@ -4,11 +4,12 @@ use std::collections::VecDeque;
 use std::f64::consts::PI;
 
 use glam::{DQuat, DVec3};
-use rand::{Rng, SeedableRng};
+use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 
 use crate::plant::contact::Pose;
+use crate::streams::Streams;
 
 /// Time between two measurements, ms: 50 a second.
 const PERIOD_MS: u64 = 20;
@@ -56,13 +57,11 @@ pub struct PoseSource {
 }
 
 impl PoseSource {
-    /// A source whose errors follow from `seed`, with random numbers of its own.
+    /// A source with the errors of `streams`.
     #[must_use]
-    pub fn new(seed: u64) -> Self {
-        let mut rng = Pcg64Mcg::seed_from_u64(seed ^ 0x706f_7365);
+    pub fn new(streams: Streams) -> Self {
+        let mut rng = streams.of("pose");
         let constant = normal(&mut rng) * CONSTANT;
-        let turn = rng.random_range(-TURN..TURN);
-        let turn_rate = rng.random_range(-TURN_RATE..TURN_RATE);
         let gap = gap(&mut rng, 0);
         Self {
             rng,
@@ -70,8 +69,8 @@ impl PoseSource {
             before: None,
             gone: DVec3::ZERO,
             constant,
-            turn,
-            turn_rate,
+            turn: streams.within("pose.turn", -TURN, TURN),
+            turn_rate: streams.within("pose.turn_rate", -TURN_RATE, TURN_RATE),
             gap,
             failure: (0, 0),
             sent: VecDeque::new(),
@@ -150,7 +149,7 @@ mod tests {
 
     #[test]
     fn it_is_late_noisy_and_has_gaps() {
-        let mut source = PoseSource::new(5);
+        let mut source = PoseSource::new(Streams::new(5));
         let (mut times, mut places) = (vec![], vec![]);
         for ms in 1..=120_000_u64 {
             source.step(&at(DVec3::new(1.0, 2.0, -3.0)));
@@ -178,7 +177,7 @@ mod tests {
 
     #[test]
     fn its_axes_are_its_own_and_the_way_in_them_is_as_long() {
-        let mut source = PoseSource::new(6);
+        let mut source = PoseSource::new(Streams::new(6));
         let mut seen = vec![];
         for ms in 1..=2_000_u64 {
             source.step(&at(DVec3::new(ms as f64 * 1e-3, 0.0, 0.0)));

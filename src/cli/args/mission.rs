@@ -7,7 +7,7 @@ use sophie_control::rc::ArmChoice;
 use sophie_control::wrench::Configuration;
 use sophie_sim::mixers::Variant;
 use sophie_sim::scenario::keys;
-use sophie_sim::scenario::{ArmBending, Assist, Overrides, PositionSensor, Scenario};
+use sophie_sim::scenario::{Assist, Overrides, PositionSensor, Scenario};
 
 use super::values::{number, seed, word};
 
@@ -19,9 +19,6 @@ pub struct MissionArgs {
     /// Infill of the arms, 4 to 10 %.
     #[arg(long, visible_alias = "infill", value_name = "PERCENT", value_parser = infill, allow_negative_numbers = true)]
     rho: Option<f64>,
-    /// How the simulated arms bend: hinge or beam.
-    #[arg(long, value_name = "NAME", value_parser = bending)]
-    arm_bending: Option<ArmBending>,
     /// Sense of rotation: A or B.
     #[arg(long, value_name = "A|B", value_parser = configuration)]
     config: Option<Configuration>,
@@ -62,7 +59,6 @@ impl MissionArgs {
         Overrides {
             infill: self.rho,
             gain_k: self.gain_k,
-            arm_bending: self.arm_bending,
             configuration: self.config,
             mixer: self.mixer,
             arms: self.arms,
@@ -83,10 +79,6 @@ fn gain_k(text: &str) -> Result<f64, String> {
 
 fn configuration(text: &str) -> Result<Configuration, String> {
     word(&text.to_uppercase(), keys::CONFIGURATIONS).map(keys::configuration)
-}
-
-fn bending(text: &str) -> Result<ArmBending, String> {
-    word(text, keys::BENDINGS).map(keys::bending)
 }
 
 fn position_sensor(text: &str) -> Result<PositionSensor, String> {

@@ -82,10 +82,6 @@ fn refusals_are_one_line_that_says_what_is_allowed() {
             "invalid value 'C' for '--config <A|B>': allowed A, B",
         ),
         (
-            "--arm-bending soft",
-            "invalid value 'soft' for '--arm-bending <NAME>': allowed hinge, beam",
-        ),
-        (
             "--mixer best",
             "invalid value 'best' for '--mixer <NAME>': allowed flexible, rigid, paper, frozen",
         ),

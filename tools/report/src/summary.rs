@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 use sophie_control::params::Params;
 use sophie_sim::record::FlightRecord;
-use sophie_sim::scenario::{Scenario, keys};
+use sophie_sim::scenario::{Faults, Scenario, faults, keys};
 
 use super::units::{deg, kgcm};
 
@@ -51,7 +51,6 @@ struct Settings {
     arms: &'static str,
     servo: &'static str,
     coupled_arms: bool,
-    arm_bending: &'static str,
     arm_taper: f64,
     arm_coefficients: [f64; 4],
     arm_level_share: f64,
@@ -78,8 +77,41 @@ struct Settings {
     pilot_delay_s: f64,
     pilot_bandwidth_hz: f64,
     pilot_eye_noise_m: f64,
+    pilot_touch_within_m: Option<f64>,
+    pilot_touch_drift_m_s: f64,
+    pilot_believes_pipe_north_m: f64,
+    pilot_believes_pipe_east_m: f64,
+    pilot_believes_pipe_top_m: f64,
+    pilot_believes_pipe_diameter_m: f64,
+    faults: FaultsSummary,
     /// Parameters of the stack that are not at their default, by name.
     params: BTreeMap<&'static str, f32>,
+}
+
+/// Parts that failed or were off, by arm.
+#[derive(Serialize)]
+struct FaultsSummary {
+    at_s: f64,
+    pressure: [&'static str; 4],
+    tilt: [&'static str; 4],
+    tendon: [&'static str; 4],
+    pressure_gain: [f64; 4],
+    tilt_offset_deg: [f64; 4],
+    tendon_slack_mm: [f64; 4],
+}
+
+impl FaultsSummary {
+    fn of(f: &Faults) -> Self {
+        Self {
+            at_s: f.at,
+            pressure: f.pressure.map(faults::pressure_word),
+            tilt: f.tilt.map(faults::tilt_word),
+            tendon: f.tendon.map(faults::tendon_word),
+            pressure_gain: f.pressure_gain,
+            tilt_offset_deg: f.tilt_offset.map(|a| tidy(deg(a))),
+            tendon_slack_mm: f.tendon_slack.map(|slack| tidy(1e3 * slack)),
+        }
+    }
 }
 
 /// One step as flown.
@@ -167,6 +199,7 @@ impl Summary {
 impl Settings {
     fn of(s: &Scenario) -> Self {
         let (v, w, p) = (&s.vehicle, &s.world, &s.pilot);
+        let pipe = p.believes.pipe(w);
         let changed = Params::TABLE.iter().filter_map(|row| {
             let value = s.params.get(row.name)?;
             (value.to_bits() != row.default.to_bits()).then_some((row.name, value))
@@ -179,7 +212,6 @@ impl Settings {
             arms: keys::arms_word(s.arms),
             servo: keys::servo_word(v.servo),
             coupled_arms: v.coupled_arms,
-            arm_bending: keys::bending_word(v.arm_bending),
             arm_taper: v.arm_taper,
             arm_coefficients: v.arm_coefficients,
             arm_level_share: v.arm_level_share,
@@ -195,7 +227,7 @@ impl Settings {
             gust_force_n: w.gust_force,
             gust_moment_nm: w.gust_moment,
             steady_wind_n: w.steady_wind,
-            steady_wind_from_deg: tidy(deg(w.steady_wind_from)),
+            steady_wind_from_deg: tidy(deg(s.wind_from())),
             pipe_diameter_m: w.pipe_diameter,
             pipe_north_m: w.pipe_position[0],
             pipe_east_m: w.pipe_position[1],
@@ -206,6 +238,13 @@ impl Settings {
             pilot_delay_s: p.delay,
             pilot_bandwidth_hz: p.bandwidth,
             pilot_eye_noise_m: p.eye_noise,
+            pilot_touch_within_m: p.touch_within,
+            pilot_touch_drift_m_s: p.touch_drift,
+            pilot_believes_pipe_north_m: pipe.position[0],
+            pilot_believes_pipe_east_m: pipe.position[1],
+            pilot_believes_pipe_top_m: pipe.top,
+            pilot_believes_pipe_diameter_m: pipe.diameter,
+            faults: FaultsSummary::of(&s.faults),
             params: changed.collect(),
         }
     }

@@ -1,7 +1,6 @@
 //! Which touches are tried.
 
-use rand::{Rng, SeedableRng};
-use rand_pcg::Pcg64Mcg;
+use sophie_sim::streams::Streams;
 
 use super::super::touch::Touch;
 
@@ -77,21 +76,21 @@ pub fn plan(index: u64, seed: u64, heading: f64) -> Planned {
 /// Within ±150 mm and ±25° of lean, sinking at up to 0.6 m/s and drifting at up to 0.25 m/s, on pipes of 0.2 to 0.4 m with
 /// friction of 0.3 to 0.8; half called off within 8 s.
 fn anywhere(seed: u64, heading: f64) -> Touch {
-    let mut rng = Pcg64Mcg::seed_from_u64(seed);
-    let mut within = |from: f64, to: f64| from + (to - from) * rng.random::<f64>();
-    let diameter = within(0.2, 0.4);
+    let streams = Streams::new(seed);
+    let within = |what: &str, from: f64, to: f64| streams.within(&format!("touch.{what}"), from, to);
+    let diameter = within("diameter", 0.2, 0.4);
     let most = (ON_THE_PIPE * diameter).min(OFFSET_MAX);
     Touch {
-        offset: within(-OFFSET_MAX, OFFSET_MAX).clamp(-most, most),
-        lean: within(-25.0, 25.0).to_radians(),
-        sink: within(0.05, 0.6),
-        sideways: within(-0.25, 0.25),
-        yaw: within(-heading, heading),
+        offset: within("offset", -OFFSET_MAX, OFFSET_MAX).clamp(-most, most),
+        lean: within("lean", -25.0, 25.0).to_radians(),
+        sink: within("sink", 0.05, 0.6),
+        sideways: within("sideways", -0.25, 0.25),
+        yaw: within("yaw", -heading, heading),
         diameter,
-        friction: within(0.3, 0.8),
-        gust: within(0.0, GUST),
-        throttle: within(0.15, 0.38),
-        cancel: match within(-8.0, 8.0) {
+        friction: within("friction", 0.3, 0.8),
+        gust: within("gust", 0.0, GUST),
+        throttle: within("throttle", 0.15, 0.38),
+        cancel: match within("cancel", -8.0, 8.0) {
             t if t < 0.0 => f64::INFINITY,
             t => t,
         },
@@ -102,14 +101,14 @@ fn anywhere(seed: u64, heading: f64) -> Touch {
 /// What a careful pilot does: within ±3° of lean, sinking at up to 0.2 m/s and drifting at up to 0.05 m/s, in gusts of
 /// 0.1 N RMS, nothing called off.
 fn careful(gauge: &Gauge, seed: u64, heading: f64) -> Touch {
-    let mut rng = Pcg64Mcg::seed_from_u64(seed);
-    let mut within = |from: f64, to: f64| from + (to - from) * rng.random::<f64>();
+    let streams = Streams::new(seed);
+    let within = |what: &str, from: f64, to: f64| streams.within(&format!("touch.{what}"), from, to);
     Touch {
-        offset: within(-GAUGE_OFFSET_MAX, GAUGE_OFFSET_MAX),
-        lean: within(-3.0, 3.0).to_radians(),
-        sink: within(0.05, 0.2),
-        sideways: within(-0.05, 0.05),
-        yaw: within(-heading, heading),
+        offset: within("offset", -GAUGE_OFFSET_MAX, GAUGE_OFFSET_MAX),
+        lean: within("lean", -3.0, 3.0).to_radians(),
+        sink: within("sink", 0.05, 0.2),
+        sideways: within("sideways", -0.05, 0.05),
+        yaw: within("yaw", -heading, heading),
         diameter: gauge.diameter,
         friction: gauge.friction,
         gust: GUST,

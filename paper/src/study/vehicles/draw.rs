@@ -1,8 +1,7 @@
 //! Which vehicles are flown.
 
-use rand::{Rng, SeedableRng};
-use rand_pcg::Pcg64Mcg;
 use sophie_sim::scenario::{Overrides, Scenario};
+use sophie_sim::streams::Streams;
 
 /// A vehicle with its pilot and its world.
 #[derive(Clone, Debug)]
@@ -31,9 +30,8 @@ pub fn draw(seed: u64, spread: f64) -> Result<Drawn, String> {
 }
 
 fn text(seed: u64, spread: f64) -> String {
-    // A quantity that is added draws from a stream of its own: the others keep their values.
-    let unit = |name: &str| Pcg64Mcg::seed_from_u64(stream(seed, name)).random::<f64>();
-    let within = |name: &str, from: f64, to: f64| from + (to - from) * unit(name);
+    let streams = Streams::new(seed);
+    let within = |name: &str, from: f64, to: f64| streams.within(name, from, to);
     let about = |name: &str, share: f64| 1.0 + spread * within(name, -share, share);
     let by_arm = |name: &str, most: f64| -> Vec<f64> {
         (1..=4)
@@ -82,14 +80,6 @@ fn text(seed: u64, spread: f64) -> String {
         within("pilot delay", 0.18, 0.32),
         within("pilot eyes", 0.0, 0.02),
     )
-}
-
-/// Seed of the stream `name` of vehicle `seed`: FNV-1a of both.
-fn stream(seed: u64, name: &str) -> u64 {
-    let bytes = seed.to_le_bytes().into_iter().chain(name.bytes());
-    bytes.fold(0xCBF2_9CE4_8422_2325, |hash, byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01B3)
-    })
 }
 
 fn list(values: impl Iterator<Item = f64>) -> String {

@@ -12,6 +12,11 @@ pub struct Margins {
     pub gain: f64,
     /// Loss of phase at which it oscillates, rad; negative if it does.
     pub phase: f64,
+    /// Disk margin: the loop is stable with any factor (1 + δ/2) / (1 - δ/2), |δ| below it, on its gain: gain and phase off
+    /// at once. 2 at most for a loop that a gain of 0 leaves stable; 0 for an oscillating one.
+    pub disk: f64,
+    /// Frequency at which that is least, rad/s.
+    pub critical: f64,
     /// Highest frequency at which the gain is 1, rad/s (bandwidth); 0 if there is none.
     pub crossover: f64,
 }
@@ -43,8 +48,11 @@ impl Margins {
                 phase = if left.abs() < phase.abs() { left } else { phase };
             }
         }
+        let (disk, critical) = disk(curve);
         if stable {
             Self {
+                disk,
+                critical,
                 gain: up.min(1.0 / down),
                 phase: phase.abs(),
                 crossover,
@@ -53,12 +61,26 @@ impl Margins {
             // The stable gain lies beyond the nearest crossing passed.
             let passed = if down > 0.0 { down } else { 1.0 / up };
             Self {
+                disk: 0.0,
+                critical,
                 gain: passed.min(1.0),
                 phase: -phase.abs(),
                 crossover,
             }
         }
     }
+}
+
+/// Least 2 |1 + L| / |1 - L| along `curve`, and where, rad/s (Seiler, Packard and Gahinet, An introduction to disk margins, 2020).
+fn disk(curve: &[(f64, Complex)]) -> (f64, f64) {
+    curve
+        .iter()
+        .map(|(omega, gain)| {
+            let size = 2.0 * (Complex::X + *gain).length() / (Complex::X - *gain).length();
+            (size, *omega)
+        })
+        .min_by(|a, b| a.0.total_cmp(&b.0))
+        .unwrap_or((0.0, 0.0))
 }
 
 /// Slope of the gain at the lowest frequencies. Turn rate, angle and the rate loop's integral are integrators, fewer
@@ -126,6 +148,32 @@ mod tests {
             "{m:?}"
         );
         assert!(m.gain > 100.0);
+    }
+
+    #[test]
+    fn the_disk_is_within_the_margins_of_gain_and_phase() {
+        // |1 - 1/s| = |1 + 1/s| along the imaginary axis.
+        let integrator = margins(|s| one_over(s) * 5.0);
+        assert!((integrator.disk - 2.0).abs() < 1e-6, "{integrator:?}");
+        for (k, least) in [(4.0, 1.0), (10.0, 0.6), (30.0, 0.1)] {
+            let m = margins(|s| {
+                let lag = one_over(s * 0.05 + Complex::X);
+                one_over(s).rotate(lag).rotate(lag) * k
+            });
+            // Margins are found between frequencies 3 % apart.
+            let (gain, phase) = ((2.0 + m.disk) / (2.0 - m.disk), 2.0 * (0.5 * m.disk).atan());
+            assert!(
+                m.disk > least && gain <= 1.03 * m.gain && phase <= 1.03 * m.phase,
+                "{k}: {m:?}"
+            );
+        }
+        let oscillating = margins(|s| {
+            one_over(s)
+                .rotate(one_over(s * 0.05 + Complex::X))
+                .rotate(one_over(s * 0.05 + Complex::X))
+                * 80.0
+        });
+        assert_eq!(oscillating.disk, 0.0);
     }
 
     #[test]

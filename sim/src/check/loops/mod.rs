@@ -28,19 +28,22 @@ const PER_DECADE: f64 = 60.0;
 pub fn margins(scenario: &Scenario) -> [Margins; 3] {
     let laws = Laws::of(&scenario.params);
     let hovering = Hovering::of(scenario);
-    std::array::from_fn(|axis| {
-        let vehicle = hovering.response(axis);
-        let curve: Vec<_> = frequencies()
-            .map(|omega| {
-                let angle = omega / f64::from(CONTROL_RATE_HZ);
-                // A measurement at the end of a step acts in the next one.
-                let delay = Complex::from_angle(-angle);
-                let gain = vehicle.at(angle).rotate(laws.at(axis, angle)).rotate(delay);
-                (omega, gain)
-            })
-            .collect();
-        Margins::of(&curve)
-    })
+    std::array::from_fn(|axis| margins_of(&hovering.response(axis), &laws, axis))
+}
+
+/// Margins of the loop about `axis` that `laws` close around `vehicle`'s response about it.
+#[must_use]
+pub fn margins_of(vehicle: &Response, laws: &Laws, axis: usize) -> Margins {
+    let curve: Vec<_> = frequencies()
+        .map(|omega| {
+            let angle = omega / f64::from(CONTROL_RATE_HZ);
+            // A measurement at the end of a step acts in the next one.
+            let delay = Complex::from_angle(-angle);
+            let gain = vehicle.at(angle).rotate(laws.at(axis, angle)).rotate(delay);
+            (omega, gain)
+        })
+        .collect();
+    Margins::of(&curve)
 }
 
 /// From [`LOWEST`] to half the control rate, rad/s.

@@ -1,8 +1,6 @@
 //! The hovering vehicle's response to a moment of one step, through allocation, thrust curve and plant.
 
 use glam::DVec3;
-use rand::SeedableRng;
-use rand_pcg::Pcg64Mcg;
 use sophie_control::chain::{
     Attitude, CONTROL_RATE_HZ, Command, Control, Demand, MixOutput, Mixing, Surroundings,
 };
@@ -70,7 +68,7 @@ impl Hovering {
             ..scenario.clone()
         };
         let v = &scenario.vehicle;
-        let mut plant = Plant::new(&calm, Pcg64Mcg::seed_from_u64(1));
+        let mut plant = Plant::new(&calm);
         plant.place(PLACE, DVec3::ZERO);
         let mixer = Mixer::new(scenario.mixer, v.configuration, &scenario.params);
         let thrust = (v.body.mass * GRAVITY).min(HOVER_SHARE * 4.0 * v.rotor.thrust_max);

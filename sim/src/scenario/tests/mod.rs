@@ -30,6 +30,7 @@ fn the_default_mission_states_the_defaults() {
     assert_eq!(format!("{:?}", mission.vehicle), format!("{:?}", empty.vehicle));
     assert_eq!(format!("{:?}", mission.world), format!("{:?}", empty.world));
     assert_eq!(format!("{:?}", mission.pilot), format!("{:?}", empty.pilot));
+    assert_eq!(mission.faults, empty.faults);
     assert_eq!(
         mission.params,
         Params {
@@ -63,7 +64,9 @@ fn the_default_mission_shows_every_key() {
     for key in KEYS.iter().filter(|k| k.name != "expect.reason") {
         let name = key.name.rsplit('.').next().unwrap();
         assert!(
-            MISSION.lines().any(|l| l.starts_with(&format!("{name} = "))),
+            MISSION
+                .lines()
+                .any(|l| l.trim_start_matches("# ").starts_with(&format!("{name} = "))),
             "{name}"
         );
     }
@@ -121,11 +124,53 @@ fn the_stack_believes_the_vehicle_unless_told_otherwise() {
 }
 
 #[test]
+fn the_pilot_takes_the_pipe_for_what_it_is_but_for_what_the_file_says() {
+    let s = parse("[world]\npipe_east_m = 1\npipe_top_m = 2\n[pilot]\nbelieves_pipe_east_m = 1.02").unwrap();
+    let pipe = s.pilot.believes.pipe(&s.world);
+    assert_eq!((pipe.position, pipe.top, pipe.diameter), ([3.0, 1.02], 2.0, 0.3));
+    assert_eq!(s.world.pipe_position, [3.0, 1.0]);
+}
+
+#[test]
+fn the_seed_draws_where_the_wind_comes_from_unless_the_file_says_it() {
+    let from = |seed: u64, key: &str| {
+        let text = format!("seed = {seed}\n[world]\nsteady_wind_n = 1\n{key}");
+        parse(&text).unwrap().wind_from()
+    };
+    let degrees: Vec<f64> = (0..100).map(|seed| from(seed, "").to_degrees()).collect();
+    let quarters: std::collections::HashSet<u32> = degrees.iter().map(|d| (d / 90.0) as u32).collect();
+    assert!(quarters.len() == 4 && degrees.iter().all(|d| (0.0..360.0).contains(d)));
+    assert!((from(5, "steady_wind_from_deg = 90").to_degrees() - 90.0).abs() < 1e-9);
+}
+
+#[test]
+fn faults_are_read_by_arm() {
+    use super::faults::{pressure_word, tendon_word, tilt_word};
+    let text = "[faults]\nat_s = 40\npressure = ['sound', 'open', 'short', 'stuck']\n\
+                tilt = ['silent', 'sound', 'stuck', 'sound']\ntendon = ['torn', 'stuck', 'sound', 'sound']\n\
+                pressure_gain = [1, 0.8, 1, 1]\ntilt_offset_deg = [0, 0, 0, -9]\ntendon_slack_mm = [5, 0, 0, 0]";
+    let faults = parse(text).unwrap().faults;
+    assert_eq!(
+        faults.pressure.map(pressure_word),
+        ["sound", "open", "short", "stuck"]
+    );
+    assert_eq!(faults.tilt.map(tilt_word), ["silent", "sound", "stuck", "sound"]);
+    assert_eq!(
+        faults.tendon.map(tendon_word),
+        ["torn", "stuck", "sound", "sound"]
+    );
+    assert_eq!(
+        (faults.at, faults.pressure_gain[1], faults.tendon_slack[0]),
+        (40.0, 0.8, 0.005)
+    );
+    assert!((faults.tilt_offset[3] + 0.05 * core::f64::consts::PI).abs() < 1e-12);
+}
+
+#[test]
 fn the_command_line_wins_over_the_file() {
     let overrides = Overrides {
         infill: Some(9.0),
         gain_k: Some(2.0),
-        arm_bending: Some(ArmBending::Hinge),
         configuration: Some(Configuration::A),
         mixer: Some(Variant::Paper),
         sensors: Some(PositionSensor::Pose),
@@ -137,18 +182,9 @@ fn the_command_line_wins_over_the_file() {
     let s = Scenario::parse(text, "f", &overrides).unwrap();
     assert_eq!((s.vehicle.infill, s.vehicle.gain_k, s.seed), (9.0, 2.0, 77));
     assert_eq!((s.params.infill, s.params.gain_k), (9.0, 2.0));
-    // What the stack believes of the tendon follows the arm.
-    let p = &s.params;
     assert_eq!(
         (s.sensors.position, s.pilot.assist),
         (PositionSensor::Pose, Assist::Hold)
-    );
-    assert_eq!(
-        (
-            s.vehicle.arm_bending,
-            [p.tendon_lever, p.tendon_bend, p.tendon_relief]
-        ),
-        (ArmBending::Hinge, [0.025, 1.0, 1.0])
     );
     assert_eq!(
         (s.vehicle.configuration, s.mixer, s.arms),
@@ -159,7 +195,7 @@ fn the_command_line_wins_over_the_file() {
 #[test]
 fn every_number_takes_its_bounds_and_nothing_beyond() {
     for key in KEYS {
-        let Kind::Number(range, _) = &key.kind else {
+        let (Kind::Number(range, _) | Kind::Optional(range, _)) = &key.kind else {
             continue;
         };
         let text = |value: f64| {
@@ -224,7 +260,7 @@ fn a_vehicle_that_loads_can_be_stepped() {
             continue;
         };
         loaded += 1;
-        let mut plant = Plant::new(&scenario, Pcg64Mcg::seed_from_u64(loaded));
+        let mut plant = Plant::new(&scenario);
         let mut actuators = Actuators {
             servos: [550.0; 4],
             ..Default::default()

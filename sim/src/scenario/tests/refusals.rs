@@ -66,6 +66,22 @@ fn bad_values_name_file_line_key_value_and_what_is_allowed() {
             "perch.toml:2: vehicle.coupled_arms = 1: allowed true or false",
         ),
         (
+            "[faults]\ntilt = ['sound', 'sound', 'lost', 'sound']",
+            "perch.toml:2: faults.tilt = 'lost': allowed sound, silent, stuck",
+        ),
+        (
+            "[faults]\npressure = 'open'",
+            "perch.toml:2: faults.pressure = 'open': allowed four words, each sound, open, short, stuck",
+        ),
+        (
+            "[faults]\ntendon_slack_mm = [0, 0, 0, 21]",
+            "perch.toml:2: faults.tendon_slack_mm = 21: allowed -10 to 20 mm",
+        ),
+        (
+            "[pilot]\nbelieves_pipe_top_m = 0.2",
+            "perch.toml:2: pilot.believes_pipe_top_m = 0.2: allowed 0.5 to 10 m",
+        ),
+        (
             "[params]\nrate_p = 99",
             "perch.toml:2: params.rate_p = 99: allowed 0 to 40 1/s",
         ),

@@ -1,0 +1,153 @@
+//! Yaw at equal margins (docs/results.md): disk margins of each allocation over the yaw gain and over arms that are not what
+//! the stack takes them for, and how tightly each holds its heading at the gain that its worst arms allow
+//! (`cargo run --release -p sophie-sim --example yaw`).
+
+#![allow(clippy::print_stdout, reason = "the table is what it is for")]
+
+use std::f64::consts::TAU;
+
+use sophie_control::params::Params;
+use sophie_control::wrench::Configuration::{self, A, B};
+use sophie_sim::check::loops::{Hovering, Laws, Margins, Response, margins, margins_of};
+use sophie_sim::flight_level::{Rig, level, vehicle};
+use sophie_sim::mixers::Variant::{self, Flexible, Rigid};
+use sophie_sim::parallel;
+use sophie_sim::scenario::Scenario;
+use sophie_sim::streams::Streams;
+
+/// Arms tried, beside those that are as the stack takes them.
+const ARMS: u64 = 40;
+/// Largest errors: of the arms' softness, share, of their tilt, degrees, and of K, share.
+const SOFTNESS: f64 = 0.20;
+const TILT: f64 = 3.0;
+const K_ERROR: f64 = 0.15;
+/// Yaw gains tried, 1/s; the integral is half, as by default.
+const GAINS: [f32; 10] = [0.4, 0.61, 1.0, 1.5, 2.0, 3.0, 4.5, 6.0, 8.0, 10.0];
+/// Disk margin at which the allocations are compared: a factor of 1.67 and 28 degrees at once.
+const EQUAL: f64 = 0.5;
+const YAW: usize = 2;
+
+/// Arms `draw` of `nominal`; 0: as the stack takes them.
+fn drawn(nominal: &Scenario, draw: u64) -> Scenario {
+    let mut s = nominal.clone();
+    if draw > 0 {
+        let streams = Streams::new(draw);
+        let within = |name: String, most: f64| streams.within(&name, -most, most);
+        for arm in 0..4 {
+            s.vehicle.arm_gain[arm] = 1.0 + within(format!("arm gain {arm}"), SOFTNESS);
+            s.vehicle.arm_offset[arm] = within(format!("arm offset {arm}"), TILT).to_radians();
+        }
+        s.vehicle.gain_k *= 1.0 + within("K".to_owned(), K_ERROR);
+    }
+    s
+}
+
+fn with_gain(params: &Params, gain: f32) -> Params {
+    Params {
+        rate_yaw_p: gain,
+        rate_yaw_i: 0.5 * gain,
+        ..*params
+    }
+}
+
+/// Of the arms as taken, and the least of all drawn.
+struct Row {
+    nominal: Margins,
+    worst: f64,
+}
+
+fn rows(nominal: &Scenario, responses: &[Response]) -> Vec<Row> {
+    GAINS
+        .iter()
+        .map(|gain| {
+            let laws = Laws::of(&with_gain(&nominal.params, *gain));
+            let margins: Vec<Margins> = responses.iter().map(|r| margins_of(r, &laws, YAW)).collect();
+            Row {
+                nominal: margins[0],
+                worst: margins.iter().map(|m| m.disk).fold(f64::INFINITY, f64::min),
+            }
+        })
+        .collect()
+}
+
+/// Heading's RMS in the gusts of the mixers' table, degrees, and the swing of rotor 1, N; none: lost.
+fn hover(s: &Scenario, gain: f32) -> Option<(f64, f64)> {
+    let mut s = s.clone();
+    s.world.gust_force = 0.35;
+    s.world.gust_moment = 0.015;
+    s.params = with_gain(&s.params, gain);
+    let e = Rig::new(&s).fly(40.0, level);
+    (e.worst_yaw <= 60.0).then_some((e.rms_yaw, e.swing))
+}
+
+fn compare(configuration: Configuration, gain_k: f64, mixer: Variant, draws: &[u64]) {
+    let nominal = vehicle(configuration, gain_k, 6.9, mixer);
+    let responses = parallel::each(draws, |draw| Hovering::of(&drawn(&nominal, *draw)).response(YAW));
+    let rows = rows(&nominal, &responses);
+    for (gain, row) in GAINS.iter().zip(&rows) {
+        println!(
+            "| {configuration:?} | {gain_k} | {mixer:?} | {gain} | {:.1} | {:.0}° | {:.2} | {:.2} | {:.1} | {:.1} |",
+            row.nominal.gain,
+            row.nominal.phase.to_degrees(),
+            row.nominal.disk,
+            row.worst,
+            row.nominal.crossover / TAU,
+            row.nominal.critical / TAU
+        );
+    }
+    let allowed = GAINS.iter().zip(&rows).rev().find(|(_, row)| row.worst >= EQUAL);
+    let Some((gain, _)) = allowed else {
+        println!("{configuration:?} K {gain_k} {mixer:?}: no gain has {EQUAL} with its worst arms");
+        return;
+    };
+    let mut flown: Vec<_> = parallel::each(&draws[..draws.len().min(13)], |draw| {
+        hover(&drawn(&nominal, *draw), *gain)
+    });
+    let matched = flown.remove(0);
+    let lost = flown.iter().filter(|f| f.is_none()).count();
+    let worst = flown
+        .iter()
+        .flatten()
+        .fold((0.0_f64, 0.0_f64), |most, f| (most.0.max(f.0), most.1.max(f.1)));
+    let cell = |f: Option<(f64, f64)>| {
+        f.map_or("lost".to_owned(), |(yaw, swing)| {
+            format!("{yaw:.2}° / {swing:.2} N")
+        })
+    };
+    println!(
+        "{configuration:?} K {gain_k} {mixer:?}: gain {gain}: matched {}, worst of {} arms {}, {lost} lost",
+        cell(matched),
+        flown.len(),
+        cell(Some(worst)),
+    );
+}
+
+/// Arms that ring: margins in hover over infill and damping ratio.
+fn springy() {
+    println!("| infill % | damping ratio | pitch: gain, disk, at Hz | yaw: gain, disk, at Hz |");
+    println!("|---|---|---|---|");
+    for infill in [4.0, 5.0, 6.9, 10.0] {
+        for damping in [0.02, 0.05, 0.10, 0.15] {
+            let mut s = vehicle(B, 7.75, infill, Flexible);
+            s.vehicle.arm_damping = damping;
+            let [_, pitch, yaw] = margins(&s);
+            let cell = |m: Margins| format!("{:.2}, {:.2}, {:.1}", m.gain, m.disk, m.critical / TAU);
+            println!("| {infill} | {damping} | {} | {} |", cell(pitch), cell(yaw));
+        }
+    }
+    println!();
+}
+
+fn main() {
+    springy();
+    println!(
+        "| configuration | K | mixer | yaw gain 1/s | gain margin | phase margin | disk margin | worst arms | crossover Hz | least there, Hz |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|---|");
+    let draws: Vec<u64> = (0..=ARMS).collect();
+    for (configuration, gain_k) in [(B, 7.75), (B, 1.0), (A, 1.0)] {
+        for mixer in [Flexible, Rigid] {
+            compare(configuration, gain_k, mixer, &draws);
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! Parts of the vehicle that fail or are off, unknown to its stack and its pilot.
+
+use sophie_control::wrench::PerArm;
+
+use crate::plant::tendon::TendonBreak;
+use crate::sensors::arm_imu::TiltBreak;
+use crate::sensors::fsr::FsrBreak;
+
+/// Faults of a flight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Faults {
+    /// When the broken parts break, s after power-up.
+    pub at: f64,
+    /// Pressure sensors.
+    pub pressure: PerArm<Option<FsrBreak>>,
+    /// Tilt sensors.
+    pub tilt: PerArm<Option<TiltBreak>>,
+    /// Tendons with their servos.
+    pub tendon: PerArm<Option<TendonBreak>>,
+    /// What each pressure sensor reads over what one of its kind does, from power-up; nominal 1.
+    pub pressure_gain: PerArm<f64>,
+    /// What each tilt sensor reads too much, from power-up, rad.
+    pub tilt_offset: PerArm<f64>,
+    /// Length of each tendon over its own, m; negative: too short.
+    pub tendon_slack: PerArm<f64>,
+}
+
+impl Default for Faults {
+    fn default() -> Self {
+        Self {
+            at: 0.0,
+            pressure: [None; 4],
+            tilt: [None; 4],
+            tendon: [None; 4],
+            pressure_gain: [1.0; 4],
+            tilt_offset: [0.0; 4],
+            tendon_slack: [0.0; 4],
+        }
+    }
+}
+
+/// Word for a part without a fault.
+pub const SOUND: &str = "sound";
+/// Words for a pressure sensor.
+pub const PRESSURE: &[&str] = &[SOUND, "open", "short", "stuck"];
+/// Words for a tilt sensor.
+pub const TILT: &[&str] = &[SOUND, "silent", "stuck"];
+/// Words for a tendon.
+pub const TENDON: &[&str] = &[SOUND, "torn", "stuck"];
+
+/// A word from [`PRESSURE`].
+pub fn pressure(word: &str) -> Option<FsrBreak> {
+    match word {
+        "open" => Some(FsrBreak::Open),
+        "short" => Some(FsrBreak::Short),
+        "stuck" => Some(FsrBreak::Stuck),
+        _ => None,
+    }
+}
+
+/// A word from [`TILT`].
+pub fn tilt(word: &str) -> Option<TiltBreak> {
+    match word {
+        "silent" => Some(TiltBreak::Silent),
+        "stuck" => Some(TiltBreak::Stuck),
+        _ => None,
+    }
+}
+
+/// A word from [`TENDON`].
+pub fn tendon(word: &str) -> Option<TendonBreak> {
+    match word {
+        "torn" => Some(TendonBreak::Torn),
+        "stuck" => Some(TendonBreak::Stuck),
+        _ => None,
+    }
+}
+
+/// The word of a pressure sensor.
+#[must_use]
+pub const fn pressure_word(broken: Option<FsrBreak>) -> &'static str {
+    match broken {
+        None => SOUND,
+        Some(FsrBreak::Open) => "open",
+        Some(FsrBreak::Short) => "short",
+        Some(FsrBreak::Stuck) => "stuck",
+    }
+}
+
+/// The word of a tilt sensor.
+#[must_use]
+pub const fn tilt_word(broken: Option<TiltBreak>) -> &'static str {
+    match broken {
+        None => SOUND,
+        Some(TiltBreak::Silent) => "silent",
+        Some(TiltBreak::Stuck) => "stuck",
+    }
+}
+
+/// The word of a tendon.
+#[must_use]
+pub const fn tendon_word(broken: Option<TendonBreak>) -> &'static str {
+    match broken {
+        None => SOUND,
+        Some(TendonBreak::Torn) => "torn",
+        Some(TendonBreak::Stuck) => "stuck",
+    }
+}
