@@ -11,7 +11,7 @@ mod sensing;
 mod step_clock;
 
 pub use control::{Command, Control};
-pub use messages::{Attitude, Demand, ImuReading, ImuSample, MixOutput};
+pub use messages::{Attitude, Demand, ImuReading, ImuSample, MixOutput, lift};
 pub use mixing::{ArmReading, Mixing, Surroundings};
 pub use sensing::Sensing;
 pub use step_clock::StepClock;

@@ -10,10 +10,9 @@ mod tests;
 
 use self::axis::{Axis, Change};
 use self::past::{Moment, Past};
-use crate::chain::Attitude;
 use crate::math::{self, GRAVITY};
 use crate::params::Params;
-use crate::vector::Vec3;
+use crate::vector::{Quat, Vec3};
 
 /// Longest step, s: after a longer silence of the inertial sensor the estimate begins anew.
 const STEP_MAX: f32 = 0.05;
@@ -34,6 +33,17 @@ const TURN_GAIN: f32 = 0.02;
 /// Cut-off of the lateral and the vertical disturbance, rad/s.
 const LATERAL_CUTOFF: f32 = 20.0;
 const VERTICAL_CUTOFF: f32 = 8.0;
+
+/// What the inertial sensor says.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Inertial {
+    /// When it was measured, µs.
+    pub at_us: u64,
+    /// Body to world.
+    pub q: Quat,
+    /// Specific force, m/s², body.
+    pub accel: Vec3,
+}
 
 /// A pose that somebody else has measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -114,21 +124,15 @@ impl PositionEstimator {
         }
     }
 
-    /// One step with the attitude measured at `at_us` µs, the thrust demanded along -z, N, and the newest fix. `None`
-    /// without a position.
-    pub fn step(
-        &mut self,
-        at_us: u64,
-        attitude: &Attitude,
-        lift: f32,
-        fix: Option<&Fix>,
-    ) -> Option<Estimate> {
+    /// One step with the inertial sensor, the thrust demanded along -z, N, and the newest fix. `None` without a position.
+    pub fn step(&mut self, felt: &Inertial, lift: f32, fix: Option<&Fix>) -> Option<Estimate> {
+        let at_us = felt.at_us;
         let new = fix.filter(|fix| fix.at_us > self.seen_us && fix.at_us <= at_us && fix.is_sane());
         self.seen_us = new.map_or(self.seen_us, |fix| fix.at_us);
-        if !(attitude.q.is_finite() && attitude.accel.is_finite() && lift.is_finite()) {
+        if !(felt.q.is_finite() && felt.accel.is_finite() && lift.is_finite()) {
             return None;
         }
-        let yaw = attitude.q.to_euler().2;
+        let yaw = felt.q.to_euler().2;
         let track = match (&mut self.track, new) {
             (Some(track), _) if track.follows(at_us) => track,
             (track, Some(fix)) => {
@@ -141,7 +145,7 @@ impl PositionEstimator {
                 return None;
             }
         };
-        track.predict(at_us, attitude, (lift / self.mass, self.motor_tau));
+        track.predict(felt, (lift / self.mass, self.motor_tau));
         self.past.push(Moment {
             at_us,
             position: track.position(),
@@ -197,9 +201,9 @@ impl Track {
         since > 0.0 && since <= STEP_MAX && seconds(self.fixed_us, at_us) < LOST_AGE
     }
 
-    fn predict(&mut self, at_us: u64, a: &Attitude, (lift, motor_tau): (f32, f32)) {
-        let dt = seconds(self.at_us, at_us);
-        self.at_us = at_us;
+    fn predict(&mut self, a: &Inertial, (lift, motor_tau): (f32, f32)) {
+        let dt = seconds(self.at_us, a.at_us);
+        self.at_us = a.at_us;
         let force = about_down(a.q.rotate(a.accel), self.turn);
         let acceleration = force + Vec3::new(0.0, 0.0, GRAVITY);
         for (axis, acceleration) in self.axes.iter_mut().zip(acceleration.to_array()) {

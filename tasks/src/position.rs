@@ -3,42 +3,72 @@
 //! A miss makes the estimate later: its readers have a limit of ten periods. A stale attitude ends it for as long; without
 //! poses there is none, and nothing is sent.
 
-use embassy_time::Instant;
-use sophie_control::position::{Fix, PositionEstimator};
+use sophie_control::chain;
+use sophie_control::position::{Fix, Inertial, PositionEstimator};
+use sophie_control::vector::{Quat, Vec3};
 
 use crate::deadline::{FixedRate, TaskId};
-use crate::links::{Attitude, ExternalPose, Links, Stamped};
+use crate::links::{ExternalPose, Links};
 
 /// Estimates the position; never returns.
 pub async fn run(links: &Links) -> ! {
     let mut rate = FixedRate::of(links, TaskId::Position);
     let mut estimator = PositionEstimator::new(&links.params);
     loop {
-        rate.next().await;
-        let fresh = |m: &Stamped<Attitude>| m.is_fresh(Instant::now(), links.attitude.stale_after);
-        let Some(attitude) = links.attitude.latest().filter(fresh) else {
+        let now = rate.next().await.started;
+        // Under a link's lock, which masks interrupts, only what the step takes is copied; sums are made after it.
+        let attitude = &links.attitude;
+        let felt = attitude.look(|m| {
+            let fresh = m.is_fresh(now, attitude.stale_after);
+            fresh.then_some((m.at, m.value.q, m.value.accel))
+        });
+        let Some((at, q, accel)) = felt.flatten() else {
             continue;
         };
+        let seen = links.external_pose.look(|m| Seen::of(&m.value));
         // Of a heading that is not sent the position cannot be held.
-        let fix = links.external_pose.latest().and_then(|pose| fix(&pose.value));
-        let lift = links.mix.fresh().map_or(0.0, |mix| mix.lift());
-        let at_us = attitude.at.as_micros();
-        if let Some(estimate) = estimator.step(at_us, &attitude.value, lift, fix.as_ref()) {
-            links.position.send(attitude.at, estimate);
+        let fix = seen.and_then(Seen::fix);
+        let pushed = links
+            .mix
+            .fresh_to(now, |mix| mix.running.then_some((mix.thrusts, mix.tilt)));
+        let lift = pushed
+            .flatten()
+            .map_or(0.0, |(thrusts, tilt)| chain::lift(&thrusts, &tilt));
+        let at_us = at.as_micros();
+        if let Some(estimate) = estimator.step(&Inertial { at_us, q, accel }, lift, fix.as_ref()) {
+            links.position.send(at, estimate);
         }
     }
 }
 
-/// The pose as the estimator takes it; `None` without a heading.
-fn fix(pose: &ExternalPose) -> Option<Fix> {
-    let ExternalPose {
-        pose, measured_at, ..
-    } = pose;
-    Some(Fix {
-        at_us: *measured_at,
-        position: pose.position,
-        heading: pose.attitude?.to_euler().2,
-        variance: pose.position_variance,
-        resets: pose.resets,
-    })
+/// What the estimator wants of a pose.
+struct Seen {
+    at_us: u64,
+    position: Vec3,
+    attitude: Option<Quat>,
+    variance: Option<Vec3>,
+    resets: u8,
+}
+
+impl Seen {
+    const fn of(m: &ExternalPose) -> Self {
+        Self {
+            at_us: m.measured_at,
+            position: m.pose.position,
+            attitude: m.pose.attitude,
+            variance: m.pose.position_variance,
+            resets: m.pose.resets,
+        }
+    }
+
+    /// As the estimator takes it; `None` without a heading.
+    fn fix(self) -> Option<Fix> {
+        Some(Fix {
+            at_us: self.at_us,
+            position: self.position,
+            heading: self.attitude?.to_euler().2,
+            variance: self.variance,
+            resets: self.resets,
+        })
+    }
 }

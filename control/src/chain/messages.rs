@@ -95,8 +95,7 @@ impl MixOutput {
         if !self.running {
             return 0.0;
         }
-        let arms = self.thrusts.iter().zip(self.tilt);
-        arms.map(|(thrust, tilt)| thrust * cos(tilt)).sum()
+        lift(&self.thrusts, &self.tilt)
     }
 
     /// Feedback for the rate loop.
@@ -108,4 +107,10 @@ impl MixOutput {
             yaw_gated: self.yaw_gated,
         }
     }
+}
+
+/// What rotors that give `thrusts` (N) on arms at `tilt` (rad) push along body -z, N.
+pub fn lift(thrusts: &PerArm<f32>, tilt: &PerArm<f32>) -> f32 {
+    let arms = thrusts.iter().zip(tilt);
+    arms.map(|(thrust, tilt)| thrust * cos(*tilt)).sum()
 }

@@ -53,15 +53,14 @@ impl Rig {
         ]
     }
 
-    fn attitude(&self) -> Attitude {
+    fn felt(&self) -> Inertial {
         let [_, _, acceleration] = Self::truth(self.now);
         let q = Quat::from_euler(0.0, 0.0, self.yaw);
         let world = about_down(acceleration, -self.turn) - Vec3::new(0.0, 0.0, GRAVITY);
-        Attitude {
+        Inertial {
+            at_us: self.now,
             q,
             accel: q.rotate_inverse(world) + self.bias,
-            calibrated: true,
-            ..Attitude::default()
         }
     }
 
@@ -80,9 +79,7 @@ impl Rig {
     fn step(&mut self, fix: Option<Fix>) {
         self.now += STEP_US;
         let weight = 9.806_65 * Params::default().mass;
-        self.out = self
-            .estimator
-            .step(self.now, &self.attitude(), weight, fix.as_ref());
+        self.out = self.estimator.step(&self.felt(), weight, fix.as_ref());
     }
 
     fn run(&mut self, seconds: f32) {
@@ -224,9 +221,10 @@ fn what_is_no_number_or_too_old_changes_nothing() {
         assert!(r.errors()[0] < 0.006);
     }
     // An attitude that is none gives no position, and leaves none behind.
-    let mut broken = good.attitude();
+    let mut broken = good.felt();
     broken.accel.x = f32::NAN;
-    assert_eq!(good.estimator.step(good.now + STEP_US, &broken, 17.7, None), None);
+    broken.at_us += STEP_US;
+    assert_eq!(good.estimator.step(&broken, 17.7, None), None);
     good.run(0.1);
     assert!(good.out.unwrap().is_finite());
 }
@@ -245,9 +243,9 @@ fn after_a_silent_inertial_sensor_it_begins_anew() {
 #[test]
 fn a_thrust_that_is_less_than_asked_is_a_disturbance_down() {
     let mut estimator = PositionEstimator::new(&Params::default());
-    let attitude = Attitude {
+    let mut felt = Inertial {
         accel: Vec3::new(0.0, 0.0, -GRAVITY),
-        ..Attitude::default()
+        ..Inertial::default()
     };
     let weight = GRAVITY * Params::default().mass;
     let mut out = None;
@@ -256,7 +254,8 @@ fn a_thrust_that_is_less_than_asked_is_a_disturbance_down() {
             at_us: (i / 4) * 4 * STEP_US,
             ..Fix::default()
         };
-        out = estimator.step(i * STEP_US, &attitude, 1.1 * weight, Some(&fix));
+        felt.at_us = i * STEP_US;
+        out = estimator.step(&felt, 1.1 * weight, Some(&fix));
     }
     let d = out.unwrap().disturbance;
     assert!((d.z - 0.1 * GRAVITY).abs() < 0.02 && d.x == 0.0, "{d:?}");
