@@ -6,7 +6,7 @@ use std::fmt::Write;
 const BOARDS: [&str; 3] = ["matek-h743", "cuav-v5", "f405"];
 
 /// What hangs on the board, and the resources of its file that carry it.
-const SIGNALS: [(&str, &[&str]); 16] = [
+const SIGNALS: [(&str, &[&str]); 17] = [
     (
         "motors 1 to 4",
         &[
@@ -36,6 +36,7 @@ const SIGNALS: [(&str, &[&str]); 16] = [
     ("receiver: its output, its input", &["receiver.rx", "receiver.tx"]),
     ("console: adapter's TX, its RX", &["console.rx", "console.tx"]),
     ("MAVLink: other end's TX, its RX", &["mavlink.rx", "mavlink.tx"]),
+    ("flow and range: module's TX", &["ground.rx"]),
     ("USB: D+, D-", &["usb.dp", "usb.dm"]),
     (
         "battery: voltage, current",
@@ -57,6 +58,7 @@ fn pad(board: &str, pin: &str) -> Option<&'static str> {
         ("matek-h743", "PA3") => "S6",
         ("matek-h743", "PB0") => "S1",
         ("matek-h743", "PB1") => "S2",
+        ("matek-h743", "PD9") => "RX3",
         ("matek-h743", "PC5") => "RSSI",
         ("matek-h743", "PA7") => "CU2",
         ("matek-h743", "PB6") => "CL1",
@@ -85,6 +87,7 @@ fn pad(board: &str, pin: &str) -> Option<&'static str> {
         ("cuav-v5", "PA3") => "POWER2 current",
         ("cuav-v5", "PB8" | "PB9") => "GPS",
         ("cuav-v5", "PF1" | "PF0") => "I2C2",
+        ("cuav-v5", "PD0") => "UART4 RX",
         ("cuav-v5", "PD9") => "TELEM2 RX",
         ("cuav-v5", "PD8") => "TELEM2 TX",
         ("cuav-v5", "PF6") => "FMU debug RX",

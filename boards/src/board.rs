@@ -15,7 +15,9 @@ pub use chosen::{
 use sophie_control::params::Params;
 use sophie_tasks::ports::Loaded;
 
-use crate::stm32::{BufferedInput, BufferedOutput, ReceiverLine, TelemetryLine, ThisChip, UsbPort};
+use crate::stm32::{
+    BufferedInput, BufferedOutput, GroundLine, ReceiverLine, TelemetryLine, ThisChip, UsbPort,
+};
 
 /// A board's ports for the tasks.
 pub struct Board {
@@ -41,6 +43,8 @@ pub struct Board {
     pub mavlink_input: BufferedInput,
     /// MAVLink output.
     pub mavlink_output: BufferedOutput,
+    /// Module of optical flow and range.
+    pub ground: GroundLine,
     /// USB, for console and MAVLink.
     pub usb: UsbPort,
     /// The running watchdog.

@@ -10,6 +10,7 @@
 //! | receiver | USART3 | DMA1 1 and 3 | TELEM2 |
 //! | console | UART7 | none | FMU debug |
 //! | MAVLink | USART2 | none | TELEM1 |
+//! | flow and range | UART4 | none | UART4 |
 //! | USB | OTG_FS | none | on board |
 //! | parameters, FRAM | SPI2 | none | on board |
 //! | lights, sounder | TIM9 | none | on board |
@@ -40,8 +41,8 @@ use crate::Board;
 use crate::cortex_m::{enable_caches, levels_on};
 use crate::stm32::{
     AnalogInputs, ArmBus, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, PlainChip, ReadyLine,
-    ReadyStamp, Selected, ServoPairs, ThisChip, Tone, UsbPort, Wiring, console_lines, drive, hold, i2c_bus,
-    load_parameters, look, mavlink_lines, pad, receiver_line, spi_config,
+    ReadyStamp, Selected, ServoPairs, ThisChip, Tone, UsbPort, Wiring, console_lines, drive, ground_line,
+    hold, i2c_bus, load_parameters, look, mavlink_lines, pad, receiver_line, spi_config,
 };
 
 /// Name in the log.
@@ -119,6 +120,7 @@ bind_interrupts! {
         I2C2_EV => i2c::EventInterruptHandler<peripherals::I2C2>;
         I2C2_ER => i2c::ErrorInterruptHandler<peripherals::I2C2>;
         OTG_FS => usb::InterruptHandler<peripherals::USB_OTG_FS>;
+        UART4 => usart::BufferedInterruptHandler<peripherals::UART4>;
         UART7 => usart::BufferedInterruptHandler<peripherals::UART7>;
         USART2 => usart::BufferedInterruptHandler<peripherals::USART2>;
         USART3 => usart::InterruptHandler<peripherals::USART3>;
@@ -202,6 +204,11 @@ assign_resources! {
         rx: PD6,
         tx: PD5,
     }
+    ground: GroundParts {
+        uart: UART4,
+        rx: PD0,
+        tx: PD1,
+    }
     usb: UsbParts {
         core: USB_OTG_FS,
         dp: PA12,
@@ -240,6 +247,8 @@ pub async fn take() -> Board {
     let (console_input, console_output) = console_lines(c.uart, c.rx, c.tx, Irqs);
     let m = parts.mavlink;
     let (mavlink_input, mavlink_output) = mavlink_lines(m.uart, m.rx, m.tx, Irqs);
+    let g = parts.ground;
+    let ground = ground_line(g.uart, g.rx, g.tx, Irqs, &params);
     Board {
         watchdog: Dog::start(parts.watchdog.dog),
         motors: motors(parts.motors, &params),
@@ -257,6 +266,7 @@ pub async fn take() -> Board {
         console_output,
         mavlink_input,
         mavlink_output,
+        ground,
         usb: UsbPort::new(parts.usb.core, parts.usb.dp, parts.usb.dm, Irqs, PRODUCT),
         lights: lights(parts.lights),
         storage,

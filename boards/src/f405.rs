@@ -11,6 +11,7 @@
 //! | receiver | USART1 | DMA2 5 and 7 | PA10 in, PA9 out |
 //! | console | USART2 | none | PA3 in, PA2 out |
 //! | MAVLink | USART3 | none | PC11 in, PC10 out |
+//! | flow and range | UART5 | none | PD2 in, PC12 unused |
 //! | USB | OTG_FS | none | PA12 plus, PA11 minus |
 //! | lights, buzzer | | none | PB12 state, PB13 fault, PA8 |
 //! | parameters | flash | none | sectors 1 and 2 |
@@ -41,8 +42,8 @@ use crate::Board;
 use crate::cortex_m::levels_on;
 use crate::stm32::{
     AnalogInputs, ArmBus, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, ParamFlash, ReadyLine,
-    ReadyStamp, Selected, ServoPairs, ThisChip, UsbPort, Wiring, accelerator, console_lines, drive, i2c_bus,
-    load_parameters, look, mavlink_lines, pad, receiver_line, spi_config,
+    ReadyStamp, Selected, ServoPairs, ThisChip, UsbPort, Wiring, accelerator, console_lines, drive,
+    ground_line, i2c_bus, load_parameters, look, mavlink_lines, pad, receiver_line, spi_config,
 };
 
 /// Name in the log.
@@ -108,6 +109,7 @@ bind_interrupts! {
         I2C2_EV => i2c::EventInterruptHandler<peripherals::I2C2>;
         I2C2_ER => i2c::ErrorInterruptHandler<peripherals::I2C2>;
         OTG_FS => usb::InterruptHandler<peripherals::USB_OTG_FS>;
+        UART5 => usart::BufferedInterruptHandler<peripherals::UART5>;
         USART1 => usart::InterruptHandler<peripherals::USART1>;
         USART2 => usart::BufferedInterruptHandler<peripherals::USART2>;
         USART3 => usart::BufferedInterruptHandler<peripherals::USART3>;
@@ -183,6 +185,11 @@ assign_resources! {
         rx: PC11,
         tx: PC10,
     }
+    ground: GroundParts {
+        uart: UART5,
+        rx: PD2,
+        tx: PC12,
+    }
     usb: UsbParts {
         core: USB_OTG_FS,
         dp: PA12,
@@ -215,6 +222,8 @@ pub async fn take() -> Board {
     let (console_input, console_output) = console_lines(c.uart, c.rx, c.tx, Irqs);
     let m = parts.mavlink;
     let (mavlink_input, mavlink_output) = mavlink_lines(m.uart, m.rx, m.tx, Irqs);
+    let g = parts.ground;
+    let ground = ground_line(g.uart, g.rx, g.tx, Irqs, &params);
     Board {
         watchdog: Dog::start(parts.watchdog.dog),
         motors: motors(parts.motors, &params),
@@ -232,6 +241,7 @@ pub async fn take() -> Board {
         console_output,
         mavlink_input,
         mavlink_output,
+        ground,
         usb: UsbPort::new(parts.usb.core, parts.usb.dp, parts.usb.dm, Irqs, PRODUCT),
         lights: lights(parts.lights),
         storage,

@@ -10,6 +10,7 @@
 //! | receiver | USART6 | DMA2 0 and 1 | RX6, TX6 |
 //! | console | UART7 | none | RX7, TX7 |
 //! | MAVLink | USART1 | none | RX1, TX1 |
+//! | flow and range | USART3 | none | RX3 |
 //! | USB | OTG_FS | none | on board |
 //! | parameters | flash | none | sectors 6 and 7 of bank 2 |
 //! | time | TIM2 | none | |
@@ -35,7 +36,7 @@ use crate::Board;
 use crate::cortex_m::{enable_caches, levels_on};
 use crate::stm32::{
     AnalogInputs, ArmBus, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, ParamFlash, ReadyLine,
-    ReadyStamp, Selected, ServoTimer, ThisChip, UsbPort, Wiring, console_lines, drive, i2c_bus,
+    ReadyStamp, Selected, ServoTimer, ThisChip, UsbPort, Wiring, console_lines, drive, ground_line, i2c_bus,
     load_parameters, look, mavlink_lines, pad, receiver_line, spi_config,
 };
 
@@ -107,6 +108,7 @@ bind_interrupts! {
         OTG_FS => usb::InterruptHandler<peripherals::USB_OTG_FS>;
         UART7 => usart::BufferedInterruptHandler<peripherals::UART7>;
         USART1 => usart::BufferedInterruptHandler<peripherals::USART1>;
+        USART3 => usart::BufferedInterruptHandler<peripherals::USART3>;
         USART6 => usart::InterruptHandler<peripherals::USART6>;
     }
 }
@@ -179,6 +181,11 @@ assign_resources! {
         rx: PA10,
         tx: PA9,
     }
+    ground: GroundParts {
+        uart: USART3,
+        rx: PD9,
+        tx: PD8,
+    }
     usb: UsbParts {
         core: USB_OTG_FS,
         dp: PA12,
@@ -211,6 +218,8 @@ pub async fn take() -> Board {
     let (console_input, console_output) = console_lines(c.uart, c.rx, c.tx, Irqs);
     let m = parts.mavlink;
     let (mavlink_input, mavlink_output) = mavlink_lines(m.uart, m.rx, m.tx, Irqs);
+    let g = parts.ground;
+    let ground = ground_line(g.uart, g.rx, g.tx, Irqs, &params);
     Board {
         watchdog: Dog::start(parts.watchdog.dog),
         motors: motors(parts.motors, &params),
@@ -228,6 +237,7 @@ pub async fn take() -> Board {
         console_output,
         mavlink_input,
         mavlink_output,
+        ground,
         usb: UsbPort::new(parts.usb.core, parts.usb.dp, parts.usb.dm, Irqs, PRODUCT),
         lights: lights(parts.lights),
         storage,

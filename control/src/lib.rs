@@ -32,6 +32,7 @@ pub mod grip;
 pub mod grip_fault;
 pub mod grip_memory;
 pub mod gripper;
+pub mod ground;
 pub mod imu_filter;
 pub mod math;
 pub mod mixer;

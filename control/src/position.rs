@@ -1,15 +1,23 @@
-//! Position, velocity and disturbance, 200 Hz, from the inertial sensor and poses that others measure late.
+//! Position, velocity and disturbance, 200 Hz, from the inertial sensor and poses that others measure late, or without them
+//! from optical flow and range.
 //!
 //! The axes are those of the pose's sender: down is the vehicle's, the heading differs by a turn that is estimated
-//! (the vehicle has no compass, and a visual odometry drifts). docs/hold.md has derivation and figures.
+//! (the vehicle has no compass, and a visual odometry drifts). By flow alone they begin where the first one came. docs/hold.md has derivation and figures.
 
+mod agreement;
 mod axis;
 mod past;
+mod sight;
+#[cfg(test)]
+mod sight_tests;
 #[cfg(test)]
 mod tests;
 
 use self::axis::{Axis, Change};
 use self::past::{Moment, Past};
+use self::sight::Sight;
+pub use self::sight::{FLOW_HEIGHT, SightFault};
+use crate::ground::{Flow, GroundView};
 use crate::math::{self, GRAVITY};
 use crate::params::Params;
 use crate::vector::{Quat, Vec3};
@@ -28,6 +36,11 @@ pub const FIX_DEVIATION: f32 = 0.01;
 const DEVIATION_BOUNDS: (f32, f32) = (0.003, 0.5);
 /// Fixes refused in a row after which the next is believed, half a second at 50 Hz: the sender has found another origin.
 const REFUSED_MAX: u32 = 25;
+/// Age of the newest pose from which on flow and range are taken, s.
+const POSE_FRESH: f32 = 0.2;
+/// Flows refused in a row after which the next is believed, a second at 50 Hz; one that is wrong for good is found out by
+/// its agreement with the inertial sensor.
+const FLOWS_REFUSED_MAX: u32 = 50;
 /// Share of a new heading's difference that the turn follows: 1 s at 50 Hz.
 const TURN_GAIN: f32 = 0.02;
 /// Cut-off of the lateral and the vertical disturbance, rad/s.
@@ -91,6 +104,8 @@ pub struct Estimate {
     pub age: f32,
     /// Counts where the position has jumped with the sender's origin.
     pub jumps: u8,
+    /// What is wrong with flow or range, which are left out then.
+    pub fault: Option<SightFault>,
 }
 
 impl Estimate {
@@ -108,8 +123,10 @@ pub struct PositionEstimator {
     past: Past,
     /// `None` before the first fix and after the last one has aged.
     track: Option<Track>,
-    /// When the newest fix that was looked at was measured, µs: each is taken once.
+    sight: Sight,
+    /// When the newest fix and the newest flow that were looked at were measured, µs: each is taken once.
     seen_us: u64,
+    flow_us: u64,
 }
 
 impl PositionEstimator {
@@ -120,28 +137,45 @@ impl PositionEstimator {
             motor_tau: p.motor_tau,
             past: Past::default(),
             track: None,
+            sight: Sight::default(),
             seen_us: 0,
+            flow_us: 0,
         }
     }
 
-    /// One step with the inertial sensor, the thrust demanded along -z, N, and the newest fix. `None` without a position.
-    pub fn step(&mut self, felt: &Inertial, lift: f32, fix: Option<&Fix>) -> Option<Estimate> {
+    /// One step with the inertial sensor, the thrust demanded along -z, N, the newest fix and the newest flow and range.
+    /// `None` without a position.
+    pub fn step(
+        &mut self,
+        felt: &Inertial,
+        lift: f32,
+        fix: Option<&Fix>,
+        view: Option<&GroundView>,
+    ) -> Option<Estimate> {
         let at_us = felt.at_us;
         let new = fix.filter(|fix| fix.at_us > self.seen_us && fix.at_us <= at_us && fix.is_sane());
         self.seen_us = new.map_or(self.seen_us, |fix| fix.at_us);
+        let flow = view.and_then(|view| view.flow).and_then(Flow::checked);
+        let flow = flow.filter(|flow| flow.until_us > self.flow_us && flow.until_us <= at_us);
+        self.flow_us = flow.map_or(self.flow_us, |flow| flow.until_us);
+        let range = view.and_then(|view| self.sight.new_range(view, at_us));
         if !(felt.q.is_finite() && felt.accel.is_finite() && lift.is_finite()) {
             return None;
         }
-        let yaw = felt.q.to_euler().2;
         let track = match (&mut self.track, new) {
             (Some(track), _) if track.follows(at_us) => track,
             (track, Some(fix)) => {
                 self.past.clear();
-                *track = Some(Track::begin(at_us, yaw, fix));
+                *track = Some(Track::begin(at_us, felt.q.to_euler().2, fix));
                 return None;
             }
             (track, None) => {
-                *track = None;
+                // Where the first flow that is of use comes, the axes begin: on the ground below, as the vehicle's own.
+                let height = flow.and_then(|flow| self.sight.begin(&flow, felt.q));
+                *track = height.map(|height| {
+                    self.past.clear();
+                    Track::above(at_us, height)
+                });
                 return None;
             }
         };
@@ -149,12 +183,19 @@ impl PositionEstimator {
         self.past.push(Moment {
             at_us,
             position: track.position(),
-            yaw,
+            q: felt.q,
         });
         if let Some(fix) = new {
             track.take(&mut self.past, fix);
         }
-        track.estimate()
+        let posed = track.posed && seconds(track.pose_us, at_us) < POSE_FRESH;
+        if let Some((at, distance)) = range {
+            track.take_range(&mut self.past, &mut self.sight, (at, distance), posed);
+        }
+        if let Some(flow) = flow {
+            track.take_flow(&mut self.past, &mut self.sight, &flow, posed);
+        }
+        track.estimate(self.sight.fault())
     }
 }
 
@@ -167,11 +208,16 @@ struct Track {
     /// Thrust over mass, with the motors' lag, m/s².
     lift: f32,
     disturbance: Vec3,
-    /// Times of the last step and of the newest fix taken, µs.
+    /// Times of the last step and of the newest fix or flow taken, µs.
     at_us: u64,
     fixed_us: u64,
     fixes: u32,
     refused: u32,
+    /// There was a pose, the newest one that was taken at this time, µs: the axes are its sender's.
+    posed: bool,
+    pose_us: u64,
+    /// Flows refused in a row.
+    flows_refused: u32,
     resets: u8,
     jumps: u8,
     ready: bool,
@@ -189,9 +235,25 @@ impl Track {
             fixed_us: fix.at_us,
             fixes: 1,
             refused: 0,
+            posed: true,
+            pose_us: fix.at_us,
+            flows_refused: 0,
             resets: fix.resets,
             jumps: 0,
             ready: false,
+        }
+    }
+
+    /// At rest `height` m above the ground, in the vehicle's own axes.
+    fn above(at_us: u64, height: f32) -> Self {
+        let here = Fix {
+            at_us,
+            position: Vec3::new(0.0, 0.0, -height),
+            ..Fix::default()
+        };
+        Self {
+            posed: false,
+            ..Self::begin(at_us, 0.0, &here)
         }
     }
 
@@ -227,14 +289,15 @@ impl Track {
         let Some(then) = past.at(fix.at_us) else {
             return;
         };
+        let yaw = then.yaw();
         let innovation = fix.position - then.position;
         let variance = fix.variance();
         let close = |((axis, y), r): ((&Axis, f32), f32)| axis.accepts(y, r);
         let pairs = self.axes.iter().zip(innovation.to_array());
         let accepted = pairs.zip(variance.to_array()).all(close);
-        if fix.resets != self.resets || self.refused >= REFUSED_MAX {
+        if !self.posed || fix.resets != self.resets || self.refused >= REFUSED_MAX {
             past.clear();
-            self.jump(then.yaw, fix);
+            self.jump(yaw, fix);
         } else if accepted {
             let lag = seconds(fix.at_us, self.at_us);
             let mut changes = [Change::default(); 3];
@@ -244,17 +307,72 @@ impl Track {
             }
             past.change(fix.at_us, &changes);
             let gain = math::clamp(1.0 / (1.0 + self.fixes as f32), TURN_GAIN, 1.0);
-            let off = math::wrap_pi(fix.heading - then.yaw - self.turn);
+            let off = math::wrap_pi(fix.heading - yaw - self.turn);
             self.turn = math::wrap_pi(self.turn + gain * off);
-            self.fixes = self.fixes.saturating_add(1);
-            let known = self.axes.iter().all(|axis| axis.speed_within(READY_SPEED));
-            self.ready |= known && self.fixes >= READY_FIXES;
+            self.count();
         } else {
             self.refused += 1;
             return;
         }
         self.refused = 0;
         self.fixed_us = fix.at_us;
+        (self.posed, self.pose_us) = (true, fix.at_us);
+    }
+
+    /// One more fix or flow was taken.
+    fn count(&mut self) {
+        self.fixes = self.fixes.saturating_add(1);
+        let known = self.axes.iter().all(|axis| axis.speed_within(READY_SPEED));
+        self.ready |= known && self.fixes >= READY_FIXES;
+    }
+
+    /// Compares a range of `distance` m, measured at `at` µs, with the height; beside a pose it only tells where the ground is.
+    fn take_range(&mut self, past: &mut Past, sight: &mut Sight, (at, distance): (u64, f32), posed: bool) {
+        let Some(then) = past.at(at) else {
+            return;
+        };
+        let [_, _, axis] = &mut self.axes;
+        let Some((innovation, variance)) = sight.height(&then, distance, posed) else {
+            return;
+        };
+        let change = axis.correct(innovation, variance, seconds(at, self.at_us));
+        past.change(at, &[Change::default(), Change::default(), change]);
+    }
+
+    /// Compares a flow with the velocity in its middle; beside a pose it is only watched.
+    fn take_flow(&mut self, past: &mut Past, sight: &mut Sight, flow: &Flow, posed: bool) {
+        let begin = flow.until_us.saturating_sub((flow.seconds * 1e6) as u64);
+        let middle = begin + flow.until_us.saturating_sub(begin) / 2;
+        let (Some(from), Some(to)) = (past.at(begin), past.at(flow.until_us)) else {
+            return;
+        };
+        let Some(seen) = sight.velocity(flow, &from, &to, self.turn) else {
+            return;
+        };
+        if posed {
+            return;
+        }
+        let [x, y, _] = &mut self.axes;
+        let sides = [(x, seen.off[0]), (y, seen.off[1])];
+        if sides
+            .iter()
+            .any(|(axis, off)| !axis.accepts_speed(*off, seen.variance))
+        {
+            self.flows_refused += 1;
+            if self.flows_refused < FLOWS_REFUSED_MAX {
+                return;
+            }
+            for (axis, off) in sides {
+                axis.set_speed(axis.velocity() + off);
+            }
+        } else {
+            let lag = seconds(middle, self.at_us);
+            let [along, across] = sides.map(|(axis, off)| axis.correct_speed(off, seen.variance, lag));
+            past.change(middle, &[along, across, Change::default()]);
+            self.count();
+        }
+        self.flows_refused = 0;
+        self.fixed_us = flow.until_us;
     }
 
     /// The sender's origin has jumped: velocity and bias stay, but for their turn.
@@ -292,7 +410,7 @@ impl Track {
         self.of(Axis::bias)
     }
 
-    fn estimate(&self) -> Option<Estimate> {
+    fn estimate(&self, fault: Option<SightFault>) -> Option<Estimate> {
         let estimate = Estimate {
             position: self.position(),
             velocity: self.velocity(),
@@ -300,6 +418,7 @@ impl Track {
             turn: self.turn,
             age: seconds(self.fixed_us, self.at_us),
             jumps: self.jumps,
+            fault,
         };
         (self.ready && estimate.is_finite()).then_some(estimate)
     }

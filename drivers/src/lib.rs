@@ -11,6 +11,7 @@
 //! | [`i2c_lines`] | held I2C bus | used by the board's buses |
 //! | [`esc_protocol`]: [`dshot`], [`dshot_decoder`], [`esc_pwm`] | motor controllers | used by the board's `Motors` |
 //! | [`rc_decoder`]: [`crsf`], [`sbus`] | receiver | `RcDecoder` |
+//! | [`ground_module`]: [`msp`] | flow and range | `GroundDecoder` |
 //! | [`servo_pulse`] | tendon servos | used by the board's `Servos` |
 //! | [`param_store`], [`fram`] | parameters in flash, or in FRAM on SPI | `Storage` |
 
@@ -37,12 +38,14 @@ pub mod esc_protocol;
 pub mod esc_pwm;
 pub mod fault;
 pub mod fram;
+pub mod ground_module;
 pub mod i2c_lines;
 pub mod i2c_timing;
 pub mod icm20689;
 pub mod icm42688p;
 pub mod line_watch;
 pub mod mounting;
+pub mod msp;
 pub mod param_store;
 pub mod pwm_timing;
 pub mod rc_decoder;

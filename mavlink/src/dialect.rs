@@ -1653,6 +1653,127 @@ impl MessageData for CURRENT_MODE_DATA {
         }
     }
 }
+#[doc = "ID: 132"]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "arbitrary", derive(Arbitrary))]
+#[cfg_attr(feature = "ts-rs", derive(TS))]
+#[cfg_attr(feature = "ts-rs", ts(export))]
+pub struct DISTANCE_SENSOR_DATA {
+    pub time_boot_ms: u32,
+    pub min_distance: u16,
+    pub max_distance: u16,
+    pub current_distance: u16,
+    pub mavtype: u8,
+    pub id: u8,
+    pub orientation: u8,
+    pub covariance: u8,
+    #[cfg_attr(feature = "serde", serde(default = "crate::utils::RustDefault::rust_default"))]
+    pub horizontal_fov: f32,
+    #[cfg_attr(feature = "serde", serde(default = "crate::utils::RustDefault::rust_default"))]
+    pub vertical_fov: f32,
+    #[cfg_attr(feature = "serde", serde(default = "crate::utils::RustDefault::rust_default"))]
+    #[cfg_attr(feature = "serde", serde(with = "serde_arrays"))]
+    #[cfg_attr(feature = "ts-rs", ts(type = "Array<number>"))]
+    pub quaternion: [f32; 4],
+    #[cfg_attr(feature = "serde", serde(default = "crate::utils::RustDefault::rust_default"))]
+    pub signal_quality: u8,
+}
+impl DISTANCE_SENSOR_DATA {
+    pub const ENCODED_LEN: usize = 39usize;
+    pub const DEFAULT: Self = Self {
+        time_boot_ms: 0_u32,
+        min_distance: 0_u16,
+        max_distance: 0_u16,
+        current_distance: 0_u16,
+        mavtype: 0_u8,
+        id: 0_u8,
+        orientation: 0_u8,
+        covariance: 0_u8,
+        horizontal_fov: 0.0_f32,
+        vertical_fov: 0.0_f32,
+        quaternion: [0.0_f32; 4usize],
+        signal_quality: 0_u8,
+    };
+    #[cfg(feature = "arbitrary")]
+    pub fn random<R: rand::Rng>(rng: &mut R) -> Self {
+        use arbitrary::{Arbitrary, Unstructured};
+        let mut buf = [0u8; 1024];
+        rng.fill_bytes(&mut buf);
+        let mut unstructured = Unstructured::new(&buf);
+        Self::arbitrary(&mut unstructured).unwrap_or_default()
+    }
+}
+impl Default for DISTANCE_SENSOR_DATA {
+    fn default() -> Self {
+        Self::DEFAULT.clone()
+    }
+}
+impl MessageData for DISTANCE_SENSOR_DATA {
+    type Message = MavMessage;
+    const ID: u32 = 132u32;
+    const NAME: &'static str = "DISTANCE_SENSOR";
+    const EXTRA_CRC: u8 = 85u8;
+    const ENCODED_LEN: usize = 39usize;
+    fn deser(_version: MavlinkVersion, __input: &[u8]) -> Result<Self, ::mavlink_core::error::ParserError> {
+        let avail_len = __input.len();
+        let mut payload_buf;
+        let mut buf = if avail_len < Self::ENCODED_LEN {
+            payload_buf = [0; Self::ENCODED_LEN];
+            payload_buf[0..avail_len].copy_from_slice(__input);
+            Bytes::new(&payload_buf)
+        } else {
+            Bytes::new(__input)
+        };
+        let mut __struct = Self::default();
+        __struct.time_boot_ms = buf.get_u32_le()?;
+        __struct.min_distance = buf.get_u16_le()?;
+        __struct.max_distance = buf.get_u16_le()?;
+        __struct.current_distance = buf.get_u16_le()?;
+        __struct.mavtype = buf.get_u8()?;
+        __struct.id = buf.get_u8()?;
+        __struct.orientation = buf.get_u8()?;
+        __struct.covariance = buf.get_u8()?;
+        __struct.horizontal_fov = buf.get_f32_le()?;
+        __struct.vertical_fov = buf.get_f32_le()?;
+        for v in &mut __struct.quaternion {
+            let val = buf.get_f32_le()?;
+            *v = val;
+        }
+        __struct.signal_quality = buf.get_u8()?;
+        Ok(__struct)
+    }
+    fn ser(&self, version: MavlinkVersion, bytes: &mut [u8]) -> usize {
+        let mut __tmp = BytesMut::new(bytes);
+        if __tmp.remaining() < Self::ENCODED_LEN {
+            panic!(
+                "buffer is too small (need {} bytes, but got {})",
+                Self::ENCODED_LEN,
+                __tmp.remaining(),
+            )
+        }
+        __tmp.put_u32_le(self.time_boot_ms);
+        __tmp.put_u16_le(self.min_distance);
+        __tmp.put_u16_le(self.max_distance);
+        __tmp.put_u16_le(self.current_distance);
+        __tmp.put_u8(self.mavtype);
+        __tmp.put_u8(self.id);
+        __tmp.put_u8(self.orientation);
+        __tmp.put_u8(self.covariance);
+        if matches!(version, MavlinkVersion::V2) {
+            __tmp.put_f32_le(self.horizontal_fov);
+            __tmp.put_f32_le(self.vertical_fov);
+            for val in &self.quaternion {
+                __tmp.put_f32_le(*val);
+            }
+            __tmp.put_u8(self.signal_quality);
+            let len = __tmp.len();
+            ::mavlink_core::utils::remove_trailing_zeroes(&bytes[..len])
+        } else {
+            __tmp.len()
+        }
+    }
+}
 #[doc = "ID: 245"]
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
@@ -2196,6 +2317,116 @@ impl MessageData for ODOMETRY_DATA {
             __tmp.put_u8(self.reset_counter);
             __tmp.put_u8(self.estimator_type);
             __tmp.put_i8(self.quality);
+            let len = __tmp.len();
+            ::mavlink_core::utils::remove_trailing_zeroes(&bytes[..len])
+        } else {
+            __tmp.len()
+        }
+    }
+}
+#[doc = "ID: 106"]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "arbitrary", derive(Arbitrary))]
+#[cfg_attr(feature = "ts-rs", derive(TS))]
+#[cfg_attr(feature = "ts-rs", ts(export))]
+pub struct OPTICAL_FLOW_RAD_DATA {
+    pub time_usec: u64,
+    pub integration_time_us: u32,
+    pub integrated_x: f32,
+    pub integrated_y: f32,
+    pub integrated_xgyro: f32,
+    pub integrated_ygyro: f32,
+    pub integrated_zgyro: f32,
+    pub time_delta_distance_us: u32,
+    pub distance: f32,
+    pub temperature: i16,
+    pub sensor_id: u8,
+    pub quality: u8,
+}
+impl OPTICAL_FLOW_RAD_DATA {
+    pub const ENCODED_LEN: usize = 44usize;
+    pub const DEFAULT: Self = Self {
+        time_usec: 0_u64,
+        integration_time_us: 0_u32,
+        integrated_x: 0.0_f32,
+        integrated_y: 0.0_f32,
+        integrated_xgyro: 0.0_f32,
+        integrated_ygyro: 0.0_f32,
+        integrated_zgyro: 0.0_f32,
+        time_delta_distance_us: 0_u32,
+        distance: 0.0_f32,
+        temperature: 0_i16,
+        sensor_id: 0_u8,
+        quality: 0_u8,
+    };
+    #[cfg(feature = "arbitrary")]
+    pub fn random<R: rand::Rng>(rng: &mut R) -> Self {
+        use arbitrary::{Arbitrary, Unstructured};
+        let mut buf = [0u8; 1024];
+        rng.fill_bytes(&mut buf);
+        let mut unstructured = Unstructured::new(&buf);
+        Self::arbitrary(&mut unstructured).unwrap_or_default()
+    }
+}
+impl Default for OPTICAL_FLOW_RAD_DATA {
+    fn default() -> Self {
+        Self::DEFAULT.clone()
+    }
+}
+impl MessageData for OPTICAL_FLOW_RAD_DATA {
+    type Message = MavMessage;
+    const ID: u32 = 106u32;
+    const NAME: &'static str = "OPTICAL_FLOW_RAD";
+    const EXTRA_CRC: u8 = 138u8;
+    const ENCODED_LEN: usize = 44usize;
+    fn deser(_version: MavlinkVersion, __input: &[u8]) -> Result<Self, ::mavlink_core::error::ParserError> {
+        let avail_len = __input.len();
+        let mut payload_buf;
+        let mut buf = if avail_len < Self::ENCODED_LEN {
+            payload_buf = [0; Self::ENCODED_LEN];
+            payload_buf[0..avail_len].copy_from_slice(__input);
+            Bytes::new(&payload_buf)
+        } else {
+            Bytes::new(__input)
+        };
+        let mut __struct = Self::default();
+        __struct.time_usec = buf.get_u64_le()?;
+        __struct.integration_time_us = buf.get_u32_le()?;
+        __struct.integrated_x = buf.get_f32_le()?;
+        __struct.integrated_y = buf.get_f32_le()?;
+        __struct.integrated_xgyro = buf.get_f32_le()?;
+        __struct.integrated_ygyro = buf.get_f32_le()?;
+        __struct.integrated_zgyro = buf.get_f32_le()?;
+        __struct.time_delta_distance_us = buf.get_u32_le()?;
+        __struct.distance = buf.get_f32_le()?;
+        __struct.temperature = buf.get_i16_le()?;
+        __struct.sensor_id = buf.get_u8()?;
+        __struct.quality = buf.get_u8()?;
+        Ok(__struct)
+    }
+    fn ser(&self, version: MavlinkVersion, bytes: &mut [u8]) -> usize {
+        let mut __tmp = BytesMut::new(bytes);
+        if __tmp.remaining() < Self::ENCODED_LEN {
+            panic!(
+                "buffer is too small (need {} bytes, but got {})",
+                Self::ENCODED_LEN,
+                __tmp.remaining(),
+            )
+        }
+        __tmp.put_u64_le(self.time_usec);
+        __tmp.put_u32_le(self.integration_time_us);
+        __tmp.put_f32_le(self.integrated_x);
+        __tmp.put_f32_le(self.integrated_y);
+        __tmp.put_f32_le(self.integrated_xgyro);
+        __tmp.put_f32_le(self.integrated_ygyro);
+        __tmp.put_f32_le(self.integrated_zgyro);
+        __tmp.put_u32_le(self.time_delta_distance_us);
+        __tmp.put_f32_le(self.distance);
+        __tmp.put_i16_le(self.temperature);
+        __tmp.put_u8(self.sensor_id);
+        __tmp.put_u8(self.quality);
+        if matches!(version, MavlinkVersion::V2) {
             let len = __tmp.len();
             ::mavlink_core::utils::remove_trailing_zeroes(&bytes[..len])
         } else {
@@ -3883,6 +4114,8 @@ pub enum MavMessage {
     COMPONENT_METADATA(COMPONENT_METADATA_DATA),
     #[doc = "ID: 436"]
     CURRENT_MODE(CURRENT_MODE_DATA),
+    #[doc = "ID: 132"]
+    DISTANCE_SENSOR(DISTANCE_SENSOR_DATA),
     #[doc = "ID: 245"]
     EXTENDED_SYS_STATE(EXTENDED_SYS_STATE_DATA),
     #[doc = "ID: 110"]
@@ -3895,6 +4128,8 @@ pub enum MavMessage {
     NAMED_VALUE_FLOAT(NAMED_VALUE_FLOAT_DATA),
     #[doc = "ID: 331"]
     ODOMETRY(ODOMETRY_DATA),
+    #[doc = "ID: 106"]
+    OPTICAL_FLOW_RAD(OPTICAL_FLOW_RAD_DATA),
     #[doc = "ID: 21"]
     PARAM_REQUEST_LIST(PARAM_REQUEST_LIST_DATA),
     #[doc = "ID: 20"]
@@ -3934,8 +4169,8 @@ impl MavMessage {
     pub const fn all_ids() -> &'static [u32] {
         &[
             0u32, 1u32, 4u32, 20u32, 21u32, 22u32, 23u32, 26u32, 30u32, 31u32, 36u32, 65u32, 75u32, 76u32,
-            77u32, 82u32, 102u32, 110u32, 111u32, 126u32, 138u32, 147u32, 148u32, 244u32, 245u32, 251u32,
-            253u32, 256u32, 331u32, 397u32, 435u32, 436u32, 437u32, 53000u32,
+            77u32, 82u32, 102u32, 106u32, 110u32, 111u32, 126u32, 132u32, 138u32, 147u32, 148u32, 244u32,
+            245u32, 251u32, 253u32, 256u32, 331u32, 397u32, 435u32, 436u32, 437u32, 53000u32,
         ]
     }
     pub const fn all_messages() -> &'static [(&'static str, u32)] {
@@ -3960,9 +4195,11 @@ impl MavMessage {
                 VISION_POSITION_ESTIMATE_DATA::NAME,
                 VISION_POSITION_ESTIMATE_DATA::ID,
             ),
+            (OPTICAL_FLOW_RAD_DATA::NAME, OPTICAL_FLOW_RAD_DATA::ID),
             (FILE_TRANSFER_PROTOCOL_DATA::NAME, FILE_TRANSFER_PROTOCOL_DATA::ID),
             (TIMESYNC_DATA::NAME, TIMESYNC_DATA::ID),
             (SERIAL_CONTROL_DATA::NAME, SERIAL_CONTROL_DATA::ID),
+            (DISTANCE_SENSOR_DATA::NAME, DISTANCE_SENSOR_DATA::ID),
             (ATT_POS_MOCAP_DATA::NAME, ATT_POS_MOCAP_DATA::ID),
             (BATTERY_STATUS_DATA::NAME, BATTERY_STATUS_DATA::ID),
             (AUTOPILOT_VERSION_DATA::NAME, AUTOPILOT_VERSION_DATA::ID),
@@ -4012,6 +4249,9 @@ impl Message for MavMessage {
                 COMPONENT_METADATA_DATA::deser(version, payload).map(Self::COMPONENT_METADATA)
             }
             CURRENT_MODE_DATA::ID => CURRENT_MODE_DATA::deser(version, payload).map(Self::CURRENT_MODE),
+            DISTANCE_SENSOR_DATA::ID => {
+                DISTANCE_SENSOR_DATA::deser(version, payload).map(Self::DISTANCE_SENSOR)
+            }
             EXTENDED_SYS_STATE_DATA::ID => {
                 EXTENDED_SYS_STATE_DATA::deser(version, payload).map(Self::EXTENDED_SYS_STATE)
             }
@@ -4026,6 +4266,9 @@ impl Message for MavMessage {
                 NAMED_VALUE_FLOAT_DATA::deser(version, payload).map(Self::NAMED_VALUE_FLOAT)
             }
             ODOMETRY_DATA::ID => ODOMETRY_DATA::deser(version, payload).map(Self::ODOMETRY),
+            OPTICAL_FLOW_RAD_DATA::ID => {
+                OPTICAL_FLOW_RAD_DATA::deser(version, payload).map(Self::OPTICAL_FLOW_RAD)
+            }
             PARAM_REQUEST_LIST_DATA::ID => {
                 PARAM_REQUEST_LIST_DATA::deser(version, payload).map(Self::PARAM_REQUEST_LIST)
             }
@@ -4069,12 +4312,14 @@ impl Message for MavMessage {
             Self::COMMAND_LONG(..) => COMMAND_LONG_DATA::NAME,
             Self::COMPONENT_METADATA(..) => COMPONENT_METADATA_DATA::NAME,
             Self::CURRENT_MODE(..) => CURRENT_MODE_DATA::NAME,
+            Self::DISTANCE_SENSOR(..) => DISTANCE_SENSOR_DATA::NAME,
             Self::EXTENDED_SYS_STATE(..) => EXTENDED_SYS_STATE_DATA::NAME,
             Self::FILE_TRANSFER_PROTOCOL(..) => FILE_TRANSFER_PROTOCOL_DATA::NAME,
             Self::HEARTBEAT(..) => HEARTBEAT_DATA::NAME,
             Self::MESSAGE_INTERVAL(..) => MESSAGE_INTERVAL_DATA::NAME,
             Self::NAMED_VALUE_FLOAT(..) => NAMED_VALUE_FLOAT_DATA::NAME,
             Self::ODOMETRY(..) => ODOMETRY_DATA::NAME,
+            Self::OPTICAL_FLOW_RAD(..) => OPTICAL_FLOW_RAD_DATA::NAME,
             Self::PARAM_REQUEST_LIST(..) => PARAM_REQUEST_LIST_DATA::NAME,
             Self::PARAM_REQUEST_READ(..) => PARAM_REQUEST_READ_DATA::NAME,
             Self::PARAM_SET(..) => PARAM_SET_DATA::NAME,
@@ -4107,12 +4352,14 @@ impl Message for MavMessage {
             Self::COMMAND_LONG(..) => COMMAND_LONG_DATA::ID,
             Self::COMPONENT_METADATA(..) => COMPONENT_METADATA_DATA::ID,
             Self::CURRENT_MODE(..) => CURRENT_MODE_DATA::ID,
+            Self::DISTANCE_SENSOR(..) => DISTANCE_SENSOR_DATA::ID,
             Self::EXTENDED_SYS_STATE(..) => EXTENDED_SYS_STATE_DATA::ID,
             Self::FILE_TRANSFER_PROTOCOL(..) => FILE_TRANSFER_PROTOCOL_DATA::ID,
             Self::HEARTBEAT(..) => HEARTBEAT_DATA::ID,
             Self::MESSAGE_INTERVAL(..) => MESSAGE_INTERVAL_DATA::ID,
             Self::NAMED_VALUE_FLOAT(..) => NAMED_VALUE_FLOAT_DATA::ID,
             Self::ODOMETRY(..) => ODOMETRY_DATA::ID,
+            Self::OPTICAL_FLOW_RAD(..) => OPTICAL_FLOW_RAD_DATA::ID,
             Self::PARAM_REQUEST_LIST(..) => PARAM_REQUEST_LIST_DATA::ID,
             Self::PARAM_REQUEST_READ(..) => PARAM_REQUEST_READ_DATA::ID,
             Self::PARAM_SET(..) => PARAM_SET_DATA::ID,
@@ -4145,12 +4392,14 @@ impl Message for MavMessage {
             COMMAND_LONG_DATA::NAME => Some(COMMAND_LONG_DATA::ID),
             COMPONENT_METADATA_DATA::NAME => Some(COMPONENT_METADATA_DATA::ID),
             CURRENT_MODE_DATA::NAME => Some(CURRENT_MODE_DATA::ID),
+            DISTANCE_SENSOR_DATA::NAME => Some(DISTANCE_SENSOR_DATA::ID),
             EXTENDED_SYS_STATE_DATA::NAME => Some(EXTENDED_SYS_STATE_DATA::ID),
             FILE_TRANSFER_PROTOCOL_DATA::NAME => Some(FILE_TRANSFER_PROTOCOL_DATA::ID),
             HEARTBEAT_DATA::NAME => Some(HEARTBEAT_DATA::ID),
             MESSAGE_INTERVAL_DATA::NAME => Some(MESSAGE_INTERVAL_DATA::ID),
             NAMED_VALUE_FLOAT_DATA::NAME => Some(NAMED_VALUE_FLOAT_DATA::ID),
             ODOMETRY_DATA::NAME => Some(ODOMETRY_DATA::ID),
+            OPTICAL_FLOW_RAD_DATA::NAME => Some(OPTICAL_FLOW_RAD_DATA::ID),
             PARAM_REQUEST_LIST_DATA::NAME => Some(PARAM_REQUEST_LIST_DATA::ID),
             PARAM_REQUEST_READ_DATA::NAME => Some(PARAM_REQUEST_READ_DATA::ID),
             PARAM_SET_DATA::NAME => Some(PARAM_SET_DATA::ID),
@@ -4188,6 +4437,7 @@ impl Message for MavMessage {
             COMMAND_LONG_DATA::ID => Some(Self::COMMAND_LONG(COMMAND_LONG_DATA::default())),
             COMPONENT_METADATA_DATA::ID => Some(Self::COMPONENT_METADATA(COMPONENT_METADATA_DATA::default())),
             CURRENT_MODE_DATA::ID => Some(Self::CURRENT_MODE(CURRENT_MODE_DATA::default())),
+            DISTANCE_SENSOR_DATA::ID => Some(Self::DISTANCE_SENSOR(DISTANCE_SENSOR_DATA::default())),
             EXTENDED_SYS_STATE_DATA::ID => Some(Self::EXTENDED_SYS_STATE(EXTENDED_SYS_STATE_DATA::default())),
             FILE_TRANSFER_PROTOCOL_DATA::ID => Some(Self::FILE_TRANSFER_PROTOCOL(
                 FILE_TRANSFER_PROTOCOL_DATA::default(),
@@ -4196,6 +4446,7 @@ impl Message for MavMessage {
             MESSAGE_INTERVAL_DATA::ID => Some(Self::MESSAGE_INTERVAL(MESSAGE_INTERVAL_DATA::default())),
             NAMED_VALUE_FLOAT_DATA::ID => Some(Self::NAMED_VALUE_FLOAT(NAMED_VALUE_FLOAT_DATA::default())),
             ODOMETRY_DATA::ID => Some(Self::ODOMETRY(ODOMETRY_DATA::default())),
+            OPTICAL_FLOW_RAD_DATA::ID => Some(Self::OPTICAL_FLOW_RAD(OPTICAL_FLOW_RAD_DATA::default())),
             PARAM_REQUEST_LIST_DATA::ID => Some(Self::PARAM_REQUEST_LIST(PARAM_REQUEST_LIST_DATA::default())),
             PARAM_REQUEST_READ_DATA::ID => Some(Self::PARAM_REQUEST_READ(PARAM_REQUEST_READ_DATA::default())),
             PARAM_SET_DATA::ID => Some(Self::PARAM_SET(PARAM_SET_DATA::default())),
@@ -4240,6 +4491,7 @@ impl Message for MavMessage {
                 Some(Self::COMPONENT_METADATA(COMPONENT_METADATA_DATA::random(rng)))
             }
             CURRENT_MODE_DATA::ID => Some(Self::CURRENT_MODE(CURRENT_MODE_DATA::random(rng))),
+            DISTANCE_SENSOR_DATA::ID => Some(Self::DISTANCE_SENSOR(DISTANCE_SENSOR_DATA::random(rng))),
             EXTENDED_SYS_STATE_DATA::ID => {
                 Some(Self::EXTENDED_SYS_STATE(EXTENDED_SYS_STATE_DATA::random(rng)))
             }
@@ -4250,6 +4502,7 @@ impl Message for MavMessage {
             MESSAGE_INTERVAL_DATA::ID => Some(Self::MESSAGE_INTERVAL(MESSAGE_INTERVAL_DATA::random(rng))),
             NAMED_VALUE_FLOAT_DATA::ID => Some(Self::NAMED_VALUE_FLOAT(NAMED_VALUE_FLOAT_DATA::random(rng))),
             ODOMETRY_DATA::ID => Some(Self::ODOMETRY(ODOMETRY_DATA::random(rng))),
+            OPTICAL_FLOW_RAD_DATA::ID => Some(Self::OPTICAL_FLOW_RAD(OPTICAL_FLOW_RAD_DATA::random(rng))),
             PARAM_REQUEST_LIST_DATA::ID => {
                 Some(Self::PARAM_REQUEST_LIST(PARAM_REQUEST_LIST_DATA::random(rng)))
             }
@@ -4291,12 +4544,14 @@ impl Message for MavMessage {
             Self::COMMAND_LONG(body) => body.ser(version, bytes),
             Self::COMPONENT_METADATA(body) => body.ser(version, bytes),
             Self::CURRENT_MODE(body) => body.ser(version, bytes),
+            Self::DISTANCE_SENSOR(body) => body.ser(version, bytes),
             Self::EXTENDED_SYS_STATE(body) => body.ser(version, bytes),
             Self::FILE_TRANSFER_PROTOCOL(body) => body.ser(version, bytes),
             Self::HEARTBEAT(body) => body.ser(version, bytes),
             Self::MESSAGE_INTERVAL(body) => body.ser(version, bytes),
             Self::NAMED_VALUE_FLOAT(body) => body.ser(version, bytes),
             Self::ODOMETRY(body) => body.ser(version, bytes),
+            Self::OPTICAL_FLOW_RAD(body) => body.ser(version, bytes),
             Self::PARAM_REQUEST_LIST(body) => body.ser(version, bytes),
             Self::PARAM_REQUEST_READ(body) => body.ser(version, bytes),
             Self::PARAM_SET(body) => body.ser(version, bytes),
@@ -4329,12 +4584,14 @@ impl Message for MavMessage {
             COMMAND_LONG_DATA::ID => COMMAND_LONG_DATA::EXTRA_CRC,
             COMPONENT_METADATA_DATA::ID => COMPONENT_METADATA_DATA::EXTRA_CRC,
             CURRENT_MODE_DATA::ID => CURRENT_MODE_DATA::EXTRA_CRC,
+            DISTANCE_SENSOR_DATA::ID => DISTANCE_SENSOR_DATA::EXTRA_CRC,
             EXTENDED_SYS_STATE_DATA::ID => EXTENDED_SYS_STATE_DATA::EXTRA_CRC,
             FILE_TRANSFER_PROTOCOL_DATA::ID => FILE_TRANSFER_PROTOCOL_DATA::EXTRA_CRC,
             HEARTBEAT_DATA::ID => HEARTBEAT_DATA::EXTRA_CRC,
             MESSAGE_INTERVAL_DATA::ID => MESSAGE_INTERVAL_DATA::EXTRA_CRC,
             NAMED_VALUE_FLOAT_DATA::ID => NAMED_VALUE_FLOAT_DATA::EXTRA_CRC,
             ODOMETRY_DATA::ID => ODOMETRY_DATA::EXTRA_CRC,
+            OPTICAL_FLOW_RAD_DATA::ID => OPTICAL_FLOW_RAD_DATA::EXTRA_CRC,
             PARAM_REQUEST_LIST_DATA::ID => PARAM_REQUEST_LIST_DATA::EXTRA_CRC,
             PARAM_REQUEST_READ_DATA::ID => PARAM_REQUEST_READ_DATA::EXTRA_CRC,
             PARAM_SET_DATA::ID => PARAM_SET_DATA::EXTRA_CRC,

@@ -1,14 +1,17 @@
-//! What others measure and wish: an external pose and an offboard attitude, checked, in the vehicle's axes, with the time
+//! What others measure and wish: an external pose, flow and range, and an offboard attitude, checked, in the vehicle's axes, with the time
 //! of measurement. The position hold flies by the poses; nothing flies by the attitudes yet.
 
 pub mod attitude;
 pub mod clock;
+pub mod ground;
 pub mod pose;
 
 use self::attitude::OffboardAttitude;
 use self::clock::Clock;
 use self::pose::{ExternalPose, Pose};
+use crate::dialect::{DISTANCE_SENSOR_DATA, OPTICAL_FLOW_RAD_DATA};
 use crate::requests::Peer;
+use sophie_control::ground::GroundView;
 use sophie_control::vector::{Quat, Vec3};
 
 /// Squared length of a quaternion may be off by this much: senders round, and do not always normalise.
@@ -30,6 +33,8 @@ pub enum Refusal {
 pub struct Counts {
     /// Poses taken.
     pub poses: u32,
+    /// Flows and ranges taken.
+    pub views: u32,
     /// Attitudes taken.
     pub attitudes: u32,
     /// Refused for their axes.
@@ -46,6 +51,7 @@ impl core::ops::Add for Counts {
     fn add(self, more: Self) -> Self {
         Self {
             poses: self.poses.saturating_add(more.poses),
+            views: self.views.saturating_add(more.views),
             attitudes: self.attitudes.saturating_add(more.attitudes),
             frame: self.frame.saturating_add(more.frame),
             value: self.value.saturating_add(more.value),
@@ -61,6 +67,9 @@ pub struct Inputs {
     pub(crate) clock: Clock,
     pose: Option<ExternalPose>,
     attitude: Option<OffboardAttitude>,
+    ground: GroundView,
+    /// Something of it has come since it was taken.
+    seen: bool,
     /// When the pose before was measured, µs.
     measured_at: u64,
     counts: Counts,
@@ -73,9 +82,15 @@ impl Inputs {
             clock: Clock::new(),
             pose: None,
             attitude: None,
+            ground: GroundView {
+                flow: None,
+                range: None,
+            },
+            seen: false,
             measured_at: 0,
             counts: Counts {
                 poses: 0,
+                views: 0,
                 attitudes: 0,
                 frame: 0,
                 value: 0,
@@ -112,6 +127,54 @@ impl Inputs {
             Err(refusal) => self.refuse(refusal),
         }
         self.clock.due(from, now)
+    }
+
+    /// Takes a flow, and the range that comes with it, as [`Self::pose`] takes a pose.
+    pub(crate) fn flow(&mut self, m: &OPTICAL_FLOW_RAD_DATA, from: Peer, now: u64) -> bool {
+        let before = self.ground.flow.map_or(0, |flow| flow.until_us);
+        let taken = self.clock.time(m.time_usec, from, now).and_then(|time| {
+            let (flow, range) = ground::flow(m, time.at)?;
+            (flow.until_us > before)
+                .then_some((flow, range))
+                .ok_or(Refusal::Late)
+        });
+        match taken {
+            Ok((flow, range)) => {
+                self.ground.flow = Some(flow);
+                self.ground.range = range.or(self.ground.range);
+                self.saw();
+            }
+            Err(refusal) => self.refuse(refusal),
+        }
+        self.clock.due(from, now)
+    }
+
+    /// Takes a range, as [`Self::pose`] takes a pose.
+    pub(crate) fn range(&mut self, m: &DISTANCE_SENSOR_DATA, from: Peer, now: u64) -> bool {
+        let before = self.ground.range.map_or(0, |range| range.at_us);
+        let usec = u64::from(m.time_boot_ms) * 1000;
+        let taken = self.clock.time(usec, from, now).and_then(|time| {
+            let range = ground::range(m, time.at)?;
+            (range.at_us > before).then_some(range).ok_or(Refusal::Late)
+        });
+        match taken {
+            Ok(range) => {
+                self.ground.range = Some(range);
+                self.saw();
+            }
+            Err(refusal) => self.refuse(refusal),
+        }
+        self.clock.due(from, now)
+    }
+
+    const fn saw(&mut self) {
+        count(&mut self.counts.views);
+        self.seen = true;
+    }
+
+    /// Flow and range, where something of them has come since the last call.
+    pub fn take_ground(&mut self) -> Option<GroundView> {
+        core::mem::take(&mut self.seen).then_some(self.ground)
     }
 
     /// Takes an attitude that arrived.

@@ -50,6 +50,10 @@ pub enum Request {
     Vision(VISION_POSITION_ESTIMATE_DATA),
     /// The same.
     Mocap(ATT_POS_MOCAP_DATA),
+    /// Optical flow.
+    Flow(OPTICAL_FLOW_RAD_DATA),
+    /// A range.
+    Range(DISTANCE_SENSOR_DATA),
     /// An attitude that is wished for.
     Attitude(SET_ATTITUDE_TARGET_DATA),
     /// A key for signing, which is left unread.
@@ -77,6 +81,8 @@ pub const fn crc_extra(id: u32) -> Option<u8> {
         ODOMETRY_DATA::ID => ODOMETRY_DATA::EXTRA_CRC,
         VISION_POSITION_ESTIMATE_DATA::ID => VISION_POSITION_ESTIMATE_DATA::EXTRA_CRC,
         ATT_POS_MOCAP_DATA::ID => ATT_POS_MOCAP_DATA::EXTRA_CRC,
+        OPTICAL_FLOW_RAD_DATA::ID => OPTICAL_FLOW_RAD_DATA::EXTRA_CRC,
+        DISTANCE_SENSOR_DATA::ID => DISTANCE_SENSOR_DATA::EXTRA_CRC,
         SET_ATTITUDE_TARGET_DATA::ID => SET_ATTITUDE_TARGET_DATA::EXTRA_CRC,
         _ => return None,
     })
@@ -144,6 +150,8 @@ pub fn request(frame: &Frame<'_>) -> Option<Request> {
         ODOMETRY_DATA::ID => (0, 0, Request::Odometry(message(frame)?)),
         VISION_POSITION_ESTIMATE_DATA::ID => (0, 0, Request::Vision(message(frame)?)),
         ATT_POS_MOCAP_DATA::ID => (0, 0, Request::Mocap(message(frame)?)),
+        OPTICAL_FLOW_RAD_DATA::ID => (0, 0, Request::Flow(message(frame)?)),
+        DISTANCE_SENSOR_DATA::ID => (0, 0, Request::Range(message(frame)?)),
         SET_ATTITUDE_TARGET_DATA::ID => {
             let m: SET_ATTITUDE_TARGET_DATA = message(frame)?;
             (m.target_system, m.target_component, Request::Attitude(m))

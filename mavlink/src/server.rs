@@ -231,6 +231,16 @@ impl Server {
             Request::Odometry(m) => self.pose(Pose::odometry(m), m.time_usec, from, now),
             Request::Vision(m) => self.pose(Pose::vision(m), m.usec, from, now),
             Request::Mocap(m) => self.pose(Pose::mocap(m), m.time_usec, from, now),
+            Request::Flow(m) => {
+                if self.inputs.flow(m, from, now) {
+                    self.answer(Answer::AskTime);
+                }
+            }
+            Request::Range(m) => {
+                if self.inputs.range(m, from, now) {
+                    self.answer(Answer::AskTime);
+                }
+            }
             Request::Attitude(m) => self.inputs.attitude(OffboardAttitude::of(m)),
             Request::Command(command) => {
                 if let Some(reply) = self.command(command, from, now, vehicle) {

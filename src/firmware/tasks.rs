@@ -60,6 +60,7 @@ pub fn spawn(
     );
     levels.spawn(TaskId::Commander, flight::commander(links)?);
     levels.spawn(TaskId::Rc, flight::rc(links, board.receiver)?);
+    levels.spawn(TaskId::Ground, flight::ground(links, board.ground)?);
     levels.spawn(TaskId::Analog, flight::analog(links, board.analog)?);
     levels.spawn(TaskId::Clamp, flight::clamp(links)?);
     levels.spawn(TaskId::Servos, flight::servos(links, board.servos)?);

@@ -4,6 +4,7 @@ use sophie_boards::retained::Memory;
 use sophie_control::arming::ArmingInhibit;
 use sophie_control::mixer::Flexible;
 use sophie_control::wrench::Configuration;
+use sophie_drivers::ground_module::GroundModule;
 use sophie_drivers::rc_decoder::Decoder;
 use sophie_tasks::links::Links;
 
@@ -76,6 +77,12 @@ pub async fn servos(links: &'static Links, port: sophie_boards::ServosPort) -> !
 #[embassy_executor::task]
 pub async fn rc(links: &'static Links, port: sophie_boards::ReceiverLine) -> ! {
     sophie_tasks::rc::run(links, port, Decoder::from_params(&links.params)).await
+}
+
+/// Module of optical flow and range.
+#[embassy_executor::task]
+pub async fn ground(links: &'static Links, port: sophie_boards::GroundLine) -> ! {
+    sophie_tasks::ground::run(links, port, GroundModule::from_params(&links.params)).await
 }
 
 /// Mode logic.

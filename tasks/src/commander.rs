@@ -62,6 +62,8 @@ fn warning(links: &Links, mode: Mode) -> &'static str {
         Warning::ArmTilt.text()
     } else if mode.rotors_stand() && !started.text().is_empty() {
         started.text()
+    } else if let Some(fault) = links.position.fresh_to(Instant::now(), |e| e.fault).flatten() {
+        Warning::Sight(fault).text()
     } else if mode == Mode::Disarmed && ForceLimit::from_params(&links.params).capped_by_servo {
         Warning::ServoWeak.text()
     } else if mode == Mode::Disarmed && links.params.infill < INFILL_FLOWN {

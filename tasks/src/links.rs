@@ -27,6 +27,7 @@ pub use sophie_control::chain::{Attitude, Demand, ImuSample, MixOutput};
 use sophie_control::fsr::FsrFault;
 pub use sophie_control::grip::GripState;
 use sophie_control::grip_memory::GripMemory;
+pub use sophie_control::ground::GroundView;
 use sophie_control::mode::{Mode, Reason};
 use sophie_control::params::Params;
 pub use sophie_control::position::Estimate;
@@ -412,6 +413,8 @@ links! {
     bench_answer: BenchAnswer, Commander to "console, mavlink", stale after 200 ms;
     /// Where others see the vehicle, as they send it.
     external_pose: ExternalPose, Mavlink to "position, console", stale after 200 ms;
+    /// Flow and range below the vehicle, from the module's line or by MAVLink, of the newest one's arrival; each has its own time.
+    ground: GroundView, Ground to "position, console", stale after 200 ms;
     /// Where the vehicle is; the message says since when only the inertial sensor says it. Without it nothing is held.
     position: Estimate, Position to "commander, console, log", stale after 50 ms;
     /// The attitude that another computer wishes, as it sends it; nothing flies by it.

@@ -292,6 +292,9 @@ fn publish(links: &Links, inputs: &mut Inputs, now: u64) {
             .external_pose
             .send(Instant::from_micros(pose.measured_at), pose);
     }
+    if let Some(view) = inputs.take_ground() {
+        links.ground.send(Instant::from_micros(now), view);
+    }
     if let Some(attitude) = inputs.take_attitude() {
         links.offboard.send(Instant::from_micros(now), attitude);
     }

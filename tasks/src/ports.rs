@@ -4,6 +4,7 @@ use embassy_time::Instant;
 use heapless::{String, Vec};
 use sophie_control::arming::ArmingInhibit;
 pub use sophie_control::chain::ImuReading;
+use sophie_control::ground::GroundView;
 use sophie_control::params::Params;
 use sophie_control::vector::Vec3;
 use sophie_control::wrench::PerArm;
@@ -123,6 +124,15 @@ pub trait RcDecoder {
 
     /// The line has failed at `at`: bytes are missing.
     fn broken(&mut self, at: Instant);
+}
+
+/// The protocol of a module of optical flow and range: what it sees out of the bytes of its line, however these are cut.
+pub trait GroundDecoder {
+    /// Takes bytes that were there at `at`; gives the newest flow and range when they held one.
+    fn take(&mut self, bytes: &[u8], at: Instant) -> Option<GroundView>;
+
+    /// The line has failed: bytes are missing.
+    fn broken(&mut self);
 }
 
 /// A serial line from the vehicle: to the receiver, which carries telemetry to the pilot, or to the console.

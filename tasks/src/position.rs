@@ -1,7 +1,7 @@
-//! The position estimate, 200 Hz: the inertial sensor, and the poses that others send.
+//! The position estimate, 200 Hz: the inertial sensor, and the poses that others send, or flow and range.
 //!
 //! A miss makes the estimate later: its readers have a limit of ten periods. A stale attitude ends it for as long; without
-//! poses there is none, and nothing is sent.
+//! either there is none, and nothing is sent.
 
 use sophie_control::chain;
 use sophie_control::position::{Fix, Inertial, PositionEstimator};
@@ -28,6 +28,7 @@ pub async fn run(links: &Links) -> ! {
         let seen = links.external_pose.look(|m| Seen::of(&m.value));
         // Of a heading that is not sent the position cannot be held.
         let fix = seen.and_then(Seen::fix);
+        let view = links.ground.look(|m| m.value);
         let pushed = links
             .mix
             .fresh_to(now, |mix| mix.running.then_some((mix.thrusts, mix.tilt)));
@@ -35,7 +36,9 @@ pub async fn run(links: &Links) -> ! {
             .flatten()
             .map_or(0.0, |(thrusts, tilt)| chain::lift(&thrusts, &tilt));
         let at_us = at.as_micros();
-        if let Some(estimate) = estimator.step(&Inertial { at_us, q, accel }, lift, fix.as_ref()) {
+        if let Some(estimate) =
+            estimator.step(&Inertial { at_us, q, accel }, lift, fix.as_ref(), view.as_ref())
+        {
             links.position.send(at, estimate);
         }
     }

@@ -118,9 +118,11 @@ tasks! {
     Servos "servos": Steady, each 20000 us at 900 us, within 20000 us, Watched;
     /// Receiver, as frames come. A lost radio is the failsafe's business.
     Rc "rc": Steady, each 20000 us, within 2000 us, Unwatched;
+    /// Module of optical flow and range, as its frames come. Without it the pilot flies as ever.
+    Ground "ground": Steady, each 20000 us, within 2000 us, Unwatched;
     /// Mode logic.
     Commander "commander": Steady, each 10000 us at 300 us, within 10000 us, Watched;
-    /// Position, velocity and wind, for the hold. Without poses it does nothing, and the pilot flies as ever.
+    /// Position, velocity and wind, for the hold. Without poses or flow it does nothing, and the pilot flies as ever.
     Position "position": Steady, each 5000 us at 150 us, within 5000 us, Unwatched;
     /// Arm sensors. Their bus may stall; the mixer does without.
     Arms "arms": Background, each 10000 us at 0 us, within 10000 us, Unwatched;

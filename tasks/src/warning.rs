@@ -1,5 +1,7 @@
 //! Warnings to the pilot that do not affect the modes.
 
+use sophie_control::position::SightFault;
+
 use crate::start::StartCause;
 
 /// A warning, shown beside the mode when there is no reason.
@@ -9,6 +11,8 @@ pub enum Warning {
     ArmTilt,
     /// Cause of an unusual start of the board.
     Restarted(StartCause),
+    /// Flow or range cannot be believed.
+    Sight(SightFault),
     /// The servo cannot give the force limit of the parameters.
     ServoWeak,
     /// The arms are softer than any flown.
@@ -17,11 +21,15 @@ pub enum Warning {
 
 impl Warning {
     /// Every warning.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 10] = [
         Self::ArmTilt,
         Self::Restarted(StartCause::BrownOut),
         Self::Restarted(StartCause::Watchdog),
         Self::Restarted(StartCause::Fault),
+        Self::Sight(SightFault::FlowFrozen),
+        Self::Sight(SightFault::FlowDisagrees),
+        Self::Sight(SightFault::RangeFrozen),
+        Self::Sight(SightFault::RangeJumps),
         Self::ServoWeak,
         Self::InfillLow,
     ];
@@ -31,6 +39,7 @@ impl Warning {
         match self {
             Self::ArmTilt => "arm tilt beyond its model",
             Self::Restarted(cause) => cause.warning(),
+            Self::Sight(fault) => fault.text(),
             Self::ServoWeak => "servo weaker than the force limit",
             Self::InfillLow => "infill below what was flown",
         }

@@ -62,8 +62,8 @@ pub use pads::{Pad, Pupdr, Taken, Wiring, pad};
 pub use rails::{drive, hold};
 pub use reset::take_reset_cause;
 pub use serial::{
-    BufferedInput, BufferedOutput, MAVLINK_BYTES_PER_SECOND, ReceiverLine, TelemetryLine, console_lines,
-    mavlink_lines, receiver_line,
+    BufferedInput, BufferedOutput, GroundLine, MAVLINK_BYTES_PER_SECOND, ReceiverLine, TelemetryLine,
+    console_lines, ground_line, mavlink_lines, receiver_line,
 };
 pub use servo_pairs::ServoPairs;
 pub use servos::ServoTimer;

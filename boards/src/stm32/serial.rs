@@ -1,4 +1,4 @@
-//! Serial lines of receiver, console and MAVLink.
+//! Serial lines of receiver, console, MAVLink, and the module of optical flow and range.
 
 use embassy_stm32::gpio::Pull;
 use embassy_stm32::interrupt::Priority;
@@ -11,7 +11,7 @@ use embassy_stm32::usart::{
 use embassy_stm32::{Peri, dma};
 use embassy_time::{Duration, with_timeout};
 use embedded_io_async::{Read, Write};
-use sophie_control::params::{Params, RcProtocol};
+use sophie_control::params::{FlowPort, Params, RcProtocol};
 use sophie_tasks::ports::{PortError, SerialInput, SerialOutput};
 use static_cell::ConstStaticCell;
 
@@ -31,6 +31,14 @@ static CONSOLE_OUT: ConstStaticCell<[u8; 256]> = ConstStaticCell::new([0; 256]);
 static MAVLINK_IN: ConstStaticCell<[u8; 256]> = ConstStaticCell::new([0; 256]);
 static MAVLINK_OUT: ConstStaticCell<[u8; 256]> = ConstStaticCell::new([0; 256]);
 
+/// 11 ms of the line: two reports of a module, one of which the steady level can be late for.
+static GROUND_IN: ConstStaticCell<[u8; 128]> = ConstStaticCell::new([0; 128]);
+/// Nothing is sent, but the driver of both directions wants room.
+static GROUND_OUT: ConstStaticCell<[u8; 1]> = ConstStaticCell::new([0; 1]);
+
+/// Rate of modules of optical flow and range, baud. A byte takes 87 us, longer than the flight level holds the core at a
+/// stretch.
+const GROUND_BAUD: u32 = 115_200;
 /// Priority of the console's interrupts: that of the drivers.
 const AS_DRIVERS: Priority = Priority::P0;
 /// Rate of the MAVLink line, baud: what SiK radios, PX4's TELEM1 and ArduPilot's serial ports start with. A byte takes
@@ -131,6 +139,29 @@ pub fn mavlink_lines<T: Instance>(
     line.open(uart, rx, tx, irqs)
 }
 
+/// Line of the module that `flow_port` names: [`GROUND_BAUD`], 8N1, its interrupts as MAVLink's. Without one the port stays
+/// as the reset left it.
+pub fn ground_line<T: Instance>(
+    uart: Peri<'static, T>,
+    rx: Peri<'static, impl RxPin<T>>,
+    tx: Peri<'static, impl TxPin<T>>,
+    irqs: impl Binding<T::Interrupt, BufferedInterruptHandler<T>> + 'static,
+    params: &Params,
+) -> GroundLine {
+    GroundLine(match params.flow_port {
+        FlowPort::Closed => None,
+        FlowPort::Msp => {
+            let line = BufferedLine {
+                baud: GROUND_BAUD,
+                priority: BELOW_FLIGHT,
+                input: GROUND_IN.take(),
+                output: GROUND_OUT.take(),
+            };
+            Some(line.open(uart, rx, tx, irqs))
+        }
+    })
+}
+
 /// A line moved by the processor through two rings, an interrupt a byte: DMA streams are scarce.
 struct BufferedLine {
     baud: u32,
@@ -194,6 +225,18 @@ pub struct BufferedInput(BufferedUartRx<'static>);
 impl SerialInput for BufferedInput {
     async fn read(&mut self, buffer: &mut [u8]) -> Result<usize, PortError> {
         self.0.read(buffer).await.map_err(|_| PortError::Corrupt)
+    }
+}
+
+/// Line of the module of optical flow and range; its output is held, and silent. Closed, it never gives a byte.
+pub struct GroundLine(Option<(BufferedInput, BufferedOutput)>);
+
+impl SerialInput for GroundLine {
+    async fn read(&mut self, buffer: &mut [u8]) -> Result<usize, PortError> {
+        match &mut self.0 {
+            Some((input, _)) => input.read(buffer).await,
+            None => core::future::pending().await,
+        }
     }
 }
 

@@ -92,6 +92,26 @@ choices! {
         Sbus = 1.0, "sbus";
     }
 
+    /// The module of optical flow and range on its line.
+    FlowPort {
+        /// None: the line stays closed.
+        Closed = 0.0, "none";
+        /// MSP version 2, 115,200 baud.
+        Msp = 1.0, "msp";
+    }
+
+    /// Where the x axis of the flow module points, clockwise from above, deg.
+    FlowMounting {
+        /// Forward.
+        Forward = 0.0, "forward";
+        /// Right.
+        Right = 90.0, "right";
+        /// Backward.
+        Backward = 180.0, "backward";
+        /// Left.
+        Left = 270.0, "left";
+    }
+
     /// Samples per second of the vehicle's inertial sensor.
     ImuRate {
         /// 1 kHz.

@@ -3,7 +3,8 @@
 
 use super::ParamInfo;
 use super::choices::{
-    ArmSign, ImuAccelRange, ImuGyroRange, ImuMounting, ImuRate, MotorMap, MotorProtocol, RcProtocol, Value,
+    ArmSign, FlowMounting, FlowPort, ImuAccelRange, ImuGyroRange, ImuMounting, ImuRate, MotorMap,
+    MotorProtocol, RcProtocol, Value,
 };
 use super::names::check_names;
 
@@ -108,6 +109,12 @@ params! {
     motor_map: MotorMap = MotorMap::M1234, "1";
     /// Receiver: 0 for CRSF at 420 kbaud, 1 for SBUS. Read by the board at start-up.
     rc_protocol: RcProtocol = RcProtocol::Crsf, "1";
+    /// Module of optical flow and range: 0 for none, 1 for one that speaks MSP version 2. Read by the board at start-up.
+    flow_port: FlowPort = FlowPort::Closed, "1";
+    /// Where the x axis of the flow module points, clockwise from above. Read by the board at start-up.
+    flow_mounting: FlowMounting = FlowMounting::Forward, "deg";
+    /// Counts of the flow module for each degree that it turns, as INAV's `opflow_scale`. Read by the board at start-up.
+    flow_scale = 10.5, "1/deg", 0.5 ..= 200.0;
     /// Samples per second of the vehicle's inertial sensor; a part that cannot takes its nearest.
     imu_rate: ImuRate = ImuRate::Hz4000, "Hz";
     /// Full scale of the gyroscope.

@@ -14,6 +14,8 @@ const JUMPED: f32 = 0.05;
 const GATE: f32 = 5.0;
 /// Least innovation that is refused, m: a fix has outliers, and its errors are not white.
 const GATE_MIN: f32 = 0.15;
+/// Least innovation of a velocity that is refused, m/s.
+const GATE_SPEED: f32 = 0.4;
 /// Bounds of what is estimated: m/s, m/s².
 const SPEED_MAX: f32 = 20.0;
 const BIAS_MAX: f32 = 1.5;
@@ -102,6 +104,49 @@ impl Axis {
         ];
     }
 
+    /// True if `innovation` (m/s) of a velocity with `variance` ((m/s)²) is likely enough.
+    pub fn accepts_speed(&self, innovation: f32, variance: f32) -> bool {
+        let [vv, ..] = self.rest;
+        innovation.abs() <= (GATE * math::sqrt(vv + variance)).max(GATE_SPEED)
+    }
+
+    /// Takes the `innovation` (m/s) of a velocity with `variance` ((m/s)², > 0) that was measured `lag` s ago.
+    pub fn correct_speed(&mut self, innovation: f32, variance: f32, lag: f32) -> Change {
+        let [pp, pv, pb] = self.with_position;
+        let [vv, vb, bb] = self.rest;
+        let per = 1.0 / (vv + variance);
+        let (low, high) = VARIANCE;
+        let left = variance * per;
+        self.with_position = [
+            math::clamp(pp - pv * pv * per, low, high),
+            pv * left,
+            pb - pv * vb * per,
+        ];
+        self.rest = [
+            math::clamp(vv * left, low, high),
+            vb * left,
+            math::clamp(bb - vb * vb * per, low, high),
+        ];
+        self.change(
+            Change {
+                position: pv * per * innovation,
+                velocity: vv * per * innovation,
+                bias: vb * per * innovation,
+            },
+            lag,
+        )
+    }
+
+    /// Believes a velocity, m/s, whatever it was before.
+    pub fn set_speed(&mut self, velocity: f32) {
+        let [_, v, _] = START;
+        self.velocity = velocity;
+        let [_, _, bb] = self.rest;
+        let [pp, ..] = self.with_position;
+        self.with_position = [pp, 0.0, 0.0];
+        self.rest = [v * v, 0.0, bb];
+    }
+
     /// True if `innovation` (m) of a fix with `variance` (m²) is likely enough.
     pub fn accepts(&self, innovation: f32, variance: f32) -> bool {
         let [pp, ..] = self.with_position;
@@ -128,6 +173,10 @@ impl Axis {
             vb - pv * pb * per,
             math::clamp(bb - pb * pb * per, low, high),
         ];
+        self.change(change, lag)
+    }
+
+    fn change(&mut self, change: Change, lag: f32) -> Change {
         self.position += change.position_after(lag);
         let velocity = self.velocity + change.velocity - change.bias * lag;
         self.velocity = math::clamp_abs(velocity, SPEED_MAX);

@@ -2,7 +2,8 @@
 
 use super::axis::Change;
 use super::seconds;
-use crate::vector::Vec3;
+use crate::math;
+use crate::vector::{Quat, Vec3};
 
 /// Moments kept, 0.25 s at 200 Hz: twice what a slow camera is late. A fix that is older is no help.
 pub const LENGTH: usize = 50;
@@ -14,8 +15,15 @@ pub struct Moment {
     pub at_us: u64,
     /// m.
     pub position: Vec3,
+    /// Body to world.
+    pub q: Quat,
+}
+
+impl Moment {
     /// Heading by the vehicle's own attitude, rad.
-    pub yaw: f32,
+    pub fn yaw(&self) -> f32 {
+        self.q.to_euler().2
+    }
 }
 
 /// The last moments in a ring.
@@ -60,7 +68,7 @@ impl Past {
         Some(Moment {
             at_us,
             position: before.position + (after.position - before.position) * share,
-            yaw: if share < 0.5 { before.yaw } else { after.yaw },
+            q: between(before.q, after.q, share),
         })
     }
 
@@ -74,4 +82,19 @@ impl Past {
             }
         }
     }
+}
+
+/// From `a` to `b` by `share`, along the shorter way. A few milliseconds apart they are nearly the same.
+fn between(a: Quat, b: Quat, share: f32) -> Quat {
+    let dot = a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z;
+    let share = math::clamp(share, 0.0, 1.0);
+    let (of_a, of_b) = (1.0 - share, if dot < 0.0 { -share } else { share });
+    let mixed = |a: f32, b: f32| of_a * a + of_b * b;
+    Quat {
+        w: mixed(a.w, b.w),
+        x: mixed(a.x, b.x),
+        y: mixed(a.y, b.y),
+        z: mixed(a.z, b.z),
+    }
+    .normalised()
 }

@@ -79,7 +79,7 @@ impl Rig {
     fn step(&mut self, fix: Option<Fix>) {
         self.now += STEP_US;
         let weight = 9.806_65 * Params::default().mass;
-        self.out = self.estimator.step(&self.felt(), weight, fix.as_ref());
+        self.out = self.estimator.step(&self.felt(), weight, fix.as_ref(), None);
     }
 
     fn run(&mut self, seconds: f32) {
@@ -224,7 +224,7 @@ fn what_is_no_number_or_too_old_changes_nothing() {
     let mut broken = good.felt();
     broken.accel.x = f32::NAN;
     broken.at_us += STEP_US;
-    assert_eq!(good.estimator.step(&broken, 17.7, None), None);
+    assert_eq!(good.estimator.step(&broken, 17.7, None, None), None);
     good.run(0.1);
     assert!(good.out.unwrap().is_finite());
 }
@@ -255,7 +255,7 @@ fn a_thrust_that_is_less_than_asked_is_a_disturbance_down() {
             ..Fix::default()
         };
         felt.at_us = i * STEP_US;
-        out = estimator.step(&felt, 1.1 * weight, Some(&fix));
+        out = estimator.step(&felt, 1.1 * weight, Some(&fix), None);
     }
     let d = out.unwrap().disturbance;
     assert!((d.z - 0.1 * GRAVITY).abs() < 0.02 && d.x == 0.0, "{d:?}");

@@ -27,7 +27,7 @@ pub fn check(scenario: &Scenario) -> Result<(), String> {
     }
     if scenario.sensors.position != PositionSensor::None {
         return Err(format!(
-            "{name}: sensors.position {}: nothing on the bench sends poses",
+            "{name}: sensors.position {}: the bench has none",
             keys::position_sensor_word(scenario.sensors.position)
         ));
     }

@@ -1,6 +1,7 @@
 //! Poses and attitudes from outside: axes, bounds, times.
 
 use mavlink_core::MessageData;
+use sophie_control::ground::GroundView;
 use sophie_control::vector::{Quat, Vec3};
 use sophie_mavlink::dialect::*;
 use sophie_mavlink::inputs::Counts;
@@ -475,4 +476,125 @@ fn an_attitude_has_what_its_mask_says() {
         ..all.clone()
     }));
     assert_eq!(station.server.inputs().counts(), Counts::default());
+}
+
+/// 0.02 rad forward in 20 ms, 1.5 m over the ground, measured 4 ms before.
+fn flow() -> OPTICAL_FLOW_RAD_DATA {
+    OPTICAL_FLOW_RAD_DATA {
+        time_usec: 4_990_000,
+        integration_time_us: 20_000,
+        integrated_x: -0.01,
+        integrated_y: 0.02,
+        quality: 90,
+        time_delta_distance_us: 4_000,
+        distance: 1.5,
+        ..OPTICAL_FLOW_RAD_DATA::DEFAULT
+    }
+}
+
+/// 1.2 m down, of 0.1 to 8 m.
+fn range() -> DISTANCE_SENSOR_DATA {
+    DISTANCE_SENSOR_DATA {
+        time_boot_ms: 4_995,
+        min_distance: 10,
+        max_distance: 800,
+        current_distance: 120,
+        orientation: 25,
+        ..DISTANCE_SENSOR_DATA::DEFAULT
+    }
+}
+
+/// What is seen after `message`, and the counts of frame, value, late and taken.
+fn seen<M: MessageData>(message: &M) -> (Option<GroundView>, [u32; 4]) {
+    let mut station = Station::new();
+    station.now = 5_000_000;
+    station.say(&frame(message));
+    let inputs = station.server.inputs();
+    let counts = inputs.counts();
+    let view = inputs.take_ground();
+    assert!(inputs.take_ground().is_none(), "taken once");
+    (view, [counts.frame, counts.value, counts.late, counts.views])
+}
+
+#[test]
+fn flow_and_range_are_taken_with_the_time_of_their_measurement() {
+    let (view, counts) = seen(&flow());
+    let view = view.unwrap();
+    let (f, r) = (view.flow.unwrap(), view.range.unwrap());
+    assert_eq!((f.until_us, f.angle, f.quality), (4_990_000, [-0.01, 0.02], 90));
+    assert!((f.seconds - 0.02).abs() < 1e-6);
+    assert_eq!((r.at_us, r.distance), (4_986_000, Some(1.5)));
+    assert_eq!(counts, [0, 0, 0, 1]);
+
+    let (view, counts) = seen(&range());
+    let r = view.unwrap().range.unwrap();
+    assert_eq!((r.at_us, r.distance), (4_995_000, Some(1.2)));
+    assert!((r.reach.0 - 0.1).abs() < 1e-6 && (r.reach.1 - 8.0).abs() < 1e-6);
+    assert_eq!(counts, [0, 0, 0, 1]);
+}
+
+#[test]
+fn what_is_no_flow_looks_elsewhere_or_is_old_is_refused_and_counted() {
+    let flows = [
+        OPTICAL_FLOW_RAD_DATA {
+            integrated_x: f32::NAN,
+            ..flow()
+        },
+        OPTICAL_FLOW_RAD_DATA {
+            integrated_y: 1.0,
+            ..flow()
+        },
+        OPTICAL_FLOW_RAD_DATA {
+            integration_time_us: 0,
+            ..flow()
+        },
+    ];
+    for m in flows {
+        assert_eq!(seen(&m), (None, [0, 1, 0, 0]));
+    }
+    let forward = DISTANCE_SENSOR_DATA {
+        orientation: 0,
+        ..range()
+    };
+    assert_eq!(seen(&forward), (None, [1, 0, 0, 0]));
+    let inside_out = DISTANCE_SENSOR_DATA {
+        min_distance: 900,
+        ..range()
+    };
+    assert_eq!(seen(&inside_out), (None, [0, 1, 0, 0]));
+
+    let mut station = Station::new();
+    station.now = 5_000_000;
+    station.say(&frame(&flow()));
+    station.say(&frame(&flow()));
+    let counts = station.server.inputs().counts();
+    assert_eq!((counts.views, counts.late), (1, 1));
+}
+
+#[test]
+fn nothing_within_reach_is_no_distance() {
+    let none = [
+        DISTANCE_SENSOR_DATA {
+            current_distance: 800,
+            ..range()
+        },
+        DISTANCE_SENSOR_DATA {
+            current_distance: 5,
+            ..range()
+        },
+        DISTANCE_SENSOR_DATA {
+            signal_quality: 1,
+            ..range()
+        },
+    ];
+    for m in none {
+        assert_eq!(seen(&m).0.unwrap().range.unwrap().distance, None);
+    }
+    // A flow without a distance has none.
+    let alone = OPTICAL_FLOW_RAD_DATA {
+        distance: -1.0,
+        ..flow()
+    };
+    let view = seen(&alone).0.unwrap();
+    assert!(view.flow.is_some() && view.range.is_none());
 }

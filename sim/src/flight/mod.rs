@@ -1,6 +1,7 @@
 //! Flies a scenario: world, board, tasks and pilot in lockstep under virtual time.
 
 pub mod aircraft;
+mod below;
 mod companion;
 mod judge;
 mod recorder;

@@ -5,7 +5,7 @@ use rand::Rng;
 use rand_pcg::Pcg64Mcg;
 use sophie_control::math;
 use sophie_control::mode::Reason;
-use sophie_control::params::Params;
+use sophie_control::params::{FlowPort, Params};
 use sophie_control::vector::Vec3;
 use sophie_control::wrench::{Configuration, PerArm};
 use sophie_drivers::rc_decoder::Decoder;
@@ -15,6 +15,7 @@ use sophie_tasks::links::{GripState, Links, Newest, Status};
 use sophie_tasks::start::{Start, StartCause};
 
 use super::aircraft::{Aircraft, Belief, Reset, Said};
+use super::below::Below;
 use super::companion::Companion;
 use crate::aim;
 use crate::board::{Board, Port};
@@ -46,6 +47,8 @@ pub struct Stack {
     live: Option<Live>,
     /// The computer that sends poses; `None` where there is none.
     companion: Option<Companion>,
+    /// The module below the vehicle; `None` where there is none.
+    below: Option<Below>,
 }
 
 impl Stack {
@@ -63,9 +66,12 @@ impl Stack {
 
     fn with(scenario: &Scenario, live: Option<Live>) -> Self {
         let board: &'static Board = Box::leak(Box::new(Board::of(scenario)));
-        let params = calibrated(scenario.params, board);
+        let mut params = calibrated(scenario.params, board);
+        if scenario.sensors.position == PositionSensor::Flow {
+            params.flow_port = FlowPort::Msp;
+        }
         let companion = match scenario.sensors.position {
-            PositionSensor::None => None,
+            PositionSensor::None | PositionSensor::Flow => None,
             PositionSensor::Pose => Some(Companion::new(scenario, live.as_ref())),
         };
         let mut stack = Self {
@@ -81,6 +87,7 @@ impl Stack {
             noise: scenario.streams().of("memory"),
             live,
             companion,
+            below: (scenario.sensors.position == PositionSensor::Flow).then(|| Below::new(scenario)),
         };
         stack.spawn(0);
         stack
@@ -104,6 +111,9 @@ impl Stack {
         time.spawn(sophie_tasks::servos::run(links, Port(board)));
         let decoder = Decoder::from_params(&links.params);
         time.spawn(sophie_tasks::rc::run(links, Port(board), decoder));
+        if let Some(below) = &self.below {
+            below.spawn(&time, links);
+        }
         time.spawn(sophie_tasks::commander::run(links));
         time.spawn(sophie_tasks::position::run(links));
         time.spawn(sophie_tasks::supervisor::run(links, Port(board), Port(board)));
@@ -120,6 +130,18 @@ impl Stack {
 }
 
 impl Stack {
+    /// The estimated position as one in the true axes.
+    fn position(&self) -> Option<[f64; 3]> {
+        let position = self.links.position.fresh().map(|e| e.position);
+        match &self.below {
+            Some(below) => {
+                let position = position.map(|p| DVec3::from_array(p.to_array().map(f64::from)));
+                below.in_world(position).map(|p| p.to_array())
+            }
+            None => self.in_world(position?),
+        }
+    }
+
     /// A position in the axes of the companion computer as one in the true axes.
     fn in_world(&self, position: Vec3) -> Option<[f64; 3]> {
         let companion = self.companion.as_ref()?;
@@ -133,6 +155,9 @@ impl Aircraft for Stack {
         self.board.step_world(plant);
         if let Some(companion) = &mut self.companion {
             companion.look(plant);
+        }
+        if let Some(below) = &mut self.below {
+            below.look(plant);
         }
     }
 
@@ -150,6 +175,9 @@ impl Aircraft for Stack {
         }
         if let (Some(companion), Some((_, start))) = (&mut self.companion, &self.running) {
             companion.speak(us, *start);
+        }
+        if let Some(below) = &mut self.below {
+            below.speak(us);
         }
         if let Some((time, start)) = &self.running {
             time.run_until(us.saturating_sub(*start));
@@ -216,7 +244,7 @@ impl Aircraft for Stack {
             tension_asked: wide(force),
             pressure,
             saturated: mix.running && mix.given.saturated(),
-            position: links.position.fresh().and_then(|e| self.in_world(e.position)),
+            position: self.position(),
             pose: links
                 .external_pose
                 .fresh()
@@ -238,6 +266,9 @@ impl Aircraft for Stack {
         }
         if let Some(companion) = &self.companion {
             companion.reset();
+        }
+        if let Some(below) = &self.below {
+            below.reset();
         }
         if cause.loses_memory() {
             let noise: [[u32; 16]; 2] =

@@ -252,6 +252,12 @@ impl Plant {
         self.base.battery.voltage()
     }
 
+    /// The pipe.
+    #[must_use]
+    pub fn pipe(&self) -> &Pipe {
+        &self.base.pipe
+    }
+
     /// Battery current, A.
     #[must_use]
     pub fn battery_current(&self) -> f64 {

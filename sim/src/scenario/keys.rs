@@ -7,7 +7,7 @@ use sophie_control::wrench::{Configuration, PerArm};
 use sophie_mixers::Variant;
 
 use super::faults;
-use super::{Assist, PositionSensor, Scenario, ServoProfile};
+use super::{Assist, FlowFault, PositionSensor, Scenario, ServoProfile};
 
 /// One key.
 pub struct Key {
@@ -91,7 +91,17 @@ pub const ARMS: &[&str] = &["all", "front", "rear"];
 pub const SERVOS: &[&str] = &["paper", "mg996r"];
 
 /// Words for what measures the position.
-pub const POSITION_SENSORS: &[&str] = &["none", "pose"];
+pub const POSITION_SENSORS: &[&str] = &["none", "pose", "flow"];
+/// Words for how a module of flow and range fails.
+pub const FLOW_FAULTS: &[&str] = &[
+    "silent",
+    "dark",
+    "mirrored",
+    "scaled",
+    "frozen",
+    "range-frozen",
+    "range-jumps",
+];
 /// Words for what the pilot leaves to the vehicle.
 pub const ASSISTS: &[&str] = &["none", "hold"];
 
@@ -158,10 +168,23 @@ pub fn servo(word: &str) -> ServoProfile {
 
 /// A word from [`POSITION_SENSORS`].
 pub fn position_sensor(word: &str) -> PositionSensor {
-    if word == "pose" {
-        PositionSensor::Pose
-    } else {
-        PositionSensor::None
+    match word {
+        "pose" => PositionSensor::Pose,
+        "flow" => PositionSensor::Flow,
+        _ => PositionSensor::None,
+    }
+}
+
+/// A word from [`FLOW_FAULTS`].
+pub fn flow_fault(word: &str) -> FlowFault {
+    match word {
+        "dark" => FlowFault::Dark,
+        "mirrored" => FlowFault::Mirrored,
+        "scaled" => FlowFault::Scaled,
+        "frozen" => FlowFault::Frozen,
+        "range-frozen" => FlowFault::RangeFrozen,
+        "range-jumps" => FlowFault::RangeJumps,
+        _ => FlowFault::Silent,
     }
 }
 
@@ -206,6 +229,7 @@ pub const fn position_sensor_word(sensor: PositionSensor) -> &'static str {
     match sensor {
         PositionSensor::None => "none",
         PositionSensor::Pose => "pose",
+        PositionSensor::Flow => "flow",
     }
 }
 
@@ -381,6 +405,10 @@ pub const KEYS: &[Key] = &[
         Range::new(0.0, 3600.0, "s"),
         sensors.pose_fails_for
     ),
+    Key {
+        name: "sensors.flow_fault",
+        kind: Kind::Choice(FLOW_FAULTS, |s, v| s.sensors.flow_fault = flow_fault(v)),
+    },
     number!("pilot.delay_s", Range::new(0.0, 1.0, "s"), pilot.delay),
     number!("pilot.bandwidth_hz", Range::new(0.2, 20.0, "Hz"), pilot.bandwidth),
     number!("pilot.eye_noise_m", Range::new(0.0, 0.5, "m"), pilot.eye_noise),

@@ -224,10 +224,32 @@ pub enum Assist {
 pub struct Sensors {
     /// What measures the position.
     pub position: PositionSensor,
-    /// When after power-up the poses fail, s, beside the gaps that they have.
+    /// When after power-up poses, or flow and range, fail, s, beside the gaps that they have.
     pub pose_fails_at: f64,
     /// For how long, s.
     pub pose_fails_for: f64,
+    /// How flow and range fail then; poses fall silent.
+    pub flow_fault: FlowFault,
+}
+
+/// How a module of flow and range fails.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FlowFault {
+    /// It says nothing.
+    #[default]
+    Silent,
+    /// It sees no picture.
+    Dark,
+    /// Its flow is turned round.
+    Mirrored,
+    /// Its flow is 2.5 times as large.
+    Scaled,
+    /// Its flow stands still.
+    Frozen,
+    /// Its range stands still.
+    RangeFrozen,
+    /// Its range jumps by 0.6 m, back and forth.
+    RangeJumps,
 }
 
 /// What measures the position.
@@ -238,6 +260,8 @@ pub enum PositionSensor {
     None,
     /// A computer that sends poses over MAVLink, late and with gaps.
     Pose,
+    /// A module of optical flow and range below the vehicle, over MSP.
+    Flow,
 }
 
 /// A step of the mission.

@@ -28,7 +28,7 @@ pub struct MissionArgs {
     /// Arms that close: 4 (all), 2 (front pair) or rear.
     #[arg(long, value_name = "2|4|rear", value_parser = arms, allow_negative_numbers = true)]
     arms: Option<ArmChoice>,
-    /// What measures the position: none, or pose (poses over MAVLink, late and with gaps).
+    /// What measures the position: none, pose (poses over MAVLink), or flow (flow and range below the vehicle).
     #[arg(long, value_name = "NAME", value_parser = position_sensor)]
     sensors: Option<PositionSensor>,
     /// What the pilot leaves to the vehicle: none, or hold (hovers in the mode HOLD).

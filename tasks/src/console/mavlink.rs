@@ -34,6 +34,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
             .await;
         let Counts {
             poses,
+            views,
             attitudes,
             frame,
             value,
@@ -41,7 +42,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         } = inputs;
         self.out
             .line(format_args!(
-                "inputs: {poses} poses, {attitudes} attitudes; refused {frame} frame, {value} value, {late} late"
+                "inputs: {poses} poses, {views} of flow and range, {attitudes} attitudes; refused {frame} frame, {value} value, {late} late"
             ))
             .await;
     }

@@ -34,7 +34,7 @@ struct Group {
     read: fn(&Links) -> Row,
 }
 
-const GROUPS: [Group; 9] = [
+const GROUPS: [Group; 10] = [
     Group {
         name: "sticks",
         what: "sticks -1 to 1, throttle 0 to 1, switches by their position",
@@ -85,8 +85,15 @@ const GROUPS: [Group; 9] = [
         read: pose,
     },
     Group {
+        name: "flow",
+        what: "flow about the body's x and y in deg/s, its quality of 255, range in m",
+        columns: "       x       y quality   range",
+        places: 2,
+        read: flow,
+    },
+    Group {
         name: "pos",
-        what: "position m, velocity m/s, wind m/s2, age of the newest pose s",
+        what: "position m, velocity m/s, wind m/s2, age of the newest pose or flow s",
         columns: "       x       y       z      vx      vy      vz      wx      wy     age",
         places: 2,
         read: position,
@@ -186,6 +193,20 @@ fn pose(links: &Links) -> Row {
     let velocity = pose.velocity.map_or([None; 3], |v| v.to_array().map(Some));
     let angles = euler(pose.attitude);
     position.into_iter().chain(angles).chain(velocity).collect()
+}
+
+fn flow(links: &Links) -> Row {
+    let Some(view) = links.ground.fresh() else {
+        return silent(4);
+    };
+    let rates = view.flow.map(|f| {
+        f.angle
+            .map(|angle| to_deg(angle / f.seconds.max(f32::MIN_POSITIVE)))
+    });
+    let [x, y] = rates.map_or([None; 2], |rates| rates.map(Some));
+    let quality = view.flow.map(|f| f32::from(f.quality));
+    let range = view.range.and_then(|range| range.distance);
+    [x, y, quality, range].into_iter().collect()
 }
 
 fn position(links: &Links) -> Row {

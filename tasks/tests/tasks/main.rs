@@ -12,6 +12,7 @@ mod control;
 mod deadline;
 mod declarations;
 mod fake_bus;
+mod ground;
 mod imu;
 mod last_value;
 mod links;

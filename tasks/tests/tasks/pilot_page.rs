@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use sophie_control::position::SightFault;
 use sophie_tasks::start::StartCause;
 use sophie_tasks::warning::Warning;
 
@@ -18,6 +19,11 @@ fn to_do(warning: Warning) -> &'static str {
         Warning::Restarted(StartCause::Fault) => {
             "Do not fly before the log's `the run before ended with` is understood."
         }
+        Warning::Sight(SightFault::FlowDisagrees) => {
+            "Steer it, land; `flow_mounting`, `flow_scale`, the module's place ([holding](hold.md#by-flow-and-range))."
+        }
+        Warning::Sight(SightFault::FlowFrozen | SightFault::RangeFrozen) => "Steer it, land: a new module.",
+        Warning::Sight(SightFault::RangeJumps) => "Steer it away from what is rough below; look at the lens.",
         Warning::ServoWeak => {
             "`servo_torque_max` is above what `servo_stall` gives: a full grip may not hold."
         }

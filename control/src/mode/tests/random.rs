@@ -98,6 +98,7 @@ fn position() -> impl Strategy<Value = Option<Estimate>> {
                 turn,
                 age,
                 jumps,
+                fault: None,
             })
         },
     );

@@ -1,4 +1,6 @@
-//! Flights that hold their position by poses over MAVLink, through every task.
+//! Flights that hold their position by poses over MAVLink, or by flow and range, through every task.
+
+mod flow;
 
 use std::f64::consts::TAU;
 

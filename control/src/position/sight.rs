@@ -1,0 +1,280 @@
+//! Optical flow and range: the velocity over the ground and the height above it, and whether they can be believed.
+
+use super::about_down;
+use super::agreement::Agreement;
+use super::past::Moment;
+use crate::ground::{Flow, GroundView, Range};
+use crate::math;
+use crate::vector::{Quat, Vec3};
+
+/// Heights between which flow is used, m: nearer its lens sees no picture (PMW3901), and above it the error of its scale
+/// times the vehicle's own rotation swings the hold.
+pub const FLOW_HEIGHT: (f32, f32) = (0.08, 2.5);
+/// Least quality of a flow, of 255.
+const QUALITY_MIN: u8 = 20;
+/// Deviation of a flow, rad: 0.12 rad/s in 20 ms (assumed for modules of this class).
+const FLOW_NOISE: f32 = 2.4e-3;
+/// Share of the way over the ground that flow and range are off, 1.
+const SCALE_NOISE: f32 = 0.05;
+/// Deviation of a range, m.
+const RANGE_NOISE: f32 = 0.02;
+/// Age beyond which a range is not the height of now, µs.
+const RANGE_AGE: u64 = 300_000;
+/// Departure of a range from the height that is a step of what is below, m, and the ranges in a row that agree on it.
+const STEP: f32 = 0.12;
+const STEP_RANGES: u32 = 3;
+/// Ranges that differ by less are of the same surface, m.
+const SAME: f32 = 0.08;
+/// Steps within [`STEPS_TIME`] from which on the range is not believed: no ground has so many.
+const STEPS_MAX: u32 = 6;
+const STEPS_TIME: u64 = 5_000_000;
+/// For how long the range is left out then, µs.
+const DISTRUST: u64 = 5_000_000;
+/// Equal values in a row of a sensor that stands still: ranges and flows of which none is zero.
+const FROZEN_RANGES: u32 = 25;
+const FROZEN_FLOWS: u32 = 12;
+/// Nearest at which equal ranges are no sign, m: the vehicle may stand.
+const FROZEN_MIN: f32 = 0.1;
+/// Width of what the vehicle perches on, m, and that of the flow's view at a distance of 1 m (42° across).
+const NARROW: f32 = 0.3;
+const VIEW: f32 = 0.77;
+/// Least cosine of a tilt at which flow and range say something: 40°.
+const COS_MIN: f32 = 0.77;
+
+/// What is wrong with flow or range.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SightFault {
+    /// The flow says the same whatever the vehicle does.
+    FlowFrozen,
+    /// The flow does not follow the vehicle's own turning: mirrored, turned, dead or of another scale.
+    FlowDisagrees,
+    /// The range says the same whatever the vehicle does.
+    RangeFrozen,
+    /// The range jumps more often than ground does.
+    RangeJumps,
+}
+
+impl SightFault {
+    /// Every fault.
+    pub const ALL: [Self; 4] = [
+        Self::FlowFrozen,
+        Self::FlowDisagrees,
+        Self::RangeFrozen,
+        Self::RangeJumps,
+    ];
+
+    /// For the pilot's display: at most 40 ASCII characters.
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::FlowFrozen => "flow frozen, left out",
+            Self::FlowDisagrees => "flow mirrored or scaled, left out",
+            Self::RangeFrozen => "range frozen, left out",
+            Self::RangeJumps => "range jumps, left out",
+        }
+    }
+}
+
+/// A velocity over the ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Seen {
+    /// Measured less estimated, along the estimate's axes, m/s.
+    pub off: [f32; 2],
+    /// (m/s)².
+    pub variance: f32,
+}
+
+/// What is known of the ground and of the module.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sight {
+    /// Newest range with a distance: when, µs, and m.
+    range: Option<(u64, f32)>,
+    /// When the newest range that was looked at was measured, µs.
+    range_us: u64,
+    /// Surface below, the lowest one known and the other one that was, along the estimate's down axis, m.
+    level: f32,
+    base: f32,
+    other: f32,
+    /// Step that ranges agree on, m, and how many do.
+    step: f32,
+    agreed: u32,
+    /// Steps since `window_us`, and until when the range is not believed, µs.
+    steps: u32,
+    window_us: u64,
+    distrusted_us: u64,
+    same_ranges: u32,
+    same_flows: u32,
+    angle: [f32; 2],
+    agreements: [Agreement; 2],
+    disagrees: bool,
+}
+
+impl Sight {
+    /// What is wrong at present.
+    pub fn fault(&self) -> Option<SightFault> {
+        let faults = [
+            (self.same_ranges >= FROZEN_RANGES, SightFault::RangeFrozen),
+            (self.distrusted_us > self.range_us, SightFault::RangeJumps),
+            (self.same_flows >= FROZEN_FLOWS, SightFault::FlowFrozen),
+            (self.disagrees, SightFault::FlowDisagrees),
+        ];
+        faults.iter().find(|(holds, _)| *holds).map(|(_, fault)| *fault)
+    }
+
+    fn range_faulty(&self) -> bool {
+        self.same_ranges >= FROZEN_RANGES || self.distrusted_us > self.range_us
+    }
+
+    /// The distance of a range that was not looked at before, m, and when it was measured, µs.
+    pub fn new_range(&mut self, view: &GroundView, now: u64) -> Option<(u64, f32)> {
+        let range = view.range.and_then(Range::checked)?;
+        if range.at_us <= self.range_us || range.at_us > now {
+            return None;
+        }
+        self.range_us = range.at_us;
+        let distance = range.distance?;
+        let same = self
+            .range
+            .is_some_and(|(_, before)| (before - distance).abs() < 1e-4);
+        self.same_ranges = if same && distance > FROZEN_MIN {
+            self.same_ranges.saturating_add(1)
+        } else {
+            0
+        };
+        self.range = Some((range.at_us, distance));
+        (!self.range_faulty()).then_some((range.at_us, distance))
+    }
+
+    /// Height above the ground with which an estimate may begin, m, at a flow with the attitude `q`.
+    pub fn begin(&mut self, flow: &Flow, q: Quat) -> Option<f32> {
+        let cos = q.down_in_body().z;
+        let (at, distance) = self.range.filter(|_| !self.range_faulty())?;
+        let (least, most) = FLOW_HEIGHT;
+        let fresh = flow.until_us.saturating_sub(at) <= RANGE_AGE;
+        let sound = cos >= COS_MIN && flow.quality >= QUALITY_MIN && (least..=most).contains(&distance);
+        (self.level, self.base, self.other, self.agreed) = (0.0, 0.0, 0.0, 0);
+        (fresh && sound).then_some(distance * cos)
+    }
+
+    /// What the height at `then` is off by a range of `distance`, m, with its variance, m²; `None` while it is not clear
+    /// what is below. Where a pose is fresh, the surface follows the height instead.
+    pub fn height(&mut self, then: &Moment, distance: f32, posed: bool) -> Option<(f32, f32)> {
+        let cos = then.q.down_in_body().z;
+        if cos < COS_MIN {
+            return None;
+        }
+        let surface = then.position.z + distance * cos;
+        if posed {
+            (self.level, self.base, self.other) = (surface, surface, surface);
+            return None;
+        }
+        // The range's own place is that of a surface at `level`.
+        let off = self.level - surface;
+        if off.abs() <= STEP {
+            self.agreed = 0;
+            return Some((off, RANGE_NOISE * RANGE_NOISE));
+        }
+        self.agreed = if (off - self.step).abs() <= SAME {
+            self.agreed + 1
+        } else {
+            1
+        };
+        self.step = off;
+        if self.agreed >= STEP_RANGES {
+            self.change_level(surface, then.at_us);
+        }
+        None
+    }
+
+    /// Another surface is below.
+    fn change_level(&mut self, surface: f32, now: u64) {
+        self.agreed = 0;
+        // One that was there before is that one.
+        let known = [self.base, self.other];
+        let again = known.iter().find(|level| (**level - surface).abs() <= STEP);
+        self.level = again.copied().unwrap_or(surface);
+        if again.is_none() {
+            self.other = surface;
+        }
+        // Down is positive: the lowest is the ground.
+        if self.level > self.base {
+            (self.other, self.base) = (self.base, self.level);
+        }
+        if now.saturating_sub(self.window_us) > STEPS_TIME {
+            (self.window_us, self.steps) = (now, 0);
+        }
+        self.steps += 1;
+        if self.steps > STEPS_MAX {
+            self.distrusted_us = now.saturating_add(DISTRUST);
+            self.steps = 0;
+        }
+    }
+
+    /// Distance at which the flow sees what it sees, m, from `height` above the surface with the tilt's cosine `cos`. Over
+    /// something narrow the rest of the view is farther.
+    fn depth(&self, height: f32, cos: f32) -> f32 {
+        let near = height / cos;
+        let below = self.base - self.level;
+        if below <= STEP {
+            return near;
+        }
+        let share = math::clamp(NARROW / (VIEW * near), 0.0, 1.0);
+        1.0 / (share / near + (1.0 - share) / (near + below / cos))
+    }
+
+    /// What the velocity between `from` and `to`, in axes turned by `turn` rad, is off by `flow`; `None` where it says
+    /// nothing.
+    pub fn velocity(&mut self, flow: &Flow, from: &Moment, to: &Moment, turn: f32) -> Option<Seen> {
+        self.watch_frozen(flow);
+        let cos = to.q.down_in_body().z;
+        let (at, distance) = self.range.filter(|_| !self.range_faulty())?;
+        let (least, most) = FLOW_HEIGHT;
+        let fresh = flow.until_us.abs_diff(at) <= RANGE_AGE;
+        if !fresh || cos < COS_MIN || flow.quality < QUALITY_MIN || !(least..=most).contains(&distance) {
+            return None;
+        }
+        let height = self.level - to.position.z;
+        let depth = self.depth(math::clamp(height, least, 2.0 * most), cos);
+        // What the vehicle has turned by, body.
+        let turned = from.q.conjugate() * to.q;
+        let half = if turned.w < 0.0 { -2.0 } else { 2.0 };
+        let turned = [half * turned.x, half * turned.y];
+        let way = about_down(to.position - from.position, -turn);
+        let way = to.q.rotate_inverse(way);
+        let [roll, pitch] = flow.angle;
+        let predicted = [turned[0] - way.y / depth, turned[1] + way.x / depth];
+        let per = 1.0 / flow.seconds;
+        let pairs = self.agreements.iter_mut().zip(flow.angle).zip(predicted);
+        let mut disagrees = false;
+        for ((agreement, measured), predicted) in pairs {
+            disagrees |= agreement.step(measured * per, predicted * per, FLOW_NOISE * per, flow.seconds);
+        }
+        self.disagrees = disagrees;
+        if disagrees || self.same_flows >= FROZEN_FLOWS {
+            return None;
+        }
+        // Along the down axis of the body flow sees nothing: there the estimate stands.
+        let seen = Vec3::new((pitch - turned[1]) * depth, (turned[0] - roll) * depth, way.z);
+        let off = about_down(to.q.rotate(seen - way), turn) * per;
+        let speed = FLOW_NOISE * depth * per;
+        let scale = SCALE_NOISE * (seen.x.abs() + seen.y.abs()) * per;
+        Some(Seen {
+            off: [off.x, off.y],
+            variance: speed * speed + scale * scale,
+        })
+    }
+
+    fn watch_frozen(&mut self, flow: &Flow) {
+        let moves = flow.angle.iter().any(|angle| angle.abs() > 1e-6);
+        let same = self
+            .angle
+            .iter()
+            .zip(flow.angle)
+            .all(|(a, b)| (a - b).abs() < 1e-7);
+        self.same_flows = if same && moves {
+            self.same_flows.saturating_add(1)
+        } else {
+            0
+        };
+        self.angle = flow.angle;
+    }
+}

@@ -1,0 +1,304 @@
+//! Flow and range against motions that are known.
+
+extern crate std;
+use super::*;
+use crate::ground::Range;
+use crate::vector::Quat;
+
+const STEP_US: u64 = 5_000;
+/// Time between two flows, and between two ranges, µs; how late both are.
+const FLOW_US: u64 = 20_000;
+const LATE_US: u64 = 25_000;
+
+/// A vehicle that swings and tilts above ground.
+struct Rig {
+    estimator: PositionEstimator,
+    now: u64,
+    /// What the module makes of its flow along each axis.
+    spoil: fn([f32; 2]) -> [f32; 2],
+    range: fn(f32) -> f32,
+    /// Height of what is below over the ground, m.
+    floor: f32,
+    silent: bool,
+    out: Option<Estimate>,
+}
+
+impl Rig {
+    fn new() -> Self {
+        Self {
+            estimator: PositionEstimator::new(&Params::default()),
+            now: 1_000_000,
+            spoil: |angle| angle,
+            range: |distance| distance,
+            floor: 0.0,
+            silent: false,
+            out: None,
+        }
+    }
+
+    /// Position, velocity, acceleration: 0.3 m at 2 rad/s, 1 m high.
+    fn truth(us: u64) -> [Vec3; 3] {
+        let (t, w) = (us as f64 * 1e-6, 2.0);
+        let (sin, cos) = ((w * t).sin() as f32, (w * t).cos() as f32);
+        let swing = |x: f32, y: f32, z: f32| Vec3::new(0.3 * x, 0.3 * y, 0.1 * x + z);
+        [
+            swing(sin, cos, -1.0),
+            swing(2.0 * cos, -2.0 * sin, 0.0),
+            swing(-4.0 * sin, -4.0 * cos, 0.0),
+        ]
+    }
+
+    /// It leans by ±6° and turns slowly.
+    fn q(us: u64) -> Quat {
+        let t = us as f64 * 1e-6;
+        let lean = |w: f64| (0.1 * (w * t).sin()) as f32;
+        Quat::from_euler(lean(7.0), lean(9.0), (0.2 * t) as f32)
+    }
+
+    fn view(&self) -> Option<GroundView> {
+        let until = (self.now - LATE_US) / FLOW_US * FLOW_US;
+        let from = until - FLOW_US;
+        let [[a, ..], [b, ..]] = [from, until].map(Self::truth);
+        let (q0, q1) = (Self::q(from), Self::q(until));
+        let depth = |p: Vec3, q: Quat| (-p.z - self.floor) / q.down_in_body().z;
+        let turned = q0.conjugate() * q1;
+        let way = q1.rotate_inverse(b - a);
+        let d = depth(b, q1);
+        let angle = [2.0 * turned.x - way.y / d, 2.0 * turned.y + way.x / d];
+        (!self.silent).then(|| GroundView {
+            flow: Some(Flow {
+                until_us: until,
+                seconds: FLOW_US as f32 * 1e-6,
+                angle: (self.spoil)(angle),
+                quality: 100,
+            }),
+            range: Some(Range {
+                at_us: until,
+                distance: Some((self.range)(d)),
+                reach: (0.02, 8.0),
+            }),
+        })
+    }
+
+    fn run(&mut self, seconds: f32) {
+        for _ in 0..(seconds * 1e6) as u64 / STEP_US {
+            self.now += STEP_US;
+            let [_, _, acceleration] = Self::truth(self.now);
+            let q = Self::q(self.now);
+            let felt = Inertial {
+                at_us: self.now,
+                q,
+                accel: q.rotate_inverse(acceleration - Vec3::new(0.0, 0.0, GRAVITY)),
+            };
+            let view = self.view();
+            self.out = self.estimator.step(&felt, 17.7, None, view.as_ref());
+        }
+    }
+
+    /// Errors of velocity and height, m/s and m.
+    fn errors(&self) -> [f32; 2] {
+        let [position, velocity, _] = Self::truth(self.now);
+        let e = self.out.expect("an estimate");
+        [(e.velocity - velocity).norm(), (e.position.z - position.z).abs()]
+    }
+
+    fn fault(&self) -> Option<SightFault> {
+        self.out.and_then(|e| e.fault)
+    }
+}
+
+#[test]
+fn late_flow_of_a_vehicle_that_turns_gives_its_velocity_and_range_its_height() {
+    let mut r = Rig::new();
+    r.run(10.0);
+    let [v, z] = r.errors();
+    assert!(v < 0.04 && z < 0.01, "{v} {z}");
+    // Dead reckoned from where it began: the way stays that of the truth.
+    let off = |r: &Rig| r.out.unwrap().position - Rig::truth(r.now)[0];
+    let before = off(&r);
+    r.run(20.0);
+    assert!((off(&r) - before).norm() < 0.1, "{before:?} {:?}", off(&r));
+    assert_eq!(r.fault(), None);
+}
+
+#[test]
+fn a_step_of_what_is_below_changes_neither_height_nor_velocity() {
+    let mut r = Rig::new();
+    r.run(5.0);
+    // The pipe is as wide as the view here, so that all of it is as near.
+    for floor in [0.6, 0.0, 0.6, 0.0] {
+        r.floor = floor;
+        r.run(1.5);
+        let [_, z] = r.errors();
+        assert!(z < 0.04, "{floor} {z}");
+    }
+    let [v, _] = r.errors();
+    assert!(v < 0.1, "{v}");
+    assert_eq!(r.fault(), None);
+}
+
+#[test]
+fn what_is_mirrored_turned_dead_frozen_or_wrongly_scaled_is_named_within_three_seconds_and_left_out() {
+    type Spoil = fn([f32; 2]) -> [f32; 2];
+    let spoilt: [(Spoil, SightFault); 6] = [
+        (|[x, y]| [-x, -y], SightFault::FlowDisagrees),
+        (|[x, y]| [-x, y], SightFault::FlowDisagrees),
+        (|[x, y]| [y, x], SightFault::FlowDisagrees),
+        (|[x, y]| [2.2 * x, 2.2 * y], SightFault::FlowDisagrees),
+        (|_| [0.0, 0.0], SightFault::FlowDisagrees),
+        (|_| [0.004, 0.001], SightFault::FlowFrozen),
+    ];
+    for (case, (spoil, fault)) in spoilt.into_iter().enumerate() {
+        let mut r = Rig::new();
+        r.run(5.0);
+        r.spoil = spoil;
+        r.run(3.0);
+        assert_eq!(r.fault(), Some(fault), "{case}");
+        let age = r.out.unwrap().age;
+        r.run(1.0);
+        assert!(r.out.unwrap().age > age + 0.9, "{case}");
+        r.spoil = |angle| angle;
+        r.run(8.0);
+        assert!(
+            r.fault().is_none() && r.errors()[0] < 0.1,
+            "{case} {:?}",
+            r.errors()
+        );
+    }
+}
+
+#[test]
+fn a_range_that_stands_still_or_jumps_is_named_and_left_out() {
+    let mut r = Rig::new();
+    r.run(5.0);
+    r.range = |_| 1.0;
+    r.run(1.0);
+    assert_eq!(r.fault(), Some(SightFault::RangeFrozen));
+    r.range = |d| d;
+    r.run(3.0);
+    assert!(r.fault().is_none() && r.errors()[1] < 0.15, "{:?}", r.errors());
+
+    let mut r = Rig::new();
+    r.run(5.0);
+    for _ in 0..10 {
+        r.range = |d| d + 0.5;
+        r.run(0.2);
+        r.range = |d| d;
+        r.run(0.2);
+    }
+    assert_eq!(r.fault(), Some(SightFault::RangeJumps));
+}
+
+#[test]
+fn near_the_ground_too_high_and_without_a_range_flow_is_not_used() {
+    let ranges: [fn(f32) -> f32; 4] = [|_| 0.05, |d| d + 2.0, |_| f32::NAN, |_| 20.0];
+    for range in ranges {
+        let mut r = Rig::new();
+        r.range = range;
+        r.run(3.0);
+        assert_eq!(r.out, None);
+    }
+}
+
+#[test]
+fn silence_is_coasted_through_and_aged() {
+    let mut r = Rig::new();
+    r.run(10.0);
+    r.silent = true;
+    r.run(1.0);
+    let age = r.out.unwrap().age;
+    assert!(r.errors()[0] < 0.1 && (0.95..1.1).contains(&age), "{age}");
+    r.run(LOST_AGE);
+    assert_eq!(r.out, None);
+}
+
+#[test]
+fn flow_carries_on_where_poses_end_and_a_pose_sets_the_axes() {
+    let mut r = Rig::new();
+    r.run(3.0);
+    // Poses 5 m north of where it is, heading as the vehicle's own.
+    let step = |r: &mut Rig| {
+        r.now += STEP_US;
+        let at_us = (r.now - 30_000) / FLOW_US * FLOW_US;
+        let [_, _, acceleration] = Rig::truth(r.now);
+        let q = Rig::q(r.now);
+        let felt = Inertial {
+            at_us: r.now,
+            q,
+            accel: q.rotate_inverse(acceleration - Vec3::new(0.0, 0.0, GRAVITY)),
+        };
+        let pose = Fix {
+            at_us,
+            position: Rig::truth(at_us)[0] + Vec3::new(5.0, 0.0, 0.0),
+            heading: Rig::q(at_us).to_euler().2,
+            ..Fix::default()
+        };
+        let view = r.view();
+        r.out = r.estimator.step(&felt, 17.7, Some(&pose), view.as_ref());
+    };
+    for _ in 0..400 {
+        step(&mut r);
+    }
+    let e = r.out.unwrap();
+    let at = Rig::truth(r.now)[0] + Vec3::new(5.0, 0.0, 0.0);
+    assert!(e.jumps == 1 && (e.position - at).norm() < 0.02, "{e:?} {at:?}");
+    r.run(3.0);
+    let e = r.out.unwrap();
+    let at = Rig::truth(r.now)[0] + Vec3::new(5.0, 0.0, 0.0);
+    assert!(
+        e.jumps == 1 && e.age < 0.1 && (e.position - at).norm() < 0.15,
+        "{e:?}"
+    );
+}
+
+mod any {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn number() -> impl Strategy<Value = f32> {
+        prop_oneof![4 => -0.3f32..0.3, 2 => -20.0f32..20.0, 1 => any::<f32>()]
+    }
+
+    fn view() -> impl Strategy<Value = (GroundView, u64)> {
+        let flow = (0u64..60_000, number(), number(), number(), any::<u8>());
+        let range = (0u64..60_000, prop::option::of(number()), number(), number());
+        let both = (prop::option::of(flow), prop::option::of(range), 1u64..10);
+        both.prop_map(|(flow, range, steps)| {
+            let flow = flow.map(|(until_us, seconds, x, y, quality)| Flow {
+                until_us,
+                seconds,
+                angle: [x, y],
+                quality,
+            });
+            let range = range.map(|(at_us, distance, near, far)| Range {
+                at_us,
+                distance,
+                reach: (near, far),
+            });
+            (GroundView { flow, range }, steps)
+        })
+    }
+
+    proptest! {
+        // Whatever a module says, before and after a time in which it was sound.
+        #[test]
+        fn any_flow_and_range_leave_the_estimate_finite(views in prop::collection::vec(view(), 0..60)) {
+            let mut r = Rig::new();
+            r.run(1.0);
+            for (view, steps) in views {
+                for _ in 0..steps {
+                    r.now += STEP_US;
+                    let felt = Inertial { at_us: r.now, q: Rig::q(r.now), accel: Vec3::new(0.0, 0.0, -GRAVITY) };
+                    // Times are ages here.
+                    let flow = view.flow.map(|f| Flow { until_us: r.now - f.until_us, ..f });
+                    let range = view.range.map(|x| Range { at_us: r.now - x.at_us, ..x });
+                    let out = r.estimator.step(&felt, 17.7, None, Some(&GroundView { flow, range }));
+                    prop_assert!(out.is_none_or(|e| e.is_finite()));
+                }
+            }
+            r.run(5.0);
+            prop_assert!(r.out.is_none_or(|e| e.is_finite()));
+        }
+    }
+}

@@ -1,0 +1,377 @@
+//! A module of optical flow and range below the vehicle, of the MTF class: a PMW3901 and a time-of-flight sensor, whose
+//! messages come as MSP frames.
+//!
+//! | what | figure | from |
+//! |---|---|---|
+//! | field of view, nearest, fastest | 42°, 8 cm, 7.4 rad/s | PMW3901's data sheet, the maker's table of the MTF-02 |
+//! | range | 2 cm to 2.5 m | the same table |
+//! | counts | 10.5 a degree | INAV's default for a PMW3901 |
+//! | noise, scale, lateness, gaps | below | assumed, as in the feasibility study |
+
+use std::collections::VecDeque;
+
+use glam::{DQuat, DVec3};
+use rand::Rng;
+use rand_distr::{Distribution, StandardNormal};
+use rand_pcg::Pcg64Mcg;
+use sophie_drivers::msp::Message;
+
+use crate::plant::contact::{Pipe, Pose};
+use crate::scenario::FlowFault;
+use crate::streams::Streams;
+
+/// Time between two frames, ms: 50 a second.
+const PERIOD_MS: u64 = 20;
+/// From the end of an interval, or a range, to its last byte, µs: within these by the flight, and this much by the frame.
+const DELAY_US: (u64, u64) = (20_000, 30_000);
+const JITTER_US: u64 = 1_500;
+/// White noise of a flow in an interval, rad: 0.12 rad/s.
+const FLOW_NOISE: f64 = 0.12 * 1e-3 * PERIOD_MS as f64;
+/// Error of the flow's scale, 1 RMS: what calibration by rotation leaves.
+const SCALE: f64 = 0.02;
+/// Counts of an angle, 1/rad.
+const COUNTS: f64 = 10.5 * 180.0 / std::f64::consts::PI;
+/// Half the field of view, rad, and the rays along each of its sides.
+const HALF_VIEW: f64 = 21.0 / 180.0 * std::f64::consts::PI;
+const RAYS: i32 = 9;
+/// Time between two looks, ms.
+const LOOK_MS: u64 = 4;
+/// Nearest that the lens sees, m, and the fastest flow, rad/s.
+const NEAREST: f64 = 0.08;
+const FASTEST: f64 = 7.4;
+/// Half the beam of the range, rad; its reach, m; white noise, m, and error of its scale, 1 RMS.
+const HALF_BEAM: f64 = 3.0 / 180.0 * std::f64::consts::PI;
+const REACH: (f64, f64) = (0.02, 2.5);
+const RANGE_NOISE: f64 = 0.015;
+const RANGE_SCALE: f64 = 0.005;
+/// Without a flow, s, and time between two such gaps, s.
+const GAP: (f64, f64) = (0.3, 1.0);
+const BETWEEN: (f64, f64) = (10.0, 40.0);
+/// Where it is, m, body.
+const MOUNTED: DVec3 = DVec3::new(0.0, 0.0, 0.02);
+/// Quality of a picture with enough in it.
+const QUALITY: u8 = 120;
+
+/// The module.
+#[derive(Clone, Debug)]
+pub struct FlowModule {
+    rng: Pcg64Mcg,
+    pipe: Pipe,
+    /// Since power-up, ms.
+    ms: u64,
+    before: Option<(DVec3, DQuat)>,
+    /// Flow of this interval, rad, and what is left of it below a count.
+    angle: [f64; 2],
+    rest: [f64; 2],
+    seen: bool,
+    scale: f64,
+    range_scale: f64,
+    delay_us: u64,
+    gap: (u64, u64),
+    fault: FlowFault,
+    failure: (u64, u64),
+    held: Option<[i32; 2]>,
+    held_range: Option<i32>,
+    sent: VecDeque<(u64, Vec<u8>)>,
+}
+
+impl FlowModule {
+    /// A module over the ground and `pipe` with the errors of `streams`.
+    #[must_use]
+    pub fn new(streams: Streams, pipe: Pipe) -> Self {
+        let mut rng = streams.of("flow");
+        let scale = 1.0 + SCALE * normal(&mut rng);
+        let range_scale = 1.0 + RANGE_SCALE * normal(&mut rng);
+        let delay_us = rng.random_range(DELAY_US.0..DELAY_US.1);
+        let gap = gap(&mut rng, 0);
+        Self {
+            rng,
+            pipe,
+            ms: 0,
+            before: None,
+            angle: [0.0; 2],
+            rest: [0.0; 2],
+            seen: true,
+            scale,
+            range_scale,
+            delay_us,
+            gap,
+            fault: FlowFault::Silent,
+            failure: (0, 0),
+            held: None,
+            held_range: None,
+            sent: VecDeque::new(),
+        }
+    }
+
+    /// The same, with `fault` from `at` s after power-up for `seconds`.
+    #[must_use]
+    pub fn failing(self, fault: FlowFault, at: f64, seconds: f64) -> Self {
+        let failure = ((at * 1e3) as u64, ((at + seconds) * 1e3) as u64);
+        Self {
+            fault,
+            failure,
+            ..self
+        }
+    }
+
+    /// A millisecond later the vehicle is at `pose`.
+    pub fn step(&mut self, pose: &Pose) {
+        self.ms += 1;
+        if !self.ms.is_multiple_of(LOOK_MS) {
+            return;
+        }
+        let now = (pose.point(MOUNTED), pose.attitude);
+        if let Some(before) = self.before.replace(now) {
+            match self.flow(before, now) {
+                Some(flow) => self.angle = [self.angle[0] + flow[0], self.angle[1] + flow[1]],
+                None => self.seen = false,
+            }
+        }
+        if self.ms.is_multiple_of(PERIOD_MS) {
+            self.measure(now);
+        }
+    }
+
+    /// The bytes that have come `us` µs after power-up.
+    pub fn take(&mut self, us: u64) -> Option<Vec<u8>> {
+        self.sent.front().filter(|(at, _)| *at <= us)?;
+        self.sent.pop_front().map(|(_, bytes)| bytes)
+    }
+
+    fn measure(&mut self, now: (DVec3, DQuat)) {
+        let angle = std::mem::take(&mut self.angle);
+        let seen = std::mem::replace(&mut self.seen, true);
+        let (begins, ends) = self.gap;
+        if self.ms >= ends {
+            self.gap = gap(&mut self.rng, self.ms);
+        }
+        let dark = (begins..ends).contains(&self.ms);
+        let fault = (self.failure.0..self.failure.1)
+            .contains(&self.ms)
+            .then_some(self.fault);
+        let mut counts = [0; 2];
+        for ((count, rest), angle) in counts.iter_mut().zip(&mut self.rest).zip(angle) {
+            let noisy = self.scale * angle + FLOW_NOISE * normal(&mut self.rng);
+            // What is seen moves against the vehicle.
+            let whole = *rest - noisy * COUNTS;
+            *count = whole.round() as i32;
+            *rest = whole - whole.round();
+        }
+        let distance = self.distance(now);
+        let noise = RANGE_NOISE * normal(&mut self.rng);
+        let mut distance = distance.map(|d| (d * self.range_scale + noise) * 1e3);
+        let mut quality = if seen && !dark { QUALITY } else { 0 };
+        let jitter = self.rng.random_range(0..JITTER_US);
+        match fault {
+            None => (self.held, self.held_range) = (None, None),
+            Some(FlowFault::Silent) => return,
+            Some(FlowFault::Dark) => quality = 0,
+            Some(FlowFault::Mirrored) => counts = counts.map(|count| -count),
+            Some(FlowFault::Scaled) => counts = counts.map(|count| 5 * count / 2),
+            Some(FlowFault::Frozen) => counts = *self.held.get_or_insert([counts[0] | 1, counts[1]]),
+            Some(FlowFault::RangeFrozen) => {
+                let held = *self.held_range.get_or_insert(distance.unwrap_or(1000.0) as i32);
+                distance = Some(f64::from(held));
+            }
+            Some(FlowFault::RangeJumps) => {
+                let high = self.ms / 300 % 2 == 0;
+                distance = distance.map(|d| if high { d + 600.0 } else { d });
+            }
+        }
+        let flow = Message::Flow { quality, counts };
+        let within = |d: &f64| (REACH.0 * 1e3..=REACH.1 * 1e3).contains(d);
+        let range = distance.filter(within).map_or(
+            Message::Range {
+                quality: 0,
+                distance: -1,
+            },
+            |d| Message::Range {
+                quality: 255,
+                distance: d as i32,
+            },
+        );
+        let bytes = range.frame().iter().chain(&flow.frame()).copied().collect();
+        let at = self.ms * 1000 + self.delay_us + jitter;
+        self.sent.push_back((at, bytes));
+    }
+
+    /// Flow between two places, rad, as of a body that turns; `None` where the lens sees nothing.
+    fn flow(&self, from: (DVec3, DQuat), to: (DVec3, DQuat)) -> Option<[f64; 2]> {
+        let (mut sum, mut weight) = ([0.0; 2], [0.0; 2]);
+        let mut rays = 0.0;
+        for i in 0..RAYS {
+            for j in 0..RAYS {
+                let side = |k: i32| (f64::from(k) / f64::from(RAYS - 1) * 2.0 - 1.0) * HALF_VIEW.tan();
+                let (u, w) = (side(i), side(j));
+                // Texture is where the light of the ray falls; a ray into the sky sees none.
+                let direction = to.1 * DVec3::new(u, w, 1.0);
+                let Some(way) = self.hit(to.0, direction) else {
+                    continue;
+                };
+                if way < NEAREST {
+                    return None;
+                }
+                let point = to.0 + direction * way;
+                let before = from.1.inverse() * (point - from.0);
+                sum[0] += w - before.y / before.z;
+                sum[1] += before.x / before.z - u;
+                // As much as the same picture of a body that only turns: what calibration by rotation sees.
+                weight[0] += 1.0 + w * w;
+                weight[1] += 1.0 + u * u;
+                rays += 1.0;
+            }
+        }
+        let half = f64::from(RAYS * RAYS) / 2.0;
+        let flow = [sum[0] / weight[0], sum[1] / weight[1]];
+        let fast = FASTEST * LOOK_MS as f64 * 1e-3;
+        (rays >= half && flow.iter().all(|f| f.abs() <= fast)).then_some(flow)
+    }
+
+    /// Range along the beam, m: the middle one of its rays.
+    fn distance(&self, (from, attitude): (DVec3, DQuat)) -> Option<f64> {
+        let side = HALF_BEAM.tan();
+        let mut found = [(0.0, 0.0), (side, 0.0), (-side, 0.0), (0.0, side), (0.0, -side)].map(|(u, w)| {
+            self.hit(from, attitude * DVec3::new(u, w, 1.0))
+                .unwrap_or(f64::INFINITY)
+        });
+        found.sort_by(f64::total_cmp);
+        Some(found[2]).filter(|d| d.is_finite())
+    }
+
+    /// How many times `direction` it is from `from` to the pipe or the ground.
+    fn hit(&self, from: DVec3, direction: DVec3) -> Option<f64> {
+        let ground = (direction.z > 1e-3).then(|| -from.z / direction.z);
+        [self.hit_pipe(from, direction), ground]
+            .into_iter()
+            .flatten()
+            .filter(|way| *way > 0.0)
+            .min_by(f64::total_cmp)
+    }
+
+    fn hit_pipe(&self, from: DVec3, direction: DVec3) -> Option<f64> {
+        let pipe = &self.pipe;
+        let (y, z) = (from.y - pipe.east, from.z - pipe.down);
+        let (a, b, c) = (
+            direction.y * direction.y + direction.z * direction.z,
+            y * direction.y + z * direction.z,
+            y * y + z * z - pipe.radius * pipe.radius,
+        );
+        let root = b * b - a * c;
+        let way = (-b - root.max(0.0).sqrt()) / a;
+        let along = (from.x + direction.x * way - pipe.north).abs();
+        (root >= 0.0 && way > 0.0 && along <= pipe.half_length).then_some(way)
+    }
+}
+
+fn normal(rng: &mut Pcg64Mcg) -> f64 {
+    StandardNormal.sample(rng)
+}
+
+/// Begin and end of the first gap after `ms`.
+fn gap(rng: &mut Pcg64Mcg, ms: u64) -> (u64, u64) {
+    let begins = ms + (rng.random_range(BETWEEN.0..BETWEEN.1) * 1e3) as u64;
+    (begins, begins + (rng.random_range(GAP.0..GAP.1) * 1e3) as u64)
+}
+
+#[cfg(test)]
+mod tests {
+    use sophie_drivers::msp::Parser;
+
+    use super::*;
+
+    const PIPE: Pipe = Pipe {
+        north: 3.0,
+        half_length: 1.0,
+        east: 0.0,
+        down: -1.35,
+        radius: 0.15,
+        friction: 0.6,
+    };
+
+    /// Mean flow, rad/s, and range, m, in axes of the vehicle, of `seconds` of a motion.
+    fn seen(seconds: u64, motion: impl Fn(f64) -> (DVec3, DQuat)) -> ([f64; 2], Option<f64>, usize) {
+        let mut module = FlowModule::new(Streams::new(3), PIPE);
+        let (mut sum, mut ranges, mut flows, mut dark) = ([0.0; 2], vec![], 0, 0);
+        for ms in 1..=seconds * 1000 {
+            let (position, attitude) = motion(ms as f64 * 1e-3);
+            module.step(&Pose {
+                position,
+                attitude,
+                velocity: DVec3::ZERO,
+                omega: DVec3::ZERO,
+            });
+            let mut parser = Parser::new();
+            let bytes = module.take(ms * 1000).unwrap_or_default();
+            for message in bytes.iter().filter_map(|byte| parser.take(*byte)) {
+                match message {
+                    Message::Flow { quality: 0, .. } => dark += 1,
+                    Message::Flow { counts, .. } => {
+                        flows += 1;
+                        sum = std::array::from_fn(|i| sum[i] - f64::from(counts[i]) / COUNTS);
+                    }
+                    Message::Range { distance, .. } if distance < 0 => {}
+                    Message::Range { distance, .. } => ranges.push(f64::from(distance) * 1e-3),
+                }
+            }
+        }
+        let time = f64::from(flows) * 1e-3 * PERIOD_MS as f64;
+        let range = ranges.iter().sum::<f64>() / ranges.len() as f64;
+        (
+            sum.map(|angle| angle / time),
+            (!ranges.is_empty()).then_some(range),
+            dark,
+        )
+    }
+
+    fn level(north: f64, height: f64) -> (DVec3, DQuat) {
+        (DVec3::new(north, 0.0, -height), DQuat::IDENTITY)
+    }
+
+    fn near(a: f64, b: f64, within: f64) {
+        assert!((a - b).abs() < within, "{a} {b}");
+    }
+
+    #[test]
+    fn ground_and_turning_are_seen_by_the_standards_signs() {
+        // 0.4 m/s forward and -0.2 to the right, 1 m over the ground: what is seen pitches up and rolls right.
+        let ([x, y], range, _) = seen(8, |t| {
+            (
+                DVec3::new(-8.0 + 0.4 * t, -0.2 * t, -1.0 - MOUNTED.z),
+                DQuat::IDENTITY,
+            )
+        });
+        // Of a view as wide, calibrated by turning, a way is 6 % short.
+        near(x, 0.2 / 1.06, 0.02);
+        near(y, 0.4 / 1.06, 0.02);
+        near(range.unwrap(), 1.0, 0.02);
+        let ([x, y], ..) = seen(3, |t| {
+            (DVec3::new(-8.0, 0.0, -1.0), DQuat::from_rotation_x(0.1 * t))
+        });
+        near(x, 0.1, 0.05);
+        near(y, 0.0, 0.05);
+    }
+
+    #[test]
+    fn over_the_pipe_the_range_sees_it_and_the_flow_its_surroundings_too() {
+        let ([_, y], range, _) = seen(4, |t| level(2.6 + 0.2 * t, 2.5));
+        near(range.unwrap(), 1.0 - MOUNTED.z, 0.03);
+        // Nearer than the ground by itself, farther than the pipe.
+        assert!((0.2 / 2.5 * 1.1..0.2 * 0.9).contains(&y), "{y}");
+        // Beyond the end the ground is back, out of the range's reach.
+        let (_, range, _) = seen(2, |_| level(4.5, 2.6));
+        assert_eq!(range, None);
+    }
+
+    #[test]
+    fn near_the_ground_in_the_dark_and_too_fast_there_is_no_flow() {
+        let (_, range, dark) = seen(1, |_| level(-8.0, 0.09));
+        assert!(dark >= 45, "{dark}");
+        near(range.unwrap(), 0.07, 0.02);
+        let (.., dark) = seen(1, |t| level(-8.0 + 8.0 * t, 0.8));
+        assert!(dark >= 45, "{dark}");
+        // A gap within 40 s.
+        let (.., dark) = seen(45, |_| level(-8.0, 1.0));
+        assert!((15..200).contains(&dark), "{dark}");
+    }
+}

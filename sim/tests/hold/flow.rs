@@ -1,0 +1,140 @@
+//! Held by optical flow and range alone.
+
+use glam::DVec3;
+use sophie_control::mode::{Mode, Reason};
+use sophie_control::position::SightFault;
+use sophie_sim::flight::fly;
+use sophie_sim::record::{FlightRecord, Sample, Silent};
+use sophie_sim::scenario::{FlowFault, PositionSensor, Scenario, Step};
+
+use super::{held, settled};
+
+/// What the hold may be: velocity, m/s RMS, level; drift within 10 s, m RMS over all flights; height, m RMS. Wanted are 0.05
+/// m/s: the law swings the vehicle at 8 rad/s in these gusts, by flow and by pose alike (docs/hold.md).
+const SPEED_RMS: f64 = 0.25;
+const DRIFT_RMS: f64 = 0.10;
+const HEIGHT_RMS: f64 = 0.03;
+/// Time over which the drift counts, s.
+const DRIFT_TIME: f64 = 10.0;
+
+/// The same hold, 1 m over the ground and away from the pipe, by flow.
+fn by_flow(seed: u64, seconds: f64) -> Scenario {
+    let mut s = held(seed, seconds);
+    s.steps[1] = Step::TakeOff { height: 1.0 };
+    s.sensors.position = PositionSensor::Flow;
+    s
+}
+
+fn place(sample: &Sample) -> DVec3 {
+    DVec3::from_array(sample.position)
+}
+
+fn rms(values: impl Iterator<Item = f64>) -> f64 {
+    let (n, sum) = values.fold((0.0, 0.0), |(n, sum), x| (n + 1.0, sum + x * x));
+    (sum / f64::max(n, 1.0)).sqrt()
+}
+
+/// Level speed, drift from where each window of ten seconds began, and height about its mean; RMS.
+fn errors(samples: &[&Sample]) -> [f64; 3] {
+    let level = |v: DVec3| v.truncate().length();
+    let speed = rms(samples.iter().map(|s| level(DVec3::from_array(s.velocity))));
+    let per_window = samples
+        .iter()
+        .position(|s| s.t >= samples[0].t + DRIFT_TIME)
+        .expect("held for longer than a window");
+    let windows = samples.chunks_exact(per_window);
+    let drift = rms(windows.flat_map(|window| window.iter().map(|s| level(place(s) - place(window[0])))));
+    let mean = samples.iter().map(|s| s.position[2]).sum::<f64>() / samples.len() as f64;
+    [speed, drift, rms(samples.iter().map(|s| s.position[2] - mean))]
+}
+
+fn judge(seeds: impl Iterator<Item = u64>, seconds: f64) {
+    let (mut drifts, mut wrong) = (vec![], vec![]);
+    for seed in seeds {
+        let record = fly(&by_flow(seed, seconds), &mut Silent);
+        assert!(record.outcome.accomplished, "{seed}: {}", record.outcome.reason);
+        let [speed, drift, height] = errors(&settled(&record));
+        println!("{seed}: {speed:.3} m/s RMS, drift {drift:.3} m RMS within 10 s, height {height:.3} m RMS");
+        let blamed = blamed(&record);
+        if speed >= SPEED_RMS || height >= HEIGHT_RMS || drift >= 2.0 * DRIFT_RMS || blamed {
+            wrong.push(format!("{seed}: {speed:.3} {drift:.3} {height:.3} {blamed}"));
+        }
+        drifts.push(drift);
+    }
+    let drift = rms(drifts.into_iter());
+    println!("all: drift {drift:.3} m RMS within 10 s");
+    assert!(drift < DRIFT_RMS && wrong.is_empty(), "{drift:.3} {wrong:?}");
+}
+
+fn blamed(record: &FlightRecord) -> bool {
+    let texts = SightFault::ALL.map(SightFault::text);
+    record
+        .events
+        .iter()
+        .any(|e| texts.iter().any(|text| e.text.ends_with(text)))
+}
+
+#[test]
+fn by_flow_the_vehicle_is_slow_and_drifts_by_centimetres() {
+    judge(1..=3, 25.0);
+}
+
+#[test]
+#[ignore = "fifty flights of a minute: .ci/campaign flies them"]
+fn by_flow_the_vehicle_is_slow_and_drifts_by_centimetres_with_every_seed() {
+    judge(1..=50, 60.0);
+}
+
+/// Held for 20 s with `fault` for `seconds` in its middle; the record and the samples of that time.
+fn with_a_fault(fault: FlowFault, seconds: f64) -> (FlightRecord, Vec<Sample>) {
+    let mut s = by_flow(5, 20.0);
+    s.sensors.flow_fault = fault;
+    s.sensors.pose_fails_at = 22.0;
+    s.sensors.pose_fails_for = seconds;
+    let record = fly(&s, &mut Silent);
+    let during = |s: &&Sample| (22.0..22.0 + seconds).contains(&s.t);
+    let samples: Vec<Sample> = record.samples.iter().filter(during).cloned().collect();
+    (record, samples)
+}
+
+#[test]
+fn a_module_that_fails_is_named_or_missed_and_the_vehicle_is_level_and_high() {
+    let cases = [
+        (FlowFault::Silent, Reason::PositionStale.text()),
+        (FlowFault::Dark, Reason::PositionStale.text()),
+        (FlowFault::Mirrored, SightFault::FlowDisagrees.text()),
+        (FlowFault::Scaled, SightFault::FlowDisagrees.text()),
+        (FlowFault::Frozen, SightFault::FlowFrozen.text()),
+        (FlowFault::RangeFrozen, SightFault::RangeFrozen.text()),
+        (FlowFault::RangeJumps, SightFault::RangeJumps.text()),
+    ];
+    let mut wrong = vec![];
+    for (fault, text) in cases {
+        let (record, samples) = with_a_fault(fault, 6.0);
+        // Not to have found back into the hold in time ends the mission, and harms nothing.
+        let harmless = record.outcome.accomplished || record.outcome.reason.contains("no hold");
+        assert_eq!(samples[0].mode, Mode::Hold, "{fault:?}");
+        let said = record.events.iter().find(|e| e.text.ends_with(text));
+        let at = said.map_or(f64::NAN, |e| e.t - 22.0);
+        let lean = samples
+            .iter()
+            .map(|s| s.attitude[0].hypot(s.attitude[1]))
+            .fold(0.0, f64::max);
+        let speed = samples
+            .iter()
+            .map(|s| DVec3::from_array(s.velocity).length())
+            .fold(0.0, f64::max);
+        let low = samples
+            .iter()
+            .map(|s| -s.position[2])
+            .fold(f64::INFINITY, f64::min);
+        println!(
+            "{fault:?}: named after {at:.2} s, lean {:.1} deg, {speed:.2} m/s, lowest {low:.2} m",
+            lean.to_degrees()
+        );
+        if !(harmless && at < 5.0 && lean.to_degrees() < 20.0 && speed < 1.5 && low > 0.4) {
+            wrong.push(format!("{fault:?} {}", record.outcome.reason));
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:?}");
+}

@@ -1,0 +1,38 @@
+//! Module of optical flow and range: decodes the bytes of its line to what it sees.
+//!
+//! Bytes that are no frame are dropped; the link turns stale then, as with a silent module.
+
+use embassy_time::{Duration, Instant, Timer};
+
+use crate::deadline::{TaskId, record_run};
+use crate::links::Links;
+use crate::ports::{GroundDecoder, SerialInput};
+
+/// Bytes per read: both frames of a module.
+const BUFFER: usize = 32;
+/// From the bytes' arrival.
+const DEADLINE: Duration = TaskId::Ground.deadline();
+/// Pause after an error or an empty read: a dead line must not take the processor.
+const PAUSE: Duration = Duration::from_millis(1);
+
+/// Decodes frames; never returns.
+pub async fn run(links: &Links, mut port: impl SerialInput, mut decoder: impl GroundDecoder) -> ! {
+    let mut buffer = [0; BUFFER];
+    loop {
+        let count = match port.read(&mut buffer).await {
+            Ok(count) if count > 0 => count,
+            read => {
+                if read.is_err() {
+                    decoder.broken();
+                }
+                Timer::after(PAUSE).await;
+                continue;
+            }
+        };
+        let at = Instant::now();
+        if let Some(view) = decoder.take(buffer.get(..count).unwrap_or_default(), at) {
+            links.ground.send(at, view);
+        }
+        record_run(links, TaskId::Ground, at, at, DEADLINE);
+    }
+}
