@@ -261,10 +261,19 @@ fn a_key_is_no_reason_to_erase_what_cannot_be_read() {
     assert_eq!(load(&flash).1.signing, Stored::Unreadable);
     assert_eq!(save_key(&flash, Some(record(1))), Err(StorageError::Broken));
     assert_eq!(flash.0.borrow().bytes, before);
-    // A save of parameters clears it.
-    assert_eq!(save(&flash, Params::default()), Ok(()));
-    assert_eq!(load(&flash).1.signing, Stored::None);
-    assert_eq!(save_key(&flash, Some(record(1))), Ok(()));
+    // A save of parameters clears it, and keeps that there may have been a key, through the next ones.
+    for params in [Params::default(), set(&[("infill", 8.0)]), Params::default()] {
+        assert_eq!(save(&flash, params), Ok(()));
+        let (found, loaded) = load(&flash);
+        assert_eq!((found, loaded.signing), (params, Stored::Lost));
+        assert_eq!((loaded.refused, loaded.unreadable), (0, false));
+    }
+    // Until one is set, or none.
+    for (key, then) in [(Some(record(1)), Stored::Key(record(1))), (None, Stored::None)] {
+        let flash = flash.copy();
+        assert_eq!(save_key(&flash, key), Ok(()));
+        assert_eq!(load(&flash).1.signing, then);
+    }
 }
 
 fn with_item<const W: usize, const P: usize>(item: &'static [u8]) -> Flash<W, P> {
