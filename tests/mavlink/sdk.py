@@ -63,9 +63,11 @@ def fly(system, telemetry, texts, seconds):
     while grabs[-1:] != ["SUCCESS"] and time.monotonic() < end:
         grabs.append(tried(gripper.grab, GripperError, 1))
     released = tried(gripper.release, GripperError, 1)
-    disarmed = tried(action.disarm, ActionError)
-    # The text follows its answer.
-    soon(lambda: any("flying" in text for text in texts) or None, AGAIN)
+    # One that was sent again may still be under way; the text follows the answer.
+    disarmed, why = None, None
+    while why is None and time.monotonic() < end:
+        disarmed = tried(action.disarm, ActionError)
+        why = soon(lambda: any("flying" in text for text in texts) or None, 1)
     return {"arms": arms, "grabs": grabs, "release": released, "armed": telemetry.armed(), "disarm": disarmed}
 
 
