@@ -404,7 +404,7 @@ fn mavsdk_hears_sets_is_refused_and_has_a_shell() {
     let (socket, address) = station();
     drop(socket);
     let _flight = Flight::begin(&temp, &["--pilot", "none", "--mavlink", &address]);
-    let did = clients::run("sdk.py", &[&address, "60"]);
+    let did = clients::run("sdk.py", &[&format!("udpin://{address}"), "60", "stands"]);
     let near = |value: &serde_json::Value, wanted: f64, within: f64| {
         value
             .as_f64()
@@ -434,7 +434,7 @@ fn mavsdk_hears_sets_is_refused_and_has_a_shell() {
     assert_eq!(did["arm"], "COMMAND_DENIED", "{did}");
     assert!(did["grab"] != "SUCCESS" && did["release"] != "SUCCESS", "{did}");
     assert!(said(&did, "refused: radio lost"), "{did}");
-    // Its working copy is its own.
+    // The console's working copy has not what was set by the parameter protocol.
     let shell = did["shell"].as_str().unwrap();
     assert!(
         shell.contains("infill           6.9") && shell.ends_with("\n> "),
@@ -449,7 +449,7 @@ fn mavproxy_fetches_loads_and_saves_parameters() {
     let (socket, address) = station();
     drop(socket);
     let _flight = Flight::begin(&temp, &["--pilot", "none", "--mavlink", &address]);
-    let did = clients::run("proxy.py", &[&address, "60", "infill", "8"]);
+    let did = clients::run("proxy.py", &[&format!("udpin:{address}"), "60", "infill", "8"]);
     assert!(whole_table(&did["params"]), "{did}");
     assert_eq!(did["params"]["infill"], 8.0, "{did}");
 }

@@ -54,7 +54,7 @@ struct Found {
 /// What is to be stored.
 struct Content {
     params: Params,
-    signing: Option<Record>,
+    signing: Stored,
 }
 
 impl Found {
@@ -62,7 +62,7 @@ impl Found {
     fn content(&self, defaults: &Params) -> Content {
         Content {
             params: self.set.as_ref().map_or(*defaults, |set| set.over(defaults)),
-            signing: self.set.as_ref().and_then(|set| set.signing),
+            signing: self.set.as_ref().map_or(Stored::None, |set| set.signing),
         }
     }
 
@@ -73,7 +73,7 @@ impl Found {
             Some(set) => {
                 set.refused == 0 && !set.renamed && set.over(defaults) == *params && set.signing == *signing
             }
-            None => params == defaults && signing.is_none(),
+            None => params == defaults && *signing == Stored::None,
         };
         same && !self.damaged
     }
@@ -229,17 +229,21 @@ impl<F: NorFlash> Storage for ParamStore<F> {
             refused: set.refused,
             unreadable: found.damaged,
             foreign: None,
-            signing: set.signing.map_or(Stored::None, Stored::Key),
+            signing: set.signing,
         }
     }
 
     async fn save(&mut self, params: &Params) -> Result<(), StorageError> {
         let Self { log, buffer } = self;
         let found = log.find(buffer).await;
-        let content = Content {
+        let mut content = Content {
             params: *params,
             ..found.content(log.defaults)
         };
+        if found.set.is_none() && found.damaged && log.foreign().await.is_none() {
+            // What could not be read is erased; a key in it must not be forgotten.
+            content.signing = Stored::Lost;
+        }
         log.replace(found, &content, buffer).await
     }
 
@@ -251,7 +255,7 @@ impl<F: NorFlash> Storage for ParamStore<F> {
             return Err(StorageError::Broken);
         }
         let content = Content {
-            signing,
+            signing: signing.map_or(Stored::None, Stored::Key),
             ..found.content(log.defaults)
         };
         log.replace(found, &content, buffer).await

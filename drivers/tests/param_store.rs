@@ -41,6 +41,18 @@ fn sound(taken: u16) -> Loaded {
     }
 }
 
+/// What a load gives after a save over storage of which `signing` was known.
+fn after(signing: Stored, taken: u16) -> Loaded {
+    let signing = match signing {
+        Stored::Unreadable => Stored::Lost,
+        known => known,
+    };
+    Loaded {
+        signing,
+        ..sound(taken)
+    }
+}
+
 fn set(values: &[(&str, f32)]) -> Params {
     let mut params = Params::default();
     for (name, value) in values {
@@ -261,10 +273,19 @@ fn a_key_is_no_reason_to_erase_what_cannot_be_read() {
     assert_eq!(load(&flash).1.signing, Stored::Unreadable);
     assert_eq!(save_key(&flash, Some(record(1))), Err(StorageError::Broken));
     assert_eq!(flash.0.borrow().bytes, before);
-    // A save of parameters clears it.
-    assert_eq!(save(&flash, Params::default()), Ok(()));
-    assert_eq!(load(&flash).1.signing, Stored::None);
-    assert_eq!(save_key(&flash, Some(record(1))), Ok(()));
+    // A save of parameters clears it, and keeps that there may have been a key, through the next ones.
+    for params in [Params::default(), set(&[("infill", 8.0)]), Params::default()] {
+        assert_eq!(save(&flash, params), Ok(()));
+        let (found, loaded) = load(&flash);
+        assert_eq!((found, loaded.signing), (params, Stored::Lost));
+        assert_eq!((loaded.refused, loaded.unreadable), (0, false));
+    }
+    // Until one is set, or none.
+    for (key, then) in [(Some(record(1)), Stored::Key(record(1))), (None, Stored::None)] {
+        let flash = flash.copy();
+        assert_eq!(save_key(&flash, key), Ok(()));
+        assert_eq!(load(&flash).1.signing, then);
+    }
 }
 
 fn with_item<const W: usize, const P: usize>(item: &'static [u8]) -> Flash<W, P> {
@@ -455,7 +476,8 @@ fn what_another_flight_stack_left_is_named_and_a_save_takes_its_place() {
         assert_eq!((params, loaded), (Params::default(), wanted), "{owner:?}");
         assert!(flash.0.borrow().bytes == before, "a load wrote");
         assert_eq!(save(&flash, Params::default()), Ok(()));
-        assert_eq!(load(&flash), (Params::default(), Loaded::default()), "{owner:?}");
+        let wanted = (Params::default(), after(loaded.signing, 0));
+        assert_eq!(load(&flash), wanted, "{owner:?}");
     }
 }
 
@@ -470,7 +492,8 @@ fn what_other_programs_stored_is_not_taken_for_parameters() {
             "{item:?}: {loaded:?}"
         );
         assert_eq!(save(&flash, set(&[("infill", 5.0)])), Ok(()), "{item:?}");
-        assert_eq!(load(&flash), (set(&[("infill", 5.0)]), sound(1)), "{item:?}");
+        let wanted = (set(&[("infill", 5.0)]), after(Stored::Unreadable, 1));
+        assert_eq!(load(&flash), wanted, "{item:?}");
     }
 }
 
@@ -548,7 +571,7 @@ fn lives_with<const W: usize, const P: usize>(bytes: Vec<u8>) -> (Params, Loaded
     );
     let wanted = set(&[("infill", 5.5), ("rate_i", 2.0)]);
     assert_eq!(save(&flash, wanted), Ok(()));
-    assert_eq!(load(&flash), (wanted, sound(2)));
+    assert_eq!(load(&flash), (wanted, after(loaded.signing, 2)));
     (params, loaded)
 }
 

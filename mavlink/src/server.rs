@@ -13,6 +13,7 @@ use self::answer::Answer;
 use self::commands::calibration::Calibration;
 use self::commands::orders::Orders;
 pub use self::commands::orders::Requests;
+pub use self::commands::{OBEYED, Obeyed, When};
 use self::shell::Shell;
 use crate::budget::Budget;
 use crate::dialect::*;

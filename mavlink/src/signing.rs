@@ -98,6 +98,8 @@ pub enum Stored {
     Key(Record),
     /// The storage cannot be read: there may be one.
     Unreadable,
+    /// There may have been one in what could not be read and was erased: as good as unreadable until one is set, or none.
+    Lost,
 }
 
 /// Frames that were refused since the start.
@@ -148,7 +150,7 @@ impl Signing {
     pub const fn new(stored: Stored) -> Self {
         let bound = match stored {
             Stored::Key(Record { bound, .. }) => bound,
-            Stored::None | Stored::Unreadable => 0,
+            Stored::None | Stored::Unreadable | Stored::Lost => 0,
         };
         Self {
             stored,
@@ -183,6 +185,15 @@ impl Signing {
     /// Frames that were refused since the start.
     pub const fn refused(&self) -> Refused {
         self.refused
+    }
+
+    /// Why nothing is obeyed, for as long as nothing is; empty otherwise.
+    pub const fn notice(&self) -> &'static str {
+        match self.stored {
+            Stored::None | Stored::Key(_) => "",
+            Stored::Unreadable => "signing key not known: storage unreadable",
+            Stored::Lost => "signing key lost: set it at the console, or off",
+        }
     }
 
     /// Frames are signed.

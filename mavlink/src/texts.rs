@@ -45,6 +45,8 @@ pub struct Texts {
     mode: Option<Mode>,
     reason: Option<Reason>,
     warning: &'static str,
+    /// What is wrong with signing.
+    signing: &'static str,
     /// Arming checks that have been named since they began to fail.
     named: ArmingInhibits,
 }
@@ -57,6 +59,7 @@ impl Texts {
             mode: None,
             reason: None,
             warning: "",
+            signing: "",
             named: ArmingInhibits::NONE,
         }
     }
@@ -83,15 +86,15 @@ impl Texts {
         let _ = self.waiting.push_back(Text { severity, text });
     }
 
-    /// The next text, given what the vehicle is like now.
-    pub fn next(&mut self, vehicle: &Vehicle) -> Option<Text> {
+    /// The next text, given what the vehicle is like now and what is wrong with signing, if anything.
+    pub fn next(&mut self, vehicle: &Vehicle, signing: &'static str) -> Option<Text> {
         if let Some(condition) = &vehicle.condition {
-            self.observe(condition);
+            self.observe(condition, signing);
         }
         self.waiting.pop_front()
     }
 
-    fn observe(&mut self, condition: &Condition) {
+    fn observe(&mut self, condition: &Condition, signing: &'static str) {
         // One at a time, as they are sent.
         if !self.waiting.is_empty() {
             return;
@@ -119,6 +122,11 @@ impl Texts {
                     MavSeverity::MAV_SEVERITY_WARNING,
                     format_args!("{}", condition.warning),
                 );
+            }
+        } else if self.signing != signing {
+            self.signing = signing;
+            if !signing.is_empty() {
+                self.say(MavSeverity::MAV_SEVERITY_ERROR, format_args!("{signing}"));
             }
         } else if let Some(inhibit) = self.unnamed(condition.inhibits) {
             self.say(

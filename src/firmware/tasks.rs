@@ -20,10 +20,11 @@ use static_cell::StaticCell;
 
 use super::Levels;
 
-/// The lines that a console is at: the board's own, of which it serves one at a time, or MAVLink's.
-type ConsoleInput = OneOf<Keyboards<'static, BufferedInput, UsbInput<'static>>, ShellPort<'static>>;
-type ConsoleOutput = OneOf<Screens<'static, BufferedOutput, UsbOutput<'static>>, ShellPort<'static>>;
-/// The parameters' storage, for consoles and MAVLink.
+/// The terminals of the console: at a serial line, over USB, or over MAVLink.
+type ConsoleInput = Keyboards<'static, OneOf<OneOf<BufferedInput, UsbInput<'static>>, ShellPort<'static>>, 3>;
+type ConsoleOutput =
+    Screens<'static, OneOf<OneOf<BufferedOutput, UsbOutput<'static>>, ShellPort<'static>>, 3>;
+/// The parameters' storage, for the console and MAVLink.
 type StoragePort = SharedStorage<'static, sophie_boards::StoragePort>;
 
 /// Input of MAVLink, of a serial line or of USB.
@@ -71,15 +72,20 @@ pub fn spawn(
     let port: &'static Port = USB_PORT.init_with(Port::new);
     let served: &'static Served = SERVED.init(Served::default());
     let (usb_input, usb_output) = port.console();
-    let input = OneOf::First(served.keyboards(board.console_input, usb_input));
-    let output = OneOf::First(served.screens(board.console_output, usb_output));
+    let input = served.keyboards([
+        OneOf::First(OneOf::First(board.console_input)),
+        OneOf::First(OneOf::Second(usb_input)),
+        OneOf::Second(SHELL.port()),
+    ]);
+    let output = served.screens([
+        OneOf::First(OneOf::First(board.console_output)),
+        OneOf::First(OneOf::Second(usb_output)),
+        OneOf::Second(SHELL.port()),
+    ]);
     let defaults = board.storage.defaults();
     let storage: &'static _ = STORAGE.init(Mutex::new(board.storage));
     let storage = || SharedStorage::new(storage, defaults);
     levels.spawn_unmeasured("console", console(links, input, output, storage(), board.chip)?);
-    let (input, output) = (OneOf::Second(SHELL.port()), OneOf::Second(SHELL.port()));
-    let chip = ThisChip { looks };
-    levels.spawn_unmeasured("shell", console(links, input, output, storage(), chip)?);
     let (usb_input, usb_output) = port.mavlink();
     let lines = Lines {
         inputs: [OneOf::First(board.mavlink_input), OneOf::Second(usb_input)],
@@ -117,8 +123,7 @@ async fn telemetry(links: &'static Links, port: sophie_boards::TelemetryLine) ->
     sophie_tasks::telemetry::run(links, port).await
 }
 
-/// One for each kind of line: compiled once.
-#[embassy_executor::task(pool_size = 2)]
+#[embassy_executor::task]
 async fn console(
     links: &'static Links,
     input: ConsoleInput,

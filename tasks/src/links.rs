@@ -272,6 +272,8 @@ pub enum SigningState {
     On,
     /// The storage cannot be read: nothing is obeyed.
     Unknown,
+    /// It could not be read and was erased: nothing is obeyed until a key is set, or none.
+    Lost,
 }
 
 /// What the MAVLink line is like.
@@ -293,6 +295,7 @@ impl LineState {
                 Stored::None => SigningState::Off,
                 Stored::Key(_) => SigningState::On,
                 Stored::Unreadable => SigningState::Unknown,
+                Stored::Lost => SigningState::Lost,
             },
             refused: signing.refused(),
             inputs,

@@ -1,92 +1,78 @@
-//! Two terminals at one console: what is typed at either is obeyed, and answered where something was typed last.
+//! Terminals at one console: what is typed at any is obeyed, and answered where something was typed last.
 //!
-//! There is one console for both, so that there is one working copy of the parameters and one who gives orders.
+//! There is one console for all, so that there is one working copy of the parameters and one who gives orders.
 
+use core::array;
 use core::cell::Cell;
 
-use embassy_futures::select::{Either, select};
+use embassy_futures::select::select_array;
 
 use crate::console::CANCEL;
 use crate::ports::{PortError, SerialInput, SerialOutput};
 
-/// Where something was typed last.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Terminal {
-    #[default]
-    First,
-    Second,
-}
-
-/// Which of two terminals the console serves.
+/// Which terminal the console serves: where something was typed last.
 #[derive(Debug, Default)]
-pub struct Served(Cell<Terminal>);
+pub struct Served(Cell<usize>);
 
-/// What is typed at two terminals. One that had been idle takes the console over: what was begun at the other ends, as by
+/// What is typed at the terminals. One that had been idle takes the console over: what was begun at another ends, as by
 /// its Ctrl-C.
-pub struct Keyboards<'a, A, B> {
+pub struct Keyboards<'a, I, const N: usize> {
     served: &'a Served,
-    first: A,
-    second: B,
-    /// Looked at first where both have something: each has its turn.
-    turn: Terminal,
+    ports: [I; N],
+    /// Looked at first where several have something: each has its turn.
+    turn: usize,
 }
 
 /// What is shown at the terminal that is served.
-pub struct Screens<'a, A, B> {
+pub struct Screens<'a, O, const N: usize> {
     served: &'a Served,
-    first: A,
-    second: B,
+    ports: [O; N],
 }
 
 impl Served {
-    /// Two keyboards.
-    pub const fn keyboards<A, B>(&self, first: A, second: B) -> Keyboards<'_, A, B> {
+    /// The keyboards.
+    pub const fn keyboards<I, const N: usize>(&self, ports: [I; N]) -> Keyboards<'_, I, N> {
         Keyboards {
             served: self,
-            first,
-            second,
-            turn: Terminal::First,
+            ports,
+            turn: 0,
         }
     }
 
-    /// Their screens.
-    pub const fn screens<A, B>(&self, first: A, second: B) -> Screens<'_, A, B> {
-        Screens {
-            served: self,
-            first,
-            second,
-        }
+    /// Their screens, in the same order.
+    pub const fn screens<O, const N: usize>(&self, ports: [O; N]) -> Screens<'_, O, N> {
+        Screens { served: self, ports }
     }
 }
 
-impl<A: SerialInput, B: SerialInput> SerialInput for Keyboards<'_, A, B> {
+impl<I: SerialInput, const N: usize> SerialInput for Keyboards<'_, I, N> {
     async fn read(&mut self, buffer: &mut [u8]) -> Result<usize, PortError> {
-        let middle = buffer.len() / 2;
-        let (one, other) = buffer.split_at_mut(middle);
-        // The first byte of each is kept for the end of what was begun elsewhere.
-        let (Some((_, one)), Some((_, other))) = (one.split_first_mut(), other.split_first_mut()) else {
+        let share = buffer.len().checked_div(N).unwrap_or(0);
+        // The first byte of each share is kept for the end of what was begun elsewhere.
+        let (Some((before, after)), 2..) = (self.ports.split_at_mut_checked(self.turn), share) else {
             return Err(PortError::Absent);
         };
-        let (from, read) = match self.turn {
-            Terminal::First => match select(self.first.read(one), self.second.read(other)).await {
-                Either::First(read) => (Terminal::First, read),
-                Either::Second(read) => (Terminal::Second, read),
-            },
-            Terminal::Second => match select(self.second.read(other), self.first.read(one)).await {
-                Either::First(read) => (Terminal::Second, read),
-                Either::Second(read) => (Terminal::First, read),
-            },
-        };
-        let (start, next) = match from {
-            Terminal::First => (1, Terminal::Second),
-            Terminal::Second => (middle + 1, Terminal::First),
-        };
-        self.turn = next;
+        let mut ports = after.iter_mut().chain(before);
+        let mut shares = buffer.chunks_exact_mut(share);
+        let reads = array::from_fn::<_, N, _>(|_| {
+            let port = ports.next();
+            let room = shares.next().and_then(<[u8]>::split_first_mut);
+            async move {
+                match (port, room) {
+                    (Some(port), Some((_, room))) => port.read(room).await,
+                    _ => Err(PortError::Absent),
+                }
+            }
+        });
+        let (read, at) = select_array(reads).await;
+        let from = following(self.turn + at, N);
+        self.turn = following(from + 1, N);
         let served = self.served.0.get();
         let count = match read {
             Err(_) if from != served => return Ok(0),
             read => read?,
         };
+        let start = at * share + 1;
         let typed = start..start + count;
         if from == served {
             buffer.copy_within(typed, 0);
@@ -106,15 +92,21 @@ impl<A: SerialInput, B: SerialInput> SerialInput for Keyboards<'_, A, B> {
     }
 
     fn private(&self) -> bool {
-        self.first.private() && self.second.private()
+        let served = self.ports.get(self.served.0.get());
+        served.is_some_and(SerialInput::private)
     }
 }
 
-impl<A: SerialOutput, B: SerialOutput> SerialOutput for Screens<'_, A, B> {
+/// `place` in a ring of `count`, which it passes by less than once.
+const fn following(place: usize, count: usize) -> usize {
+    if place >= count { place - count } else { place }
+}
+
+impl<O: SerialOutput, const N: usize> SerialOutput for Screens<'_, O, N> {
     async fn write(&mut self, bytes: &[u8]) -> Result<(), PortError> {
-        match self.served.0.get() {
-            Terminal::First => self.first.write(bytes).await,
-            Terminal::Second => self.second.write(bytes).await,
+        match self.ports.get_mut(self.served.0.get()) {
+            Some(port) => port.write(bytes).await,
+            None => Err(PortError::Absent),
         }
     }
 }

@@ -1,6 +1,6 @@
-"""Runs MAVProxy without a terminal: it fetches all parameters, sets one, and saves what it has.
+"""Runs MAVProxy without a terminal: it fetches all parameters, sets one, and saves what it has; it is refused arming.
 
-proxy.py ADDRESS:PORT SECONDS NAME VALUE
+proxy.py MASTER SECONDS NAME VALUE [restart]: with a restart before it saves
 
 Prints JSON: the parameters in its file, and what it said.
 """
@@ -14,11 +14,12 @@ import time
 
 
 def main() -> int:
-    address, seconds, name, value = sys.argv[1], float(sys.argv[2]), sys.argv[3], sys.argv[4]
+    master, seconds, name, value = sys.argv[1], float(sys.argv[2]), sys.argv[3], sys.argv[4]
+    restarts = sys.argv[5:] == ["restart"]
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "saved.parm")
         proxy = subprocess.Popen(
-            [sys.executable, os.path.join(os.path.dirname(sys.executable), "mavproxy.py"), f"--master=udpin:{address}",
+            [sys.executable, os.path.join(os.path.dirname(sys.executable), "mavproxy.py"), f"--master={master}",
              "--default-modules=param,cmdlong", "--mav20", "--no-state"],
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, cwd=folder)
         os.set_blocking(proxy.stdout.fileno(), False)
@@ -44,6 +45,16 @@ def main() -> int:
             file.write(f"{name} {value}\n")
         types(f"param load {path}.wanted")
         until("Loaded ")
+        types("long COMPONENT_ARM_DISARM 1")
+        until("radio lost")
+        if restarts:
+            until("parameters stored")
+            said = ""
+            types("long PREFLIGHT_REBOOT_SHUTDOWN 1")
+            until("CALIBRATING")
+            # Nothing of before is left.
+            types("param fetch")
+            until("Received")
         types(f"param save {path}")
         until("Saved ")
         proxy.stdin.close()

@@ -1,6 +1,7 @@
-//! MAVLink's key in a set: ten values under names that no parameter has, written and read with the parameters as one.
+//! MAVLink's key in a set: ten values under names that no parameter has, written and read with the parameters as one. The
+//! first of them alone says that a key was lost.
 
-use sophie_tasks::mavlink::signing::{Key, Record};
+use sophie_tasks::mavlink::signing::{Key, Record, Stored};
 
 use super::hash;
 
@@ -31,8 +32,17 @@ impl Words {
         true
     }
 
+    /// What is stored of the key: part of one is a lost one.
+    pub(super) fn stored(&self) -> Stored {
+        match self.record() {
+            Some(record) => Stored::Key(record),
+            None if self.given == 0 => Stored::None,
+            None => Stored::Lost,
+        }
+    }
+
     /// The record, if every value was there.
-    pub(super) fn record(&self) -> Option<Record> {
+    fn record(&self) -> Option<Record> {
         let ([k0, k1, k2, k3, k4, k5, k6, k7], [low, high]) = self.words.split_first_chunk::<8>()? else {
             return None;
         };
@@ -46,16 +56,23 @@ impl Words {
         })
     }
 
-    /// Names and values of `record`.
-    pub(super) fn of(record: &Record) -> impl Iterator<Item = (u32, u32)> {
+    /// Names and values of `stored`.
+    pub(super) fn of(stored: &Stored) -> impl Iterator<Item = (u32, u32)> + use<> {
         let mut words = [0; WORDS];
-        let bound = [record.bound as u32, (record.bound >> 32) as u32];
-        let (quads, _) = record.key.bytes().as_chunks::<4>();
-        let key = quads.iter().map(|quad| u32::from_le_bytes(*quad));
-        for (word, value) in words.iter_mut().zip(key.chain(bound)) {
-            *word = value;
+        if let Stored::Key(Record { key, bound }) = stored {
+            let bound = [*bound as u32, (bound >> 32) as u32];
+            let (quads, _) = key.bytes().as_chunks::<4>();
+            let key = quads.iter().map(|quad| u32::from_le_bytes(*quad));
+            for (word, value) in words.iter_mut().zip(key.chain(bound)) {
+                *word = value;
+            }
         }
-        (FIRST..).zip(words)
+        let count = match stored {
+            Stored::None => 0,
+            Stored::Key(_) => WORDS,
+            Stored::Unreadable | Stored::Lost => 1,
+        };
+        (FIRST..).zip(words).take(count)
     }
 }
 
@@ -74,17 +91,25 @@ mod tests {
     }
 
     #[test]
-    fn a_record_is_read_as_it_was_written_and_half_of_one_is_none() {
+    fn a_record_is_read_as_it_was_written_and_half_of_one_is_a_lost_one() {
         let record = Record {
             key: Key::new(core::array::from_fn(|n| n as u8)),
             bound: 0x1234_5678_9ABC,
         };
         let mut words = Words::default();
-        for (name, value) in Words::of(&record) {
+        assert_eq!(words.stored(), Stored::None);
+        for (name, value) in Words::of(&Stored::Key(record)) {
             assert_eq!(words.record(), None);
             assert!(words.take(name, value));
+            assert_ne!(words.stored(), Stored::None);
         }
-        assert_eq!(words.record(), Some(record));
+        assert_eq!(words.stored(), Stored::Key(record));
+        let mut words = Words::default();
+        assert_eq!(Words::of(&Stored::None).count(), 0);
+        for (name, value) in Words::of(&Stored::Lost) {
+            assert!(words.take(name, value));
+        }
+        assert_eq!(words.stored(), Stored::Lost);
         assert!(!words.take(hash("infill"), 0));
     }
 }

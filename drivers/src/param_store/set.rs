@@ -2,7 +2,7 @@
 
 use sequential_storage::map::{SerializationError, Value};
 use sophie_control::params::{ParamInfo, Params, RENAMED, Renamed};
-use sophie_tasks::mavlink::signing::Record;
+use sophie_tasks::mavlink::signing::Stored;
 
 use super::key::Words;
 
@@ -32,7 +32,7 @@ pub const fn hash(name: &str) -> u32 {
 pub(super) struct Set {
     params: Params,
     /// MAVLink's key.
-    pub signing: Option<Record>,
+    pub signing: Stored,
     /// For writing: parameters equal to these are not stored.
     defaults: &'static Params,
     /// For reading: table rows with a record.
@@ -46,7 +46,7 @@ pub(super) struct Set {
 }
 
 impl Set {
-    pub(super) const fn of(params: Params, signing: Option<Record>, defaults: &'static Params) -> Self {
+    pub(super) const fn of(params: Params, signing: Stored, defaults: &'static Params) -> Self {
         Self {
             params,
             signing,
@@ -112,13 +112,12 @@ impl<'a> Value<'a> for Set {
         let (tag, mut rest) = buffer.split_first_chunk_mut().ok_or(SHORT)?;
         *tag = TAG;
         let mut length = TAG.len();
-        let key = self.signing.as_ref().map(Words::of);
         let values = Params::TABLE.iter().filter_map(|row| {
             let [value, default] =
                 [&self.params, self.defaults].map(|set| set.get(row.name).unwrap_or(row.default));
             (value.to_bits() != default.to_bits()).then_some((hash(row.name), value.to_bits()))
         });
-        for (hash, value) in values.chain(key.into_iter().flatten()) {
+        for (hash, value) in values.chain(Words::of(&self.signing)) {
             let (name, tail) = rest.split_first_chunk_mut().ok_or(SHORT)?;
             let (bits, tail) = tail.split_first_chunk_mut().ok_or(SHORT)?;
             *name = hash.to_le_bytes();
@@ -137,7 +136,7 @@ impl<'a> Value<'a> for Set {
         else {
             return Err(SerializationError::InvalidFormat);
         };
-        let mut set = Self::of(Params::DEFAULT, None, &Params::DEFAULT);
+        let mut set = Self::of(Params::DEFAULT, Stored::None, &Params::DEFAULT);
         let mut key = Words::default();
         // Rows recorded under the table's name, which precedes an old name.
         let mut under_new = Rows::NONE;
@@ -167,7 +166,7 @@ impl<'a> Value<'a> for Set {
             set.taken += u16::from(!set.given.contains(at));
             set.given.insert(at);
         }
-        set.signing = key.record();
+        set.signing = key.stored();
         Ok((set, buffer.len()))
     }
 }

@@ -2,9 +2,11 @@
 
 pub(super) mod calibration;
 mod intervals;
+mod obeyed;
 pub(super) mod orders;
 mod restart;
 
+pub use self::obeyed::{OBEYED, Obeyed, When};
 use super::Server;
 use super::answer::Answer;
 use crate::dialect::*;
@@ -44,7 +46,7 @@ impl Server {
     ) -> Option<Reply> {
         let [first, second, ..] = command.params;
         let reply: Reply = match u32::from(command.number) {
-            n if n == MavCmd::MAV_CMD_REQUEST_MESSAGE as u32 => intervals::once(first, second),
+            n if n == MavCmd::MAV_CMD_REQUEST_MESSAGE as u32 => self.once(first, second),
             n if n == MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL as u32 => {
                 self.set_interval(first, second, now).into()
             }
@@ -70,6 +72,12 @@ impl Server {
         self.texts
             .say(MavSeverity::MAV_SEVERITY_WARNING, format_args!("refused: {why}"));
         MavResult::MAV_RESULT_TEMPORARILY_REJECTED
+    }
+
+    /// Not of this vehicle.
+    fn unsupported(&mut self, why: &str) -> MavResult {
+        self.refuse(why);
+        MavResult::MAV_RESULT_UNSUPPORTED
     }
 
     /// Never with these numbers.

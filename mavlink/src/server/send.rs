@@ -32,7 +32,7 @@ impl Server {
         let bytes = self
             .send_heartbeat(now, vehicle)
             .or_else(|| self.send_answer(now, vehicle))
-            .or_else(|| self.send_text(vehicle))
+            .or_else(|| self.send_text(vehicle, signing.notice()))
             .or_else(|| self.send_console_by_turns(now, vehicle))
             .or_else(|| self.send_file())
             .or_else(|| self.send_listed())?;
@@ -112,12 +112,12 @@ impl Server {
         }
     }
 
-    fn send_text(&mut self, vehicle: &Vehicle) -> Option<u32> {
+    fn send_text(&mut self, vehicle: &Vehicle, notice: &'static str) -> Option<u32> {
         // Without room it waits, and what happens meanwhile is said by what holds then.
         if !self.budget.allows(frame_bytes::<STATUSTEXT_DATA>()) {
             return None;
         }
-        let text = self.texts.next(vehicle)?;
+        let text = self.texts.next(vehicle, notice)?;
         Some(self.encoder.encode(&text.message()))
     }
 

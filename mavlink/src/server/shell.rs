@@ -7,14 +7,14 @@ use crate::requests::Peer;
 
 /// Bytes of one message.
 pub const CHUNK: usize = 70;
-/// Bytes that wait for the console at most: two messages and [`HANG_UP`]. What does not fit is lost, as on a cable.
-pub const TYPED: usize = 2 * CHUNK + HANG_UP.len();
+/// Bytes that wait for the console at most: two messages and a [`HANG_UP`]. What does not fit is lost, as on a cable.
+pub const TYPED: usize = 2 * CHUNK + 1;
 /// Silence of a station after which its console is ended, µs: a minute of its heartbeats. What turns ends by itself within
 /// seconds; a live flight may run at many times the pace of its stations.
 const SILENCE: u64 = 60_000_000;
-/// Ends what runs at the console and drops what is typed there so far, whatever it is at: Ctrl-C, an end to a cursor
-/// key's bytes, a byte for which the line is refused, Enter.
-pub const HANG_UP: [u8; 4] = [0x03, b'z', 0x80, b'\r'];
+/// Ctrl-C: ends what runs at the console and drops what is typed there so far. Alone it takes no console over from another
+/// terminal.
+pub const HANG_UP: u8 = 0x03;
 
 /// The far end of the console.
 #[derive(Debug, Default)]
@@ -57,7 +57,7 @@ impl Shell {
         self.heard_at = now;
         let count = usize::from(serial.count).min(CHUNK);
         for byte in serial.data.iter().take(count) {
-            if self.typed.len() + HANG_UP.len() < TYPED {
+            if self.typed.len() + 1 < TYPED {
                 let _ = self.typed.push(*byte);
             }
         }
@@ -85,8 +85,8 @@ impl Shell {
     pub fn hang_up(&mut self) {
         if self.user.take().is_some() {
             self.said.clear();
-            self.typed.truncate(TYPED - HANG_UP.len());
-            let _ = self.typed.extend_from_slice(&HANG_UP);
+            self.typed.truncate(TYPED - 1);
+            let _ = self.typed.push(HANG_UP);
         }
     }
 

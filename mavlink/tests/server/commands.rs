@@ -1,12 +1,17 @@
-//! Commands, and what each is answered with.
+//! Commands, and what each is answered with; the table of commands in docs/mavlink.md.
+//!
+//! `WRITE_DOCS=1 cargo test --package sophie-mavlink --test server table` rewrites the table.
 
 use std::collections::BTreeSet;
+use std::fmt::Write;
 
 use num_traits::FromPrimitive;
 use sophie_control::mode::Mode;
 use sophie_mavlink::Order;
 use sophie_mavlink::dialect::*;
+use sophie_mavlink::server::{OBEYED, Obeyed, When};
 
+use crate::page::hold;
 use crate::station::{Station, frame, vehicle};
 
 const ACCEPTED: u8 = 0;
@@ -160,25 +165,97 @@ fn it_restarts_after_the_answer_and_at_rest_alone() {
     assert!(station.orders.is_empty());
 }
 
+/// The table of the page.
+fn table() -> String {
+    let mut text = String::from("| command | number | parameters | when |\n|---|---:|---|---|\n");
+    for Obeyed { command, form, when } in &OBEYED {
+        let name = format!("{command:?}").replace("MAV_CMD_", "");
+        let when = match when {
+            When::Always => "always",
+            When::AtRest => "DISARMED, CALIBRATING",
+            When::Commander(when) => when,
+        };
+        writeln!(text, "| `{name}` | {} | {form} | {when} |", *command as u32).unwrap();
+    }
+    text
+}
+
 #[test]
-fn the_commands_of_the_page_are_those_that_are_obeyed() {
-    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/mavlink.md");
-    let page = std::fs::read_to_string(page).unwrap();
-    let (_, rest) = page.split_once("| command | when |\n").unwrap();
-    let (table, _) = rest.split_once("\n\n").unwrap();
-    // What stands in backticks in the first column.
-    let first = table.lines().filter_map(|row| row.split('|').nth(1));
-    let named: BTreeSet<String> = first
-        .flat_map(|column| column.split('`').skip(1).step_by(2))
-        .map(|name| format!("MAV_CMD_{name}"))
-        .collect();
+fn the_table_of_commands_in_the_docs_is_the_codes() {
+    hold("commands", &table());
+}
+
+#[test]
+fn the_commands_of_the_table_are_those_that_are_obeyed_and_when() {
+    let named: BTreeSet<u32> = OBEYED.iter().map(|row| row.command as u32).collect();
     let known = (0..=u16::MAX.into()).filter_map(MavCmd::from_u32);
-    let obeyed: BTreeSet<String> = known
+    let obeyed: BTreeSet<u32> = known
         .filter(|command| {
             let answered = Station::new().command(*command, [1.0, 0.0]);
             !answered.contains(&UNSUPPORTED)
         })
-        .map(|command| format!("{command:?}"))
+        .map(|command| command as u32)
         .collect();
     assert_eq!(named, obeyed);
+    for row in OBEYED.iter().filter(|row| row.when == When::AtRest) {
+        for mode in Mode::ALL {
+            let mut station = Station::new();
+            station.vehicle = vehicle(mode);
+            let rejected = station.command(row.command, [1.0, 0.0]).contains(&REJECTED);
+            let rests = matches!(mode, Mode::Disarmed | Mode::Calibrating);
+            assert_eq!(rejected, !rests, "{row:?} {mode:?}");
+        }
+    }
+}
+
+#[test]
+fn who_asks_with_numbers_that_there_are_not_reads_why() {
+    let mut station = Station::new();
+    for (command, numbers, result, text) in [
+        (
+            MavCmd::MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN,
+            [2.0, 0.0],
+            UNSUPPORTED,
+            "refused: 1 restarts, nothing else",
+        ),
+        (
+            MavCmd::MAV_CMD_PREFLIGHT_STORAGE,
+            [0.0, 0.0],
+            UNSUPPORTED,
+            "refused: 1 stores, nothing else",
+        ),
+        (
+            MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION,
+            [0.0, 1.0],
+            UNSUPPORTED,
+            "refused: others calibrate at the console",
+        ),
+        (
+            MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL,
+            [30.0, 19_999.0],
+            DENIED,
+            "refused: an interval is 20 ms or more, 0 or -1",
+        ),
+        (
+            MavCmd::MAV_CMD_REQUEST_MESSAGE,
+            [435.0, 99.0],
+            DENIED,
+            "refused: no such mode",
+        ),
+        (
+            MavCmd::MAV_CMD_GET_MESSAGE_INTERVAL,
+            [f32::NAN, 0.0],
+            DENIED,
+            "refused: no message has that number",
+        ),
+    ] {
+        station.sent.clear();
+        assert_eq!(station.command(command, numbers), [result], "{command:?}");
+        station.run(200);
+        assert!(
+            station.texts().iter().any(|said| said == text),
+            "{text}: {:?}",
+            station.texts()
+        );
+    }
 }

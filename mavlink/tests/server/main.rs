@@ -6,6 +6,7 @@ mod commands;
 mod inputs;
 mod messages;
 mod orders;
+mod page;
 mod parameters;
 mod shell;
 mod signing;

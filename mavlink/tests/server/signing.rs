@@ -342,6 +342,36 @@ fn a_storage_that_cannot_be_read_may_have_had_a_key() {
 }
 
 #[test]
+fn a_key_that_was_lost_is_said_to_each_who_comes_and_nothing_is_obeyed_meanwhile() {
+    for (stored, text) in [
+        (Stored::Unreadable, "signing key not known: storage unreadable"),
+        (Stored::Lost, "signing key lost: set it at the console, or off"),
+    ] {
+        let mut station = Station::new();
+        station.signing = Signing::new(stored);
+        let said = |station: &mut Station| {
+            station.run(1000);
+            let texts = station.texts();
+            station.sent.clear();
+            texts.iter().filter(|said| *said == text).count()
+        };
+        // At the start, and not again and again.
+        assert_eq!(said(&mut station), 1);
+        station.run(60_000);
+        assert_eq!(said(&mut station), 0);
+        // To who comes after silence.
+        station.say(&frame(&HEARTBEAT_DATA::DEFAULT));
+        assert_eq!(said(&mut station), 1);
+        station.say(&frame(&ping(1)));
+        station.say(&signed(&key(), DATE, &ping(2)));
+        assert_eq!(answered(&mut station), [0; 0]);
+    }
+    for stored in [Stored::None, Stored::Key(Record::fresh(key()))] {
+        assert_eq!(Signing::new(stored).notice(), "");
+    }
+}
+
+#[test]
 fn without_a_key_signed_frames_are_read_as_if_they_were_not() {
     let mut station = Station::new();
     station.say(&version());

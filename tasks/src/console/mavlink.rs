@@ -24,6 +24,9 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
             SigningState::Off => "off",
             SigningState::On => "on",
             SigningState::Unknown => "not known, nothing is obeyed: the storage is unreadable",
+            SigningState::Lost => {
+                "lost with unreadable storage, nothing is obeyed until 'mavlink key K' or 'mavlink key off'"
+            }
         };
         self.out.line(format_args!("signing {signing}")).await;
         let Refused { unsigned, wrong, old } = refused;

@@ -25,10 +25,10 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
             Ok(()) => {
                 let signing = self.links.mavlink.fresh().map(|line| line.signing);
                 if signing == Some(SigningState::Unknown) {
-                    // What could not be read is gone; until now nothing was obeyed for its sake.
+                    // What could not be read is gone; the storage keeps that there may have been a key.
                     self.out
                         .line(format_args!(
-                            "MAVLink's key, if there was one, is lost: signing is off"
+                            "MAVLink's key, if there was one, is lost: set it again, or 'mavlink key off'"
                         ))
                         .await;
                 }

@@ -521,6 +521,7 @@ fn a_save_that_may_lose_a_key_says_so() {
         (SigningState::Off, false),
         (SigningState::On, false),
         (SigningState::Unknown, true),
+        (SigningState::Lost, false),
     ] {
         let mut bench = Bench::in_mode(Mode::Disarmed);
         bench.run(20);
@@ -534,7 +535,8 @@ fn a_save_that_may_lose_a_key_says_so() {
         bench.run(600);
         let said = bench.screen.0.take();
         assert!(said.contains("saved; restarting"), "{said}");
-        let warned = said.contains("MAVLink's key, if there was one, is lost: signing is off");
+        let warned =
+            said.contains("MAVLink's key, if there was one, is lost: set it again, or 'mavlink key off'");
         assert_eq!(warned, lost, "{said}");
     }
 }

@@ -39,6 +39,23 @@ impl Wire {
     pub fn frames(&self) -> Vec<(u32, Vec<u8>)> {
         frames_of(&self.0.borrow())
     }
+
+    /// Forgets them.
+    pub fn clear(&self) {
+        self.0.take();
+    }
+
+    /// What the console has said in them.
+    pub fn console(&self) -> String {
+        let frames = self.frames().into_iter();
+        let said = frames.filter(|(id, _)| *id == SERIAL_CONTROL_DATA::ID);
+        said.map(|(_, frame)| {
+            let payload = &frame[10..10 + usize::from(frame[1])];
+            let said = SERIAL_CONTROL_DATA::deser(MavlinkVersion::V2, payload).unwrap();
+            String::from_utf8(said.data[..usize::from(said.count)].to_vec()).unwrap()
+        })
+        .collect()
+    }
 }
 
 /// The frames that `bytes` are, and nothing else: message number and frame.
@@ -127,7 +144,7 @@ impl Bench {
 
     /// What the console answers to `text`.
     fn asks(&mut self, text: &str) -> String {
-        self.wire.0.take();
+        self.wire.clear();
         let mut data = [0; 70];
         data[..text.len()].copy_from_slice(text.as_bytes());
         self.say(&SERIAL_CONTROL_DATA {
@@ -138,17 +155,7 @@ impl Bench {
             ..Default::default()
         });
         self.run(1000);
-        let said = self
-            .wire
-            .frames()
-            .into_iter()
-            .filter(|(id, _)| *id == SERIAL_CONTROL_DATA::ID);
-        said.map(|(_, frame)| {
-            let payload = &frame[10..10 + usize::from(frame[1])];
-            let said = SERIAL_CONTROL_DATA::deser(MavlinkVersion::V2, payload).unwrap();
-            String::from_utf8(said.data[..usize::from(said.count)].to_vec()).unwrap()
-        })
-        .collect()
+        self.wire.console()
     }
 
     fn run(&mut self, ms: u64) {

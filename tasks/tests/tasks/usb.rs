@@ -4,12 +4,13 @@ use embassy_usb::driver::{Direction, EndpointType, Event};
 use mavlink_core::{MAVLinkV1MessageRaw, MAVLinkV2MessageRaw, MavHeader, MessageData};
 use sophie_control::mode::Mode;
 use sophie_fakes::FakeLine;
-use sophie_mavlink::dialect::{HEARTBEAT_DATA, PARAM_REQUEST_LIST_DATA, PARAM_SET_DATA};
+use sophie_mavlink::dialect::{HEARTBEAT_DATA, PARAM_REQUEST_LIST_DATA, PARAM_SET_DATA, SERIAL_CONTROL_DATA};
 use sophie_mavlink::signing::Stored;
 use sophie_tasks::deadline::TaskId;
 use sophie_tasks::links::{Links, Status as Commander};
 use sophie_tasks::mavlink::{self, Lines};
 use sophie_tasks::one_of::OneOf;
+use sophie_tasks::shell::Shell;
 use sophie_tasks::terminals::Served;
 use sophie_tasks::usb::{self, Identity, Memory, Port};
 use sophie_tasks::{console, ports};
@@ -41,7 +42,7 @@ fn setup(kind: u8, request: u8, value: u16, index: u16, length: u16) -> [u8; 8] 
     ]
 }
 
-/// A board with its lines: a terminal and a MAVLink line beside USB.
+/// A board with its lines: a terminal and a MAVLink line beside USB, and the console at all three.
 struct Bench {
     rig: Rig,
     bus: FakeBus,
@@ -68,11 +69,20 @@ impl Bench {
         rig.time.spawn(usb::run(bus.clone(), memory, port, identity));
         let (typed, screen) = (FakeLine::default(), Screen::default());
         let served: &'static Served = Box::leak(Box::default());
+        let shell: &'static Shell = Box::leak(Box::default());
         let (input, output) = port.console();
         rig.time.spawn(console::run(
             rig.links,
-            served.keyboards(typed.clone(), input),
-            served.screens(screen.clone(), output),
+            served.keyboards([
+                OneOf::First(OneOf::First(typed.clone())),
+                OneOf::First(OneOf::Second(input)),
+                OneOf::Second(shell.port()),
+            ]),
+            served.screens([
+                OneOf::First(OneOf::First(screen.clone())),
+                OneOf::First(OneOf::Second(output)),
+                OneOf::Second(shell.port()),
+            ]),
             board.clone(),
             board.clone(),
         ));
@@ -85,7 +95,7 @@ impl Bench {
                 outputs: [OneOf::First(aired.clone()), OneOf::Second(output)],
                 bytes_per_second: [5000, 20_000],
             },
-            Box::leak(Box::default()),
+            shell,
             board.clone(),
             || (),
             Stored::None,
@@ -192,6 +202,33 @@ impl Bench {
     fn says(&mut self, text: &str) -> String {
         self.send(text.as_bytes());
         self.hear_text(300)
+    }
+
+    /// Types `text` at the console over the MAVLink line; `stays`: the station wants an answer.
+    fn types_by_mavlink(&mut self, text: &str, stays: bool) {
+        let mut data = [0; 70];
+        data[..text.len()].copy_from_slice(text.as_bytes());
+        self.radio.put(&frame(&SERIAL_CONTROL_DATA {
+            device: 10,
+            flags: if stays { 2 } else { 0 },
+            count: text.len() as u8,
+            data,
+            ..Default::default()
+        }));
+    }
+
+    /// The same, and what the console answers there.
+    fn says_by_mavlink(&mut self, text: &str) -> String {
+        self.aired.clear();
+        self.types_by_mavlink(text, true);
+        self.run(1000);
+        self.aired.console()
+    }
+
+    /// What the terminal at the cable has shown since the last look.
+    fn shown(&mut self, ms: u64) -> String {
+        self.run(ms);
+        self.screen.0.take()
     }
 
     /// Counts what is sent over USB in a second: frames, with nothing between them.
@@ -434,6 +471,85 @@ fn what_is_typed_last_has_the_console() {
     bench.typed.put(b"ill\r");
     bench.run(100);
     assert!(bench.screen.0.take().contains("infill"));
+}
+
+#[test]
+fn mavlinks_shell_is_a_terminal_of_the_same_console() {
+    let mut bench = Bench::opened();
+    // One working copy.
+    bench.typed.put(b"set infill 8\r");
+    assert!(bench.shown(300).contains("infill 6.9 -> 8 %"));
+    assert!(bench.says_by_mavlink("changes\r").contains("infill 6.9 -> 8 %"));
+    assert_eq!(bench.shown(0), "", "answered where it was typed");
+    // What runs at the cable ends, what was begun there is not mixed with it, and the reverse.
+    bench.typed.put(b"watch imu\r");
+    assert!(bench.shown(1000).contains("attitude"));
+    assert!(bench.says_by_mavlink("version\r").contains("SOPHIE"));
+    bench.shown(0);
+    assert_eq!(bench.shown(1000), "");
+    bench.says_by_mavlink("sa");
+    bench.typed.put(b"ve\r");
+    assert!(bench.shown(300).contains("no command 've'"));
+    assert!(bench.says("version\r").contains("SOPHIE"));
+    assert_eq!(bench.board.stored.get(), None);
+}
+
+#[test]
+fn a_station_that_leaves_disturbs_no_other_terminal() {
+    let mut bench = Bench::opened();
+    bench.says_by_mavlink("help\r");
+    // It has the console no longer when it leaves.
+    for leaves_by_silence in [false, true] {
+        bench.typed.put(b"propellers off\rservo 1 pulse 1500\r");
+        bench.run(300);
+        bench.typed.put(b"\rwatch imu\r");
+        bench.shown(1000);
+        if leaves_by_silence {
+            bench.says_by_mavlink("help\r");
+            bench.typed.put(b"watch imu\r");
+            // A minute of silence, and what follows it.
+            bench.shown(59_000);
+        } else {
+            bench.types_by_mavlink("", false);
+        }
+        bench.shown(3000);
+        let rows = bench.shown(1000);
+        assert!(rows.lines().count() >= 4, "{leaves_by_silence}: {rows:?}");
+        bench.typed.put(b"\x03get inf");
+        bench.run(50);
+        bench.types_by_mavlink("", false);
+        bench.typed.put(b"ill\r");
+        let said = bench.shown(300);
+        assert!(said.contains("  infill "), "{leaves_by_silence}: {said:?}");
+    }
+    // Who has it and leaves ends what it has begun, and the next at the cable begins anew.
+    bench.says_by_mavlink("get inf");
+    bench.types_by_mavlink("", false);
+    bench.run(100);
+    assert!(bench.says_by_mavlink("ill\r").contains("no command 'ill'"));
+}
+
+#[test]
+fn a_key_is_taken_at_a_cable_though_mavlink_has_a_terminal_too() {
+    let mut bench = Bench::opened();
+    let key = "mavlink key off\r";
+    let refused = "not set: a key is typed at a cable, never over MAVLink";
+    assert!(bench.says_by_mavlink(key).contains(refused));
+    assert_eq!(bench.board.restarts.get(), 0);
+    let said = bench.says(key);
+    assert!(!said.contains(refused), "{said}");
+    bench.run(1000);
+    assert_eq!(bench.board.restarts.get(), 1);
+    // A line that was begun at the cable is not ended over MAVLink, nor the other way round.
+    let mut bench = Bench::opened();
+    bench.typed.put(b"mavlink key ");
+    bench.run(50);
+    assert!(bench.says_by_mavlink("off\r").contains("no command 'off'"));
+    bench.says_by_mavlink("mavlink key ");
+    bench.typed.put(b"off\r");
+    assert!(bench.shown(300).contains("no command 'off'"));
+    bench.run(1000);
+    assert_eq!(bench.board.restarts.get(), 0);
 }
 
 #[test]

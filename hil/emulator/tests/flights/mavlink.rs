@@ -3,6 +3,8 @@
 use std::io::{Read, Write};
 use std::net::{Ipv4Addr, TcpStream};
 
+use serde_json::Value;
+use sophie_control::params::Params;
 use sophie_emulator::bench::Setup;
 use sophie_emulator::terminal::{Sockets, Terminal};
 
@@ -12,13 +14,16 @@ use super::*;
 #[path = "../../../../tests/common/clients.rs"]
 mod clients;
 
+/// Longest wait of a client, s: the board runs at half of real time, on a machine that is busy.
+const SECONDS: &str = "300";
 /// What the line carries, bytes each second: 57,600 baud, ten bits a byte.
 const LINE_RATE: f64 = 5760.0;
-/// Change of the time from data-ready to the motor frame that a flood may make, us: of its mean, and by which its worst may
-/// come later. Each byte has the period's timer polled again, and embassy searches its whole queue then, with interrupts
-/// masked: 0.28 of the worst on the small board; with the line's interrupts above the flight level it was 0.1 and 0.55.
+/// Most by which a flood may make the mean time from data-ready to the motor frame longer, us.
 const MEAN_MOVED: f64 = 0.05;
-const WORST_MOVED: f64 = 0.5;
+/// The same of its worst: of the reference board nothing; of the small one it depends on which moments of masked interrupts
+/// meet data-ready, as its jitter does, and stays within the limit of its background at its worst.
+const WORST_MOVED: f64 = 0.1;
+const SMALL_WORST: f64 = 60.0;
 
 /// A flight with `client` on the MAVLink line.
 fn fly_with_client(
@@ -66,8 +71,8 @@ fn flood(port: u16) {
     while client.write_all(&bytes).is_ok() {}
 }
 
-/// Flies a hop on `board` without and with a flood on the MAVLink line.
-fn a_flood_moves_nothing(board: &str, image: &Path) {
+/// Flies a hop on `board` without and with a flood on the MAVLink line; the worst frame with it, us, for that without it.
+fn a_flood_moves_nothing(board: &str, image: &Path, most: impl Fn(f64) -> f64) {
     let firmware = Firmware::read(image, boards::find(board).unwrap()).unwrap();
     let quiet = fly_with_client(&firmware, &hop(), true, None);
     let (port, client) = terminal("--mavlink");
@@ -101,7 +106,7 @@ fn a_flood_moves_nothing(board: &str, image: &Path) {
         after.worst
     );
     assert!(
-        (after.mean() - before.mean()).abs() < MEAN_MOVED && after.worst - before.worst < WORST_MOVED,
+        after.mean() - before.mean() < MEAN_MOVED && after.worst < most(before.worst),
         "{board}: {before:?} {after:?}"
     );
 }
@@ -109,34 +114,155 @@ fn a_flood_moves_nothing(board: &str, image: &Path) {
 #[test]
 #[ignore = "minutes of emulated flight: .ci/campaign flies it"]
 fn a_flood_at_line_rate_moves_no_deadline_figure_of_the_small_board() {
-    a_flood_moves_nothing("f405", small_image());
+    a_flood_moves_nothing("f405", small_image(), |_| SMALL_WORST);
 }
 
 #[test]
 #[ignore = "minutes of emulated flight: .ci/campaign flies it"]
 fn nor_of_the_reference_board() {
-    a_flood_moves_nothing("matek-h743", image());
+    a_flood_moves_nothing("matek-h743", image(), |quiet| quiet + WORST_MOVED);
+}
+
+/// A board of the reference kind that stands without a transmitter until `client` at its MAVLink line is done, and what
+/// that printed.
+fn stand_with(client: impl FnOnce(u16) -> Value + Send + 'static) -> Value {
+    clients::python();
+    let firmware = Firmware::read(image(), boards::find("matek-h743").unwrap()).unwrap();
+    let (port, line) = terminal("--mavlink");
+    let client = std::thread::spawn(move || client(port));
+    let setup = Setup {
+        speed: 1.0,
+        plan: Plan::new([]),
+        sockets: Sockets {
+            mavlink: Some(line),
+            ..Sockets::default()
+        },
+    };
+    let mut log = String::new();
+    let stood = flight::stand(
+        &firmware,
+        &scenario("hover.toml"),
+        setup,
+        None,
+        |line| log += &format!("{line}\n"),
+        || client.is_finished(),
+    )
+    .unwrap();
+    let said = client.join().unwrap_or_else(|_| panic!("{log}"));
+    assert_eq!(stood.gaps, []);
+    for task in FLIGHT_LEVEL {
+        let missed = stood.board.overruns.get(task).copied().unwrap_or(0);
+        assert_eq!(missed, 0, "{task}\n{log}");
+    }
+    said
+}
+
+/// Every parameter of the table, by name, `infill` as it was set.
+fn holds_all(params: &Value, infill: f64) {
+    let read = params.as_object().unwrap();
+    assert_eq!(read.len(), Params::TABLE.len(), "{params}");
+    for row in Params::TABLE {
+        assert!(read.contains_key(row.name), "{}: {params}", row.name);
+    }
+    let set = read["infill"].as_f64().unwrap();
+    assert!((set - infill).abs() < 1e-6, "{params}");
+}
+
+fn said(heard: &Value, text: &str) -> bool {
+    let texts = heard["texts"].as_array().unwrap();
+    texts.iter().any(|said| said == text)
 }
 
 #[test]
 #[ignore = "wants pymavlink, which .ci/mavlink-clients installs: .ci/run runs it"]
-fn pymavlink_hears_the_reference_board() {
-    let firmware = Firmware::read(image(), boards::find("matek-h743").unwrap()).unwrap();
-    let (port, client) = terminal("--mavlink");
-    let listener = std::thread::spawn(move || {
-        clients::listen(&format!("tcp:127.0.0.1:{port}"), 3, &["HEARTBEAT", "ATTITUDE"])
+fn pymavlink_hears_sets_restarts_and_reads_the_reference_board() {
+    let tcp = |port: u16| format!("tcp:127.0.0.1:{port}");
+    let read = stand_with(move |port| {
+        let heard = clients::listen(&tcp(port), 3, &["HEARTBEAT", "ATTITUDE"]);
+        assert_eq!((&heard["bad"], &heard["lost"]), (&0.into(), &0.into()), "{heard}");
+        for beat in heard["messages"]["HEARTBEAT"].as_array().unwrap() {
+            // MAV_TYPE_QUADROTOR, MAV_AUTOPILOT_GENERIC; not armed.
+            assert_eq!(
+                (&beat["type"], &beat["autopilot"], &beat["system"]),
+                (&2.into(), &0.into(), &1.into()),
+                "{beat}"
+            );
+            assert_eq!(beat["base_mode"].as_u64().unwrap() >> 7, 0, "{beat}");
+        }
+        clients::run("params.py", &[&tcp(port), SECONDS, "infill", "8"])
     });
-    let flight = fly_with_client(&firmware, &hover(12.0), false, Some(client));
-    let heard = listener.join().unwrap_or_else(|_| panic!("{}", log(&flight)));
-    assert_eq!((&heard["bad"], &heard["lost"]), (&0.into(), &0.into()), "{heard}");
-    for beat in heard["messages"]["HEARTBEAT"].as_array().unwrap() {
-        // MAV_TYPE_QUADROTOR, MAV_AUTOPILOT_GENERIC; not armed.
-        assert_eq!(
-            (&beat["type"], &beat["autopilot"], &beat["system"]),
-            (&2.into(), &0.into(), &1.into()),
-            "{beat}"
-        );
-        assert_eq!(beat["base_mode"].as_u64().unwrap() >> 7, 0, "{beat}");
+    holds_all(&read["before"], Params::DEFAULT.infill.into());
+    holds_all(&read["after"], 8.0);
+}
+
+#[test]
+#[ignore = "wants MAVSDK, which .ci/mavlink-clients installs: .ci/run runs it"]
+fn mavsdk_hears_sets_restarts_and_is_refused_by_the_reference_board() {
+    let did = stand_with(|port| {
+        clients::run(
+            "sdk.py",
+            &[&format!("tcpout://127.0.0.1:{port}"), SECONDS, "restarts"],
+        )
+    });
+    holds_all(&did["params"], Params::DEFAULT.infill.into());
+    assert_eq!(
+        (&did["set"], &did["restart"]),
+        (&"SUCCESS".into(), &"SUCCESS".into()),
+        "{did}"
+    );
+    holds_all(&did["after"], 8.0);
+    assert!(did["beyond"] != "SUCCESS", "{did}");
+    for angle in did["attitude"].as_array().unwrap() {
+        assert!(angle.as_f64().unwrap().abs() < 5.0, "{did}");
+    }
+    assert!((did["voltage"].as_f64().unwrap() - 16.0).abs() < 1.0, "{did}");
+    assert!(did["armed"] == false && did["arm"] == "COMMAND_DENIED", "{did}");
+    assert!(did["grab"] != "SUCCESS" && did["release"] != "SUCCESS", "{did}");
+    assert!(said(&did, "arming: radio lost"), "{did}");
+    // In force after the restart, so that the console has it too.
+    assert!(
+        did["shell"].as_str().unwrap().contains("infill           8"),
+        "{did}"
+    );
+}
+
+#[test]
+#[ignore = "wants MAVProxy, which .ci/mavlink-clients installs: .ci/run runs it"]
+fn mavproxy_loads_restarts_and_saves_the_parameters_of_the_reference_board() {
+    let did = stand_with(|port| {
+        let master = format!("tcp:127.0.0.1:{port}");
+        clients::run("proxy.py", &[&master, SECONDS, "infill", "8", "restart"])
+    });
+    holds_all(&did["params"], 8.0);
+}
+
+#[test]
+#[ignore = "minutes of emulated flight, and MAVSDK: .ci/campaign flies it"]
+fn mavsdk_arms_where_the_pilots_switch_is_on_and_grabs_in_the_air_alone() {
+    clients::python();
+    let firmware = Firmware::read(image(), boards::find("matek-h743").unwrap()).unwrap();
+    let (port, line) = terminal("--mavlink");
+    let client = std::thread::spawn(move || {
+        clients::run(
+            "sdk.py",
+            &[&format!("tcpout://127.0.0.1:{port}"), SECONDS, "flies"],
+        )
+    });
+    let flight = fly_with_client(&firmware, &hover(20.0), true, Some(line));
+    let did = client.join().unwrap_or_else(|_| panic!("{}", log(&flight)));
+    for what in ["arms", "grabs"] {
+        let tries = did[what].as_array().unwrap();
+        assert!(tries.len() > 1 && tries[0] != "SUCCESS", "{what}: {did}");
+        assert_eq!(tries.last().unwrap(), "SUCCESS", "{what}: {did}");
+    }
+    assert_eq!(did["release"], "SUCCESS", "{did}");
+    // In the air.
+    assert!(did["armed"] == true && did["disarm"] == "COMMAND_DENIED", "{did}");
+    for text in [
+        "refused: only in flight or on the pipe",
+        "refused: flying: land first",
+    ] {
+        assert!(said(&did, text), "{text}: {did}");
     }
     assert_eq!(flight.gaps, []);
 }

@@ -71,7 +71,7 @@ impl Server {
             [Some(1), Some(0), Some(0), Some(0), Some(0), Some(0), Some(0)] => What::Gyro,
             [Some(0), Some(0), Some(0), Some(0), Some(1), Some(0), Some(0)] => What::SixSides,
             [Some(0), Some(0), Some(0), Some(0), Some(2 | 4), Some(0), Some(0)] => What::Level,
-            _ => return Some(MavResult::MAV_RESULT_UNSUPPORTED),
+            _ => return Some(self.unsupported("others calibrate at the console")),
         };
         if !vehicle.at_rest() {
             return Some(self.refuse_armed());

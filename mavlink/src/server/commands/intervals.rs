@@ -9,10 +9,12 @@ use super::{Reply, whole};
 use crate::dialect::*;
 use crate::streams::{PERIOD_MIN_US, STREAMS};
 
+const NO_NUMBER: &str = "no message has that number";
+
 impl Server {
     pub(super) fn set_interval(&mut self, id: f32, interval: f32, now: u64) -> MavResult {
         let Some(id) = whole(id) else {
-            return MavResult::MAV_RESULT_DENIED;
+            return self.deny(NO_NUMBER);
         };
         let Some(stream) = STREAMS.iter().find(|stream| stream.id == id) else {
             return MavResult::MAV_RESULT_UNSUPPORTED;
@@ -22,7 +24,7 @@ impl Server {
             Some(period) if period >= PERIOD_MIN_US => period,
             // -1: no longer. A heartbeat is what the others know the vehicle by.
             None if interval < 0.0 && id != HEARTBEAT_DATA::ID => 0,
-            _ => return MavResult::MAV_RESULT_DENIED,
+            _ => return self.deny("an interval is 20 ms or more, 0 or -1"),
         };
         match self.schedule.set_period(id, period, now) {
             Some(()) => MavResult::MAV_RESULT_ACCEPTED,
@@ -32,7 +34,7 @@ impl Server {
 
     pub(super) fn get_interval(&mut self, id: f32) -> Reply {
         let Some(id) = whole(id).and_then(|id| u16::try_from(id).ok()) else {
-            return MavResult::MAV_RESULT_DENIED.into();
+            return self.deny(NO_NUMBER).into();
         };
         let interval_us = match self.schedule.period(id.into()) {
             Some(0) => -1,
@@ -42,26 +44,26 @@ impl Server {
         };
         Answer::Interval { id, interval_us }.into()
     }
-}
 
-/// A message that is asked for once; `index` says which of several.
-pub(super) fn once(id: f32, index: f32) -> Reply {
-    let Some(id) = whole(id) else {
-        return MavResult::MAV_RESULT_DENIED.into();
-    };
-    match id {
-        AUTOPILOT_VERSION_DATA::ID => Answer::Version.into(),
-        COMPONENT_METADATA_DATA::ID => Answer::Metadata.into(),
-        AVAILABLE_MODES_DATA::ID => match whole(index) {
-            Some(0) => Answer::Mode { index: 1, all: true }.into(),
-            Some(index) if index as usize <= Mode::ALL.len() => Answer::Mode {
-                index: index as u8,
-                all: false,
-            }
-            .into(),
-            _ => MavResult::MAV_RESULT_DENIED.into(),
-        },
-        id if STREAMS.iter().any(|stream| stream.id == id) => Answer::Stream(id).into(),
-        _ => MavResult::MAV_RESULT_UNSUPPORTED.into(),
+    /// A message that is asked for once; `index` says which of several.
+    pub(super) fn once(&mut self, id: f32, index: f32) -> Reply {
+        let Some(id) = whole(id) else {
+            return self.deny(NO_NUMBER).into();
+        };
+        match id {
+            AUTOPILOT_VERSION_DATA::ID => Answer::Version.into(),
+            COMPONENT_METADATA_DATA::ID => Answer::Metadata.into(),
+            AVAILABLE_MODES_DATA::ID => match whole(index) {
+                Some(0) => Answer::Mode { index: 1, all: true }.into(),
+                Some(index) if index as usize <= Mode::ALL.len() => Answer::Mode {
+                    index: index as u8,
+                    all: false,
+                }
+                .into(),
+                _ => self.deny("no such mode").into(),
+            },
+            id if STREAMS.iter().any(|stream| stream.id == id) => Answer::Stream(id).into(),
+            _ => MavResult::MAV_RESULT_UNSUPPORTED.into(),
+        }
     }
 }

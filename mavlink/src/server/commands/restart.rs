@@ -16,7 +16,7 @@ impl Server {
                 MavResult::MAV_RESULT_ACCEPTED
             }
             Some(1) => self.refuse_armed(),
-            _ => MavResult::MAV_RESULT_UNSUPPORTED,
+            _ => self.unsupported("1 restarts, nothing else"),
         }
     }
 
@@ -27,7 +27,7 @@ impl Server {
                 MavResult::MAV_RESULT_ACCEPTED
             }
             Some(1) => self.refuse_armed(),
-            _ => MavResult::MAV_RESULT_UNSUPPORTED,
+            _ => self.unsupported("1 stores, nothing else"),
         }
     }
 }

@@ -1,0 +1,101 @@
+//! The commands that are obeyed, and when, as docs/mavlink.md lists them.
+
+use crate::dialect::MavCmd;
+
+/// When a command is obeyed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum When {
+    /// In every state.
+    Always,
+    /// At rest: DISARMED and CALIBRATING.
+    AtRest,
+    /// Where the commander agrees.
+    Commander(&'static str),
+}
+
+/// A command in one of its forms.
+#[derive(Clone, Copy, Debug)]
+pub struct Obeyed {
+    /// The command.
+    pub command: MavCmd,
+    /// Its parameters, and what they do.
+    pub form: &'static str,
+    /// When.
+    pub when: When,
+}
+
+const fn obeyed(command: MavCmd, form: &'static str, when: When) -> Obeyed {
+    Obeyed { command, form, when }
+}
+
+/// Every command that is obeyed. The image has none of these words.
+pub const OBEYED: [Obeyed; 14] = [
+    obeyed(
+        MavCmd::MAV_CMD_REQUEST_MESSAGE,
+        "message (of the modes: which, 0 all)",
+        When::Always,
+    ),
+    obeyed(
+        MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL,
+        "message, us (0 its own, -1 never)",
+        When::Always,
+    ),
+    obeyed(MavCmd::MAV_CMD_GET_MESSAGE_INTERVAL, "message", When::Always),
+    obeyed(
+        MavCmd::MAV_CMD_PREFLIGHT_STORAGE,
+        "1 (store parameters)",
+        When::AtRest,
+    ),
+    obeyed(
+        MavCmd::MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN,
+        "1 (restart)",
+        When::AtRest,
+    ),
+    obeyed(
+        MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION,
+        "which, below",
+        When::AtRest,
+    ),
+    obeyed(
+        MavCmd::MAV_CMD_COMPONENT_ARM_DISARM,
+        "1 (arm)",
+        When::Commander("DISARMED, with the radio there, its arm switch on and every arming check passing"),
+    ),
+    obeyed(
+        MavCmd::MAV_CMD_COMPONENT_ARM_DISARM,
+        "0 (disarm)",
+        When::Commander("on the ground; PERCHED with the arm switch off"),
+    ),
+    obeyed(
+        MavCmd::MAV_CMD_COMPONENT_ARM_DISARM,
+        "0, 21196 (force)",
+        When::Always,
+    ),
+    obeyed(
+        MavCmd::MAV_CMD_DO_GRIPPER,
+        "1, 1 (grab)",
+        When::Commander("where the perch switch does it, below"),
+    ),
+    obeyed(
+        MavCmd::MAV_CMD_DO_GRIPPER,
+        "1, 0 (release)",
+        When::Commander("the same"),
+    ),
+    obeyed(
+        MavCmd::MAV_CMD_USER_1,
+        "1 (the propellers are off)",
+        When::Commander("DISARMED; counts until the next arming or restart"),
+    ),
+    obeyed(
+        MavCmd::MAV_CMD_DO_MOTOR_TEST,
+        "motor, 0, percent, seconds",
+        When::Commander(
+            "as the console's `motor`: DISARMED, propellers said to be off, 2 to 12 %, two seconds at most; 0 % stops",
+        ),
+    ),
+    obeyed(
+        MavCmd::MAV_CMD_DO_SET_SERVO,
+        "5 to 8, us",
+        When::Commander("as the console's `servo`: DISARMED, arms open, 30 s at most; 0 us gives it back"),
+    ),
+];
