@@ -101,7 +101,7 @@ impl Context {
             },
             hold_seen_off: false,
             power_up_grip: PowerUpGripCheck::default(),
-            lean: Lean::default(),
+            lean: Lean::new(params),
             sinking: 0.0,
             collective: Collective::default(),
             probe: Probe::default(),
@@ -251,9 +251,10 @@ impl Context {
         4.0 * self.params.thrust_max
     }
 
-    /// The pilot's collective on the pipe, N: the throttle, limited to `perch_thr_max`.
-    pub fn perch_thrust(&self) -> f32 {
-        clamp(self.throttle, 0.0, self.params.perch_thr_max) * self.full_thrust()
+    /// The collective on the pipe while the arms close, N: the pilot's throttle, limited to `perch_lift` of the weight.
+    pub fn set_down_thrust(&self) -> f32 {
+        let most = self.params.perch_lift * self.support.weight();
+        clamp(self.throttle * self.full_thrust(), 0.0, most)
     }
 }
 

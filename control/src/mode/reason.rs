@@ -78,6 +78,8 @@ reasons! {
     ArmSwitchOff = "arm switch off",
     /// The arms are not opened: the belly would slide before the rotors carry.
     LeansTooFar = "leaning too far to let go",
+    /// The arms open while the rotors lift it off: the belly would slide.
+    LiftsOff = "leaning: lifting off",
     /// A release takes less throttle.
     ThrottleTooHigh = "throttle too high to release",
     /// The arms are open, and their sensors still press.
