@@ -4,6 +4,7 @@ use super::behaviour::Behaviour;
 use super::context::{Context, Step};
 use super::hold::{Hold, SPOOL_DOWN_TIME, SPOOL_TIME, Spool, held, hopeless};
 use super::{Inputs, Reason, Setpoint};
+use crate::arming::ArmingInhibits;
 use crate::grip_memory::GripMemory;
 use crate::math::clamp;
 
@@ -137,5 +138,9 @@ impl Behaviour for Clamping {
         } else {
             self.spool.rotors(self.hold, context.set_down_thrust())
         }
+    }
+
+    fn reason(&self, context: &Context, inputs: &Inputs, _: ArmingInhibits) -> Option<Reason> {
+        context.reason(inputs, true).or(context.crown.side())
     }
 }

@@ -3,7 +3,8 @@
 use super::behaviour::Behaviour;
 use super::context::{Context, Step};
 use super::hold::Hold;
-use super::{Inputs, Setpoint};
+use super::{Inputs, Reason, Setpoint};
+use crate::arming::ArmingInhibits;
 
 /// Time on the pipe before the tendons close, s.
 pub const CONTACT_TIME: f32 = 0.2;
@@ -29,5 +30,9 @@ impl Behaviour for Contact {
 
     fn hand_over_time(&self) -> f32 {
         SET_DOWN_TIME
+    }
+
+    fn reason(&self, context: &Context, inputs: &Inputs, _: ArmingInhibits) -> Option<Reason> {
+        context.reason(inputs, true).or(context.crown.side())
     }
 }

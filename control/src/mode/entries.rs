@@ -99,9 +99,7 @@ pub fn closing_again(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Cl
 
 /// The arms hold and the rotors stand.
 pub fn perched(from: &State, _: &mut Step<'_>, _: Option<Reason>) -> Perched {
-    Perched {
-        grip_memory: from.behaviour().grip_memory(),
-    }
+    Perched::on(from.behaviour().grip_memory())
 }
 
 /// The same, for a danger: opening takes a new turn of the switch.

@@ -402,3 +402,41 @@ fn a_lower_friction_refuses_smaller_leans() {
         assert_eq!(mode == Mode::Escaping, refused, "{friction} {lean}: {mode:?}");
     }
 }
+
+#[test]
+fn the_pilot_reads_on_which_side_the_crown_is() {
+    // 0.3 N m over 17.7 N less 6.6 N: 27 mm; 0.1 N m: 9 mm.
+    for (moment, shown) in [
+        (-0.3, Some(Reason::CrownLeft)),
+        (0.3, Some(Reason::CrownRight)),
+        (0.1, None),
+        (f32::NAN, None),
+    ] {
+        let mut r = Rig::clamping();
+        r.inputs.roll_moment = moment;
+        r.run(1.0);
+        assert_eq!(r.out.reason, shown, "{moment} N m");
+    }
+}
+
+#[test]
+fn a_perched_vehicle_that_turns_round_the_pipe_says_so() {
+    for (degrees, seconds, slips) in [
+        (6.0, 1.2, true),
+        (-6.0, 1.2, true),
+        (4.0, 5.0, false),
+        (6.0, 0.5, false),
+    ] {
+        let mut r = Rig::perched();
+        r.leans(degrees, 0.0);
+        r.expect(seconds, Mode::Perched);
+        assert_eq!(
+            r.out.reason == Some(Reason::Slips),
+            slips,
+            "{degrees} for {seconds} s"
+        );
+        r.leans(0.0, 0.0);
+        r.expect(0.1, Mode::Perched);
+        assert_eq!(r.out.reason, None);
+    }
+}
