@@ -89,6 +89,7 @@ guards! {
         State::Releasing(r) => !r.holds(s),
         _ => true,
     };
+    UNPROVEN = "grip not proven yet", |state, s| closing(state, |c| !c.spool.down && !s.grip_proven());
     DOUBT = "the closing should end", |state, s| closing(state, |c| c.doubt(s).is_some());
     MAY_LEAVE = "nothing keeps it there", |state, s| closing(state, |c| c.must_stay(s).is_none());
     SPOOLED_ON_GRIP = "arms hold and rotors spool down", |state, s| closing(state, |c| c.holds(s) && c.spool.down);

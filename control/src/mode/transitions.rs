@@ -129,6 +129,8 @@ pub const TRANSITIONS: &[Transition] = &[
     row(&[Contact], &[SLIDES], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
     row(&[Contact], &[LIFTED], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
     row(&[Contact], &[RESTED], To::Clamping(entries::closing), Keep),
+    // Half-closed arms slide round the pipe with the body, pressed.
+    row(&[Clamping], &[UNPROVEN, SLIDES], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
     row(&[Clamping], &[LOOSE, SLIDES], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
     row(&[Clamping], &[LOOSE, CREEPS], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
     row(&[Clamping], &[DOUBT, MAY_LEAVE, SPOOLED_ON_GRIP], To::Releasing(entries::releasing_instead), DOUBTED),

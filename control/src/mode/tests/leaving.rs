@@ -59,6 +59,12 @@ fn a_lean_that_grows_or_is_hopeless_ends_the_closing() {
             assert!(!ends || r.out.reason == Some(Reason::SlidesOff));
         }
     }
+    // Pressed, and not proven.
+    let mut r = Rig::clamping();
+    r.grip(false, false, ArmState::Touching, 800.0);
+    r.run(0.5);
+    r.leans(20.0, 0.5);
+    r.expect(0.05, Mode::Escaping);
     // Holding arms need no rotors.
     let mut r = Rig::clamping();
     r.grip(true, false, ArmState::Holding, 950.0);
