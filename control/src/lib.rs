@@ -45,6 +45,7 @@ pub mod position_hold;
 pub mod rate;
 pub mod rc;
 pub mod remote;
+pub mod seat;
 pub mod setpoint;
 pub mod support;
 pub mod tendon;

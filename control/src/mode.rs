@@ -11,6 +11,7 @@ mod calibrating;
 mod clamping;
 mod contact;
 mod context;
+mod crown;
 mod dangers;
 mod demand;
 mod descent;
@@ -167,6 +168,8 @@ pub struct Inputs {
     pub motion: Option<Motion>,
     /// Demanded thrust along body -z, Σ T cos α, N; 0 when stopped.
     pub lift: f32,
+    /// Demanded roll moment, right side down positive, N m; 0 when stopped.
+    pub roll_moment: f32,
     /// The grip.
     pub grip: Option<GripState>,
     /// Pressure sensors that are faulty or silent.

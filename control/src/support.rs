@@ -19,6 +19,10 @@ pub const RESTING_FORCE: f32 = 3.0;
 pub const LEAVING_FORCE: f32 = 1.5;
 /// Support worth a trial by reducing thrust, N.
 pub const HINT_FORCE: f32 = 1.8;
+/// Time above [`RESTING_FORCE`] of a sure touch, s: three steps.
+pub const TOUCH_TIME: f32 = 0.03;
+/// Time below [`LEAVING_FORCE`] after which a touch has ended, s.
+pub const LIFT_TIME: f32 = 0.3;
 /// Time that the support must last, s.
 pub const RESTING_TIME: f32 = 0.3;
 /// Share of the weight of a grounded vehicle, rotors stopped or idle.
@@ -144,6 +148,16 @@ impl Support {
     /// True from [`RESTING_TIME`] above [`RESTING_FORCE`] until as long below [`LEAVING_FORCE`].
     pub fn resting(&self) -> bool {
         self.resting
+    }
+
+    /// True once something carries for [`TOUCH_TIME`].
+    pub fn touched(&self) -> bool {
+        self.pressed.time() >= TOUCH_TIME
+    }
+
+    /// True once nothing has carried for [`LIFT_TIME`].
+    pub fn lifted(&self) -> bool {
+        self.unloaded.time() >= LIFT_TIME
     }
 
     /// True once nearly all of the weight was carried for [`GROUNDED_TIME`] without tumbling.

@@ -14,7 +14,9 @@ use crate::vector::Vec3;
 use crate::wrench::Wrench;
 
 /// Largest share of a rotor's thrust for roll and for pitch on the pipe.
-const RESTING_SHARE: f32 = 0.4;
+const RESTING_SHARES: [f32; 2] = [0.6, 0.4];
+/// Roll moment on the pipe over that in the air: about the pipe's axis the vehicle has four times its own inertia.
+const RESTING_ROLL_GAIN: f32 = 2.0;
 
 /// A setpoint and its time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -175,10 +177,11 @@ impl Control {
     /// faster than the tendons follow.
     #[inline(always)]
     fn while_resting(&self, moment: Vec3, thrust: f32) -> Wrench {
-        let [roll_max, pitch_max] = self.levers.map(|lever| RESTING_SHARE * thrust * lever);
+        let ([roll, pitch], [sideways, ahead]) = (RESTING_SHARES, self.levers);
+        let (roll_max, pitch_max) = (roll * thrust * sideways, pitch * thrust * ahead);
         Wrench {
             thrust,
-            roll: math::clamp_abs(moment.x, roll_max),
+            roll: math::clamp_abs(RESTING_ROLL_GAIN * moment.x, roll_max),
             pitch: math::clamp_abs(moment.y, pitch_max),
             yaw: 0.0,
         }

@@ -98,6 +98,16 @@ impl MixOutput {
         lift(&self.thrusts, &self.tilt)
     }
 
+    /// Demanded roll moment of rotors at `lever` m beside the middle, right side down positive, N m; 0 while they stand.
+    pub fn roll(&self, lever: f32) -> f32 {
+        let [front_left, rear_left, front_right, rear_right] = self.thrusts;
+        if self.running {
+            lever * (front_left + rear_left - front_right - rear_right)
+        } else {
+            0.0
+        }
+    }
+
     /// Feedback for the rate loop.
     #[inline(always)]
     pub const fn feedback(&self) -> Feedback {

@@ -2,8 +2,9 @@
 
 use super::behaviour::Behaviour;
 use super::context::{Context, Step};
-use super::hold::{Hold, SPOOL_TIME, Spool, held, hopeless};
+use super::hold::{Hold, SPOOL_DOWN_TIME, SPOOL_TIME, Spool, held, hopeless};
 use super::{Inputs, Reason, Setpoint};
+use crate::arming::ArmingInhibits;
 use crate::grip_memory::GripMemory;
 use crate::math::clamp;
 
@@ -77,7 +78,7 @@ impl Clamping {
         };
         if down || Self::last_resort(step) {
             spool.down = true;
-            spool.share = clamp(spool.share - step.dt / SPOOL_TIME, 0.0, 1.0);
+            spool.share = clamp(spool.share - step.dt / SPOOL_DOWN_TIME, 0.0, 1.0);
             spool.still = if spool.share <= 0.0 {
                 spool.still + step.dt
             } else {
@@ -135,7 +136,11 @@ impl Behaviour for Clamping {
         if self.spool.stopped() {
             Setpoint::Stop
         } else {
-            self.spool.rotors(self.hold, context.perch_thrust())
+            self.spool.rotors(self.hold, context.set_down_thrust())
         }
+    }
+
+    fn reason(&self, context: &Context, inputs: &Inputs, _: ArmingInhibits) -> Option<Reason> {
+        context.reason(inputs, true).or(context.crown.side())
     }
 }

@@ -3,10 +3,13 @@
 use super::behaviour::Behaviour;
 use super::context::{Context, Step};
 use super::hold::Hold;
-use super::{Inputs, Setpoint};
+use super::{Inputs, Reason, Setpoint};
+use crate::arming::ArmingInhibits;
 
 /// Time on the pipe before the tendons close, s.
-pub const CONTACT_TIME: f32 = 0.3;
+pub const CONTACT_TIME: f32 = 0.2;
+/// Time in which the collective falls to that of the closing, s: about the motors' own. The lean drifts out meanwhile.
+const SET_DOWN_TIME: f32 = 0.06;
 /// Throttle above `perch_thr_max` that ends the contact, 1.
 pub const CONTACT_MARGIN: f32 = 0.03;
 
@@ -22,6 +25,14 @@ impl Behaviour for Contact {
     }
 
     fn rotors(&self, context: &Context, _: &Inputs) -> Setpoint {
-        self.hold.rotors(context.perch_thrust())
+        self.hold.rotors(context.set_down_thrust())
+    }
+
+    fn hand_over_time(&self) -> f32 {
+        SET_DOWN_TIME
+    }
+
+    fn reason(&self, context: &Context, inputs: &Inputs, _: ArmingInhibits) -> Option<Reason> {
+        context.reason(inputs, true).or(context.crown.side())
     }
 }

@@ -1,6 +1,7 @@
 //! What outlives a state: parameters, the pilot's switches, evidence of support and lean, dangers, the collective.
 
 use super::bench::Bench;
+use super::crown::Crown;
 use super::dangers::Dangers;
 use super::demand::Collective;
 use super::hold::held;
@@ -71,6 +72,7 @@ pub struct Context {
     pub hold_seen_off: bool,
     pub power_up_grip: PowerUpGripCheck,
     pub lean: Lean,
+    pub crown: Crown,
     /// Acceleration along world down, m/s².
     pub sinking: f32,
     pub collective: Collective,
@@ -101,7 +103,8 @@ impl Context {
             },
             hold_seen_off: false,
             power_up_grip: PowerUpGripCheck::default(),
-            lean: Lean::default(),
+            lean: Lean::new(params),
+            crown: Crown::default(),
             sinking: 0.0,
             collective: Collective::default(),
             probe: Probe::default(),
@@ -141,6 +144,7 @@ impl Context {
             lift: i.lift,
         });
         self.support.step(felt, dt);
+        self.crown.step(i, &self.support, dt);
         self.sinking = felt.map_or(0.0, |f| f.down);
         self.lean.step(i.motion, &self.support, self.collective.now(), dt);
         self.dangers.step(i, &self.params, dt);
@@ -251,9 +255,10 @@ impl Context {
         4.0 * self.params.thrust_max
     }
 
-    /// The pilot's collective on the pipe, N: the throttle, limited to `perch_thr_max`.
-    pub fn perch_thrust(&self) -> f32 {
-        clamp(self.throttle, 0.0, self.params.perch_thr_max) * self.full_thrust()
+    /// The collective on the pipe while the arms close, N: the pilot's throttle, limited to `perch_lift` of the weight.
+    pub fn set_down_thrust(&self) -> f32 {
+        let most = self.params.perch_lift * self.support.weight();
+        clamp(self.throttle * self.full_thrust(), 0.0, most)
     }
 }
 

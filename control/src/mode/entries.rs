@@ -75,6 +75,7 @@ pub fn contact(_: &State, step: &mut Step<'_>, _: Option<Reason>) -> Contact {
 
 /// The arms begin to close. A radio lost just now finishes the landing that the pilot began.
 pub fn closing(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Clamping {
+    step.context.lean.sit();
     step.context.perch_switch.seen_on = step.inputs.sticks.is_some();
     Clamping {
         hold: hold(from),
@@ -84,6 +85,7 @@ pub fn closing(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Clamping
 
 /// The arms stay closed, or close again. Radio lost: hold on; a later release takes a new turn of the switch.
 pub fn closing_again(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Clamping {
+    step.context.lean.sit();
     step.context.perch_switch.seen_on = Releasing::called_back(step) && step.inputs.sticks.is_some();
     let share = match from {
         State::Releasing(r) => r.spooled(step.dt),
@@ -97,9 +99,7 @@ pub fn closing_again(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Cl
 
 /// The arms hold and the rotors stand.
 pub fn perched(from: &State, _: &mut Step<'_>, _: Option<Reason>) -> Perched {
-    Perched {
-        grip_memory: from.behaviour().grip_memory(),
-    }
+    Perched::on(from.behaviour().grip_memory())
 }
 
 /// The same, for a danger: opening takes a new turn of the switch.

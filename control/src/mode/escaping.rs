@@ -21,7 +21,7 @@ const CLIMB_GAIN: f32 = 0.7;
 /// Climb rate until the vehicle is clear, m/s.
 const CLIMB_RATE: f32 = 0.5;
 /// Rise time of the collective on a slide, s: the lean grows e-fold in 0.16 s.
-pub const SLIDE_RAMP: f32 = 0.15;
+pub const SLIDE_RAMP: f32 = 0.05;
 /// Later and slower for a standing vehicle, s: the rotors pull at the tendons with 7 times their thrust, so tendons at
 /// their limit must pay out first.
 const STAND_DELAY: f32 = 0.25;

@@ -4,11 +4,6 @@ use super::behaviour::Behaviour;
 use super::context::{Context, Step};
 use super::descent::descent;
 use super::{Inputs, Reason, Setpoint, demand, holding};
-use crate::math::cos;
-
-/// Largest lean at which the arms close, rad. Before they hold, a vehicle leaning by θ along a pipe's flank stays only
-/// while sin θ <= μ (cos θ - T/W): 14° at μ 0.6 and 30 % throttle.
-pub const PERCH_LEAN_MAX: f32 = crate::math::deg(11.0);
 
 /// See [`super::Mode::Flight`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,10 +17,9 @@ impl Flight {
         step.inputs.motion.is_some() && step.inputs.sticks.is_some_and(wanted)
     }
 
-    /// Nearly level: closing arms would hold.
+    /// Friction holds the vehicle while the arms close.
     pub fn is_level(step: &Step<'_>) -> bool {
-        let steep = |m: super::Motion| m.q.down_in_body().z < cos(PERCH_LEAN_MAX);
-        !step.inputs.motion.is_some_and(steep)
+        step.context.lean.may_close()
     }
 }
 

@@ -66,16 +66,18 @@ guards! {
 
     MEANS_TO_PERCH = "perch switch on, throttle down", |_, s| Flight::means_to_perch(s);
     SWITCH_TURNED = "perch switch was off since the last try", |_, s| s.context.perch_switch.seen_off;
-    SLIDES_AT_TOUCH = "leans where it feels the pipe", |_, s| s.context.lean.slides_at_touch(&s.context.support);
-    RESTING = "something carries", |_, s| s.context.support.resting();
+    SLIDES_AT_TOUCH = "leans where it feels the pipe", |_, s| s.context.lean.slides_at_touch();
+    TOUCHED = "feels the pipe", |_, s| s.context.support.touched();
+    LIFTED = "nothing carries it any more", |_, s| s.context.support.lifted();
     LEVEL = "nearly level", |_, s| Flight::is_level(s);
     CALLED_OFF = "perch switch off or throttle up", |_, s| {
         let most = s.context.params.perch_thr_max + CONTACT_MARGIN;
         sticks(s, |s| !s.perch_switch || s.throttle > most)
     };
     SLIDES = "slides", |_, s| s.context.lean.slides();
+    CREEPS = "leans more and more", |_, s| s.context.lean.creeps();
     NOT_RESTING = "nothing carries", |_, s| !s.context.support.resting();
-    RESTED = "rested long enough", |_, s| s.context.since >= CONTACT_TIME;
+    RESTED = "rested long enough", |_, s| s.context.since >= CONTACT_TIME && s.context.support.resting();
 
     ARMS_STAY = "arms hold and have not opened", |state, s| match state {
         State::Clamping(_) => s.grip_proven(),
@@ -87,6 +89,7 @@ guards! {
         State::Releasing(r) => !r.holds(s),
         _ => true,
     };
+    UNPROVEN = "grip not proven yet", |state, s| closing(state, |c| !c.spool.down && !s.grip_proven());
     DOUBT = "the closing should end", |state, s| closing(state, |c| c.doubt(s).is_some());
     MAY_LEAVE = "nothing keeps it there", |state, s| closing(state, |c| c.must_stay(s).is_none());
     SPOOLED_ON_GRIP = "arms hold and rotors spool down", |state, s| closing(state, |c| c.holds(s) && c.spool.down);
@@ -103,6 +106,7 @@ guards! {
     CALLED_BACK = "perch switch on again, or radio lost", |_, s| Releasing::called_back(s);
     NOT_RELEASED = "arms not free", |state, s| releasing(state, |r| !r.released(s));
     GROUNDED_ON_PIPE = "data-ready line silent before the arms open", |state, s| releasing(state, |r| r.grounded(s));
+    LIFTS_OFF = "leans where friction does not hold, and rotors are up", |state, s| releasing(state, |r| r.lifts_off(s));
     LEANS_TOO_FAR = "leans too far before the arms open", |state, s| releasing(state, |r| r.leans(s));
 
     STUCK = "arms not free in time, and pulling", |state, s| matches!(state, State::Escaping(e) if e.stuck(s.context));

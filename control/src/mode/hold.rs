@@ -7,12 +7,14 @@ use crate::params::Params;
 use crate::rc::ArmChoice;
 use crate::wrench::Wrench;
 
-/// Ramp time between the pilot's collective and 0, s.
+/// Ramp time from 0 to the pilot's collective, s.
 pub const SPOOL_TIME: f32 = 1.5;
+/// Ramp time to standing rotors, s: the arms take over the roll moment by which the rotors hold a vehicle beside the crown.
+pub const SPOOL_DOWN_TIME: f32 = 3.0;
 /// Rate of levelling a lean at contact, rad/s.
 const LEVEL_RATE: f32 = 0.2;
 /// Time constant of the held attitude following the present one, s.
-const FOLLOW_TIME: f32 = 0.2;
+const FOLLOW_TIME: f32 = 1.0;
 /// Share of the collective below which only the grip holds the attitude.
 const LIFT_SHARE: f32 = 0.5;
 /// Share of the grip pressure above which an arm holds outside the tolerance: in spool-down the load moves from the

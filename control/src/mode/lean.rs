@@ -1,61 +1,101 @@
 //! Lean across the pipe: whether the vehicle stays on the crown, slides off, or leans too far to let go.
+//!
+//! What friction holds is the [seat](crate::seat)'s; what it holds less than believed shows in a lean that grows.
 
 use super::Motion;
-use crate::math::deg;
+use super::releasing::release_thrust;
+use crate::math::{GRAVITY, deg};
+use crate::params::Params;
+use crate::seat::Seat;
 use crate::support::{Held, LEAVING_FORCE, RESTING_FORCE, Support};
 
-/// Lean at which a resting vehicle leaves before closing, rad.
-const TOUCH_LEAN: f32 = deg(13.0);
 /// Rate at which the attitude loop reduces a lean, rad/s.
 const LEVELLING_RATE: f32 = 0.2;
-/// Lean too large for closing arms, rad: they touch after 1.3 s, a slide reaches the flank in 0.35 s.
+/// Lean too large for closing arms whatever the friction, rad: they touch after 1.3 s, a slide reaches the flank in 0.35 s.
 const HOPELESS_LEAN: f32 = deg(25.0);
-/// Lean (rad) and rate (rad/s) of a growing lean. A touch 30 mm beside the crown drifts to 14 to 18° before it sits and
-/// is held.
-const GROWING_LEAN: f32 = deg(18.0);
+/// Rate of a growing lean, rad/s.
 const GROWING_RATE: f32 = 0.3;
-/// Time that these must last, s: three steps.
+/// Growth of the lean since the arms began to close, rad, and its rate, rad/s, that mean less friction than believed: on 0.3
+/// of friction the arms' first touch starts a slide at 10 to 14°. A sound closing 45 mm beside the crown grows by 2°.
+const CREEP: f32 = deg(6.0);
+const CREEP_RATE: f32 = 0.1;
+/// Time for which a lean must slide, s: three steps.
 const SLIDE_TIME: f32 = 0.03;
-/// Largest lean at which the arms let go, rad: beyond, the belly slides down the flank before the rotors carry.
-const RELEASE_LEAN_MAX: f32 = deg(17.0);
+/// Time after a touch for which a lean is a slide off the pipe, s.
+const TOUCH_MEMORY: f32 = 0.5;
+/// Largest lean at which the arms let go at all, rad: level rotors pull the vehicle away from the flank up to here.
+const RELEASE_LEAN_MAX: f32 = deg(28.0);
 /// A fall: time (s) with little support at a collective below this share of weight.
 const FALL_TIME: f32 = 0.05;
 const FALL_SHARE: f32 = 0.8;
 
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub struct Lean {
+    seat: Seat,
+    /// Share of the weight on the rotors while the arms close, and at least while they open.
+    closing_share: f32,
+    release_share: f32,
     /// Last known roll, rad.
     roll: f32,
+    /// Least lean since the arms began to close, rad.
+    seated: f32,
+    creeping: Held,
     sliding: Held,
     leaning: Held,
     falling: Held,
+    /// Time since something carried, s.
+    apart: Held,
 }
 
 impl Lean {
+    pub fn new(p: &Params) -> Self {
+        Self {
+            seat: Seat::from_params(p),
+            closing_share: p.perch_lift,
+            release_share: release_thrust(p) / (p.mass * GRAVITY),
+            roll: 0.0,
+            seated: 0.0,
+            creeping: Held::default(),
+            sliding: Held::default(),
+            leaning: Held::default(),
+            falling: Held::default(),
+            apart: Held::default(),
+        }
+    }
+
     /// One step of `dt` s with the rotors' collective (N).
     pub fn step(&mut self, motion: Option<Motion>, support: &Support, collective: f32, dt: f32) {
-        self.follow(motion, dt);
+        self.follow(motion, collective / support.weight(), dt);
         let idle = support.force() < LEAVING_FORCE;
         let low = collective < FALL_SHARE * support.weight();
         self.falling.step(idle && low, dt);
+        self.apart.step(support.force() <= RESTING_FORCE, dt);
     }
 
-    fn follow(&mut self, motion: Option<Motion>, dt: f32) {
+    fn follow(&mut self, motion: Option<Motion>, share: f32, dt: f32) {
         let Some(motion) = motion else {
             (self.sliding, self.leaning) = Default::default();
             return;
         };
         (self.roll, _, _) = motion.q.to_euler();
-        let lean = self.roll.abs();
         let outward = if self.roll > 0.0 {
             motion.rate.x
         } else {
             -motion.rate.x
         };
-        let grows = lean > GROWING_LEAN && outward > GROWING_RATE;
+        let grows = outward > GROWING_RATE && !self.seat.holds(self.roll, share);
+        let lean = self.roll.abs();
         self.sliding.step(lean > HOPELESS_LEAN || grows, dt);
+        self.seated = lean.min(self.seated);
+        let creeps = lean > self.seated + CREEP && outward > CREEP_RATE;
+        self.creeping.step(creeps, dt);
         self.leaning
-            .step(lean > TOUCH_LEAN && outward > -LEVELLING_RATE, dt);
+            .step(!self.may_close() && outward > -LEVELLING_RATE, dt);
+    }
+
+    /// Friction holds the vehicle while the arms close.
+    pub fn may_close(&self) -> bool {
+        self.seat.holds(self.roll, self.closing_share)
     }
 
     /// The lean is or will be beyond closing arms.
@@ -63,9 +103,24 @@ impl Lean {
         self.sliding.time() >= SLIDE_TIME
     }
 
-    /// A vehicle about to perch leans at the touch.
-    pub fn slides_at_touch(&self, support: &Support) -> bool {
-        self.leaning.time() >= SLIDE_TIME && support.force() > RESTING_FORCE
+    /// The arms begin to close here.
+    pub fn sit(&mut self) {
+        self.seated = self.roll.abs();
+    }
+
+    /// The lean has grown since the arms began to close, and grows on: less friction than believed.
+    pub fn creeps(&self) -> bool {
+        self.creeping.time() >= SLIDE_TIME
+    }
+
+    /// A vehicle about to perch leans at the touch, or soon after it.
+    pub fn slides_at_touch(&self) -> bool {
+        self.leaning.time() >= SLIDE_TIME && self.apart.time() < TOUCH_MEMORY
+    }
+
+    /// Friction does not hold the vehicle while the arms let go: the rotors must lift it off.
+    pub fn lifts_off(&self) -> bool {
+        !self.seat.holds(self.roll, self.release_share)
     }
 
     pub fn too_far_to_release(&self) -> bool {

@@ -6,17 +6,36 @@ use super::releasing::RELEASE_THROTTLE_MIN;
 use super::{Inputs, Reason, Setpoint};
 use crate::arming::ArmingInhibits;
 use crate::grip_memory::GripMemory;
+use crate::math::deg;
 use crate::params::Params;
 use crate::rc::Sticks;
+use crate::support::Held;
+
+/// Turn of the body since the perch that is a slip, rad, and the time that it must last, s: a push passes.
+const SLIP_ANGLE: f32 = deg(5.0);
+const SLIP_TIME: f32 = 1.0;
 
 /// See [`super::Mode::Perched`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Perched {
     /// Closed by the clamp loops, or held by the gears.
     pub grip_memory: GripMemory,
+    /// Roll and pitch at the first look, rad.
+    attitude: Option<[f32; 2]>,
+    /// Turned away from it.
+    turned: Held,
 }
 
 impl Perched {
+    /// On `grip_memory`, wherever the body is now.
+    pub fn on(grip_memory: GripMemory) -> Self {
+        Self {
+            grip_memory,
+            attitude: None,
+            turned: Held::default(),
+        }
+    }
+
     /// The pilot validly asks to open the arms.
     pub fn release_asked(step: &Step<'_>) -> bool {
         let Context {
@@ -40,6 +59,8 @@ impl Perched {
             Some(Reason::ClampSilent)
         } else if !context.grasps(i, self.grip_memory) {
             Some(Reason::GripLost)
+        } else if self.turned.time() >= SLIP_TIME {
+            Some(Reason::Slips)
         } else if i.sticks.is_none() {
             Some(Reason::RADIO_LOST)
         } else if i.motion.is_none() {
@@ -61,6 +82,16 @@ impl Perched {
 }
 
 impl Behaviour for Perched {
+    fn observe(&mut self, step: &mut Step<'_>) {
+        let Some(motion) = step.inputs.motion else {
+            return;
+        };
+        let (roll, pitch, _) = motion.q.to_euler();
+        let [first_roll, first_pitch] = *self.attitude.get_or_insert([roll, pitch]);
+        let turned = (roll - first_roll).abs().max((pitch - first_pitch).abs());
+        self.turned.step(turned > SLIP_ANGLE, step.dt);
+    }
+
     fn grip_memory(&self) -> GripMemory {
         self.grip_memory
     }

@@ -68,6 +68,12 @@ reasons! {
     GripNotProven = "grip not proven in time",
     /// The rotors come back because the arms do not hold any more.
     GripLostSpooling = "grip lost while spooling down",
+    /// Resting on the pipe: the crown is to the left.
+    CrownLeft = "on the pipe: crown to the left",
+    /// Resting on the pipe: the crown is to the right.
+    CrownRight = "on the pipe: crown to the right",
+    /// Perched: the body has turned about the pipe since the grip was proven.
+    Slips = "slipping round the pipe",
     /// Perched: nothing is known of the grip.
     ClampSilent = "clamp loop silent",
     /// Perched: an arm does not hold any more.
@@ -78,6 +84,8 @@ reasons! {
     ArmSwitchOff = "arm switch off",
     /// The arms are not opened: the belly would slide before the rotors carry.
     LeansTooFar = "leaning too far to let go",
+    /// The arms open while the rotors lift it off: the belly would slide.
+    LiftsOff = "leaning: lifting off",
     /// A release takes less throttle.
     ThrottleTooHigh = "throttle too high to release",
     /// The arms are open, and their sensors still press.

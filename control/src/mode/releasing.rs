@@ -53,6 +53,11 @@ impl Releasing {
         !self.opening && self.spooled(step.dt) >= 1.0 && step.context.lean.too_far_to_release()
     }
 
+    /// Rotors are up, and friction would not hold the vehicle while the arms open.
+    pub fn lifts_off(&self, step: &Step<'_>) -> bool {
+        !self.opening && self.spooled(step.dt) >= 1.0 && step.context.lean.lifts_off()
+    }
+
     /// Share of the collective after a step of `dt` s.
     pub fn spooled(&self, dt: f32) -> f32 {
         clamp(self.share + dt / SPOOL_TIME, 0.0, 1.0)

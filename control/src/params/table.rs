@@ -233,6 +233,14 @@ params! {
     throttle_low = 0.05, "1", 0.01 ..= 0.2;
     /// Throttle below which the landing on the pipe may start; the paper closes at about 30 %.
     perch_thr_max = 0.42, "1", 0.1 ..= 0.6;
+    /// Share of the weight that the rotors go on carrying from the first sure touch until the grip is proven, at most: less
+    /// presses the belly on, more steers (measured on the simulated pipe).
+    perch_lift = 0.375, "1", 0.1 ..= 0.6;
+    /// Friction of the belly pads on the pipe: 0.3 of wet or oily steel, 0.6 of rubber on dry paint (assumed). It sets the
+    /// leans up to which the arms close and let go; a lean that grows ends a closing at any friction.
+    pipe_friction = 0.6, "1", 0.1 ..= 1.5;
+    /// Diameter of the pipe (paper); the leans above change by 1.5 degrees from 0.2 to 0.4 m.
+    pipe_diameter = 0.3, "m", 0.1 ..= 2.0;
 
     /// Contact pressure of a proven grip (paper).
     grip_pressure = 950.0, "Pa", 100.0 ..= 5000.0;
@@ -274,8 +282,8 @@ params! {
     /// Speed at which an arm is bent down until it touches; the force's rise follows from infill,
     /// gain_k and tendon_bend, then from the bending measured in the closing.
     clamp_approach = 0.7, "rad/s", 0.05 ..= 3.0;
-    /// Fastest fall of the tendon force on release.
-    clamp_release = 80.0, "N/s", 5.0 ..= 500.0;
+    /// Fastest fall of the tendon force on release: an escape waits for it.
+    clamp_release = 240.0, "N/s", 5.0 ..= 500.0;
     /// Trim of servo 1 against its reel's release mark; moves both ends of its travel.
     servo_trim_1 = 0.0, "us", -50.0 ..= 50.0;
     /// Trim of servo 2.

@@ -156,12 +156,34 @@ fn on_the_pipe_each_moment_keeps_within_its_own_lever() {
         let Demand::Resting(wrench) = bench.run(500, resting(thrust), 0) else {
             panic!("not at rest")
         };
-        let share = 0.4 * thrust;
-        assert!((wrench.roll - share * p.arm_d).abs() < 1e-6, "{wrench:?}");
-        assert!((wrench.pitch + share * p.arm_b).abs() < 1e-6, "{wrench:?}");
+        assert!((wrench.roll - 0.6 * thrust * p.arm_d).abs() < 1e-6, "{wrench:?}");
+        assert!((wrench.pitch + 0.4 * thrust * p.arm_b).abs() < 1e-6, "{wrench:?}");
         assert!(wrench.yaw == 0.0 && wrench.thrust == thrust);
     }
     assert!(bench.control.rate.integral() == Vec3::ZERO);
+}
+
+#[test]
+fn on_the_pipe_a_lean_meets_twice_the_moment_of_the_air() {
+    // Little enough for no limit: 1 mrad.
+    let (roll, pitch, yaw_rate, thrust) = (1e-3, 1e-3, 0.0, 8.0);
+    let angle = Setpoint::Angle {
+        roll,
+        pitch,
+        yaw_rate,
+        thrust,
+    };
+    let Demand::Wrench(air) = Bench::new().run(1, angle, 0) else {
+        panic!("not in the air")
+    };
+    let Demand::Resting(pipe) = Bench::new().run(1, Setpoint::Resting { roll, pitch, thrust }, 0) else {
+        panic!("not at rest")
+    };
+    assert!(
+        air.roll > 0.0 && (pipe.roll / air.roll - 2.0).abs() < 0.01,
+        "{pipe:?} {air:?}"
+    );
+    assert!((pipe.pitch / air.pitch - 1.0).abs() < 0.01, "{pipe:?} {air:?}");
 }
 
 #[test]

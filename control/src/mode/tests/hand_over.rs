@@ -5,8 +5,9 @@ use crate::grip::ArmState;
 use crate::math::GRAVITY;
 use crate::mode::demand::HAND_OVER_TIME;
 use crate::mode::failsafe::RESUME_TIME;
-use crate::mode::hold::SPOOL_TIME;
+use crate::mode::hold::SPOOL_DOWN_TIME;
 use crate::mode::*;
+use crate::params::Params;
 use crate::rc::StickMode;
 
 /// Four rotors of 8.3 N.
@@ -48,19 +49,21 @@ fn a_radio_that_comes_back_in_direct_mode_takes_the_collective_over_without_a_st
 }
 
 #[test]
-fn on_the_pipe_the_throttle_is_the_pilots_until_the_grip_is_proven_and_then_none() {
-    let mut r = Rig::touched();
-    r.run(0.2);
-    assert!(
-        (r.out.rotors.thrust() - 0.3 * FULL).abs() < 1.5,
-        "still handed over: {}",
-        r.out.rotors.thrust()
-    );
+fn on_the_pipe_the_throttle_is_the_pilots_up_to_a_share_of_the_weight_until_the_grip_is_proven_and_then_none()
+{
+    let weight = Params::default().mass * GRAVITY;
+    for (throttle, wanted) in [(0.3, 0.375 * weight), (0.4, 0.375 * weight), (0.15, 0.15 * FULL)] {
+        let mut r = Rig::touched();
+        r.sticks().throttle = throttle;
+        r.run(0.05);
+        let thrust = r.out.rotors.thrust();
+        assert!((thrust - wanted).abs() < 1e-3, "at once: {thrust} of {wanted} N");
+    }
     let mut r = Rig::clamping();
     r.run(1.0);
-    assert!((r.out.rotors.thrust() - 0.3 * FULL).abs() < 1e-3);
+    assert!((r.out.rotors.thrust() - 0.375 * weight).abs() < 1e-3);
     r.grip(true, false, ArmState::Holding, 950.0);
-    r.expect(SPOOL_TIME + 0.05, Mode::Clamping);
+    r.expect(SPOOL_DOWN_TIME + 0.05, Mode::Clamping);
     assert_eq!(r.out.rotors, Setpoint::Stop, "not a thrust of zero");
 }
 
@@ -120,7 +123,7 @@ fn the_attitude_held_follows_the_present_one_while_the_rotors_spool_down() {
             calibrated: true,
             ..Motion::default()
         });
-        r.run(0.2);
+        r.run(1.0);
         let Setpoint::Resting {
             roll: held,
             pitch: pitched,
@@ -129,9 +132,9 @@ fn the_attitude_held_follows_the_present_one_while_the_rotors_spool_down() {
         else {
             panic!("{:?}", r.out.rotors)
         };
-        // One time constant of 0.2 s in steps of 10 ms: 1 - (20/21)^20 = 0.623; the arc tangent is off by 3.5e-3.
-        assert!((held - 0.623 * roll).abs() < 4e-3, "{held} of {roll}");
-        assert!((pitched - 0.623 * pitch).abs() < 4e-3, "{pitched} of {pitch}");
-        r.expect(SPOOL_TIME + 0.4, Mode::Perched);
+        // One time constant of 1 s in steps of 10 ms: 1 - (100/101)^100 = 0.630; the arc tangent is off by 3.5e-3.
+        assert!((held - 0.630 * roll).abs() < 4e-3, "{held} of {roll}");
+        assert!((pitched - 0.630 * pitch).abs() < 4e-3, "{pitched} of {pitch}");
+        r.expect(SPOOL_DOWN_TIME - 0.5, Mode::Perched);
     }
 }

@@ -7,6 +7,7 @@ use crate::mode::escaping::FREE_MAX;
 use crate::mode::escaping::TAKE_OVER_SHARE;
 use crate::mode::escaping::TAKE_OVER_TIME;
 use crate::mode::*;
+use crate::params::Params;
 use crate::rc::ArmChoice;
 
 impl Rig {
@@ -40,8 +41,8 @@ fn a_lean_that_grows_or_is_hopeless_ends_the_closing() {
         (-20.0, -0.5, true),
         (26.0, 0.0, true),
         (-26.0, 0.0, true),
-        // Rocking on the pads; returning.
-        (10.0, 0.5, false),
+        // Rocking on the pads; slow; returning.
+        (10.0, 0.05, false),
         (20.0, 0.1, false),
         (20.0, -0.5, false),
         (-20.0, 0.5, false),
@@ -58,6 +59,12 @@ fn a_lean_that_grows_or_is_hopeless_ends_the_closing() {
             assert!(!ends || r.out.reason == Some(Reason::SlidesOff));
         }
     }
+    // Pressed, and not proven.
+    let mut r = Rig::clamping();
+    r.grip(false, false, ArmState::Touching, 800.0);
+    r.run(0.5);
+    r.leans(20.0, 0.5);
+    r.expect(0.05, Mode::Escaping);
     // Holding arms need no rotors.
     let mut r = Rig::clamping();
     r.grip(true, false, ArmState::Holding, 950.0);
@@ -69,11 +76,11 @@ fn a_lean_that_grows_or_is_hopeless_ends_the_closing() {
 #[test]
 fn a_touch_that_leans_too_much_is_left_before_an_arm_closes() {
     for (degrees, carried, switch, leaves) in [
-        (14.0, true, true, true),
-        (-14.0, true, true, true),
-        (12.0, true, true, false),
-        (14.0, false, true, false),
-        (14.0, true, false, false),
+        (17.0, true, true, true),
+        (-17.0, true, true, true),
+        (14.0, true, true, false),
+        (17.0, false, true, false),
+        (17.0, true, false, false),
     ] {
         let mut r = Rig::flying();
         r.sticks().throttle = 0.3;
@@ -178,7 +185,7 @@ fn an_escape_outlives_the_radio_until_the_vehicle_is_clear() {
     r.carried = false;
     r.leans(0.0, 0.0);
     r.grip(false, true, ArmState::Free, 0.0);
-    r.expect(0.7, Mode::Escaping);
+    r.expect(0.6, Mode::Escaping);
     r.expect(0.2, Mode::Failsafe);
     assert_eq!(r.out.reason, Some(Reason::RADIO_LOST));
     let mut r = Rig::escaping();
@@ -269,9 +276,9 @@ fn the_arm_switch_ends_an_escape_as_it_ends_a_release() {
 #[test]
 fn no_arm_lets_go_beyond_the_lean_at_which_the_belly_stays() {
     for (degrees, after) in [
-        (16.0, Mode::Releasing),
-        (18.0, Mode::Perched),
-        (-18.0, Mode::Perched),
+        (27.0, Mode::Releasing),
+        (29.0, Mode::Perched),
+        (-29.0, Mode::Perched),
     ] {
         let mut r = Rig::perched();
         r.leans(degrees, 0.0);
@@ -288,7 +295,7 @@ fn no_arm_lets_go_beyond_the_lean_at_which_the_belly_stays() {
     // The lean grows in spool-up.
     let mut r = Rig::releasing();
     r.run(1.0);
-    r.leans(18.0, 0.0);
+    r.leans(29.0, 0.0);
     r.expect(0.3, Mode::Releasing);
     for _ in 0..30 {
         r.step();
@@ -306,15 +313,136 @@ fn no_arm_lets_go_beyond_the_lean_at_which_the_belly_stays() {
     let mut r = Rig::clamping();
     r.grip(true, false, ArmState::Holding, 950.0);
     r.run(0.5);
-    r.leans(18.0, 0.0);
+    r.leans(29.0, 0.0);
     r.sticks().perch_switch = false;
     r.expect(0.5, Mode::Clamping);
     assert_eq!(r.out.reason, Some(Reason::LeansTooFar));
-    r.expect(2.0, Mode::Perched);
+    r.expect(3.5, Mode::Perched);
     // Upright: a release.
     let mut r = Rig::clamping();
     r.grip(true, false, ArmState::Holding, 950.0);
     r.run(0.5);
     r.sticks().perch_switch = false;
     r.expect(0.1, Mode::Releasing);
+}
+
+#[test]
+fn a_lean_that_friction_does_not_hold_is_lifted_off_as_the_arms_open() {
+    for (degrees, lifted) in [(14.0, false), (-14.0, false), (18.0, true), (-18.0, true)] {
+        let mut r = Rig::releasing();
+        r.leans(degrees, 0.0);
+        r.expect(1.3, Mode::Releasing);
+        assert_eq!(r.out.tendons, ClampCommand::Close { arms: ArmChoice::All });
+        let mode = r.run(0.3);
+        assert_eq!(mode == Mode::Escaping, lifted, "{degrees}: {mode:?}");
+        if lifted {
+            // Rotors first: they begin with the least thrust of a release and reach more than the weight.
+            assert_eq!(r.out.reason, Some(Reason::LiftsOff));
+            assert_eq!(r.out.tendons, ClampCommand::Release);
+            r.run(0.7);
+            assert!(r.out.rotors.thrust() > 1.3 * r.weight());
+        }
+    }
+}
+
+#[test]
+fn a_lean_that_creeps_out_while_the_arms_close_is_left() {
+    for (from, to, rate, leaves) in [
+        (0.0, 7.0, 0.2, true),
+        (10.0, 17.0, 0.2, true),
+        (-10.0, -17.0, -0.2, true),
+        // Not far enough; standing; rocking back.
+        (10.0, 14.0, 0.2, false),
+        (0.0, 7.0, 0.05, false),
+        (-10.0, -17.0, 0.2, false),
+    ] {
+        let mut r = Rig::touched();
+        r.grip(false, false, ArmState::Closing, 0.0);
+        r.leans(from, 0.0);
+        r.expect(0.4, Mode::Clamping);
+        r.leans(to, rate);
+        let mode = r.run(0.05);
+        assert_eq!(
+            mode == Mode::Escaping,
+            leaves,
+            "{from} to {to} at {rate}: {mode:?}"
+        );
+    }
+}
+
+#[test]
+fn a_touch_that_is_no_seat_is_left_and_a_bounce_is_not() {
+    for (seconds, leaves) in [(0.15, false), (0.5, true)] {
+        let mut r = Rig::touched();
+        r.carried = false;
+        let mode = r.run(seconds);
+        assert_eq!(mode == Mode::Escaping, leaves, "{seconds} s: {mode:?}");
+    }
+    // What slides off soon after a touch is left where nothing carries any more.
+    let mut r = Rig::flying();
+    r.sticks().throttle = 0.3;
+    r.sticks().perch_switch = true;
+    r.run(1.0);
+    r.carried = true;
+    r.leans(5.0, 0.9);
+    r.expect(0.1, Mode::Flight);
+    r.carried = false;
+    r.leans(17.0, 0.9);
+    r.expect(0.1, Mode::Escaping);
+}
+
+#[test]
+fn a_lower_friction_refuses_smaller_leans() {
+    for (friction, lean, refused) in [(0.6, 14.0, false), (0.3, 10.0, true), (0.3, 7.0, false)] {
+        let mut r = Rig::with(Params {
+            pipe_friction: friction,
+            ..Params::default()
+        });
+        r.fly();
+        r.sticks().throttle = 0.3;
+        r.sticks().perch_switch = true;
+        r.run(1.0);
+        r.carried = true;
+        r.leans(lean, 0.0);
+        let mode = r.run(0.1);
+        assert_eq!(mode == Mode::Escaping, refused, "{friction} {lean}: {mode:?}");
+    }
+}
+
+#[test]
+fn the_pilot_reads_on_which_side_the_crown_is() {
+    // 0.3 N m over 17.7 N less 6.6 N: 27 mm; 0.1 N m: 9 mm.
+    for (moment, shown) in [
+        (-0.3, Some(Reason::CrownLeft)),
+        (0.3, Some(Reason::CrownRight)),
+        (0.1, None),
+        (f32::NAN, None),
+    ] {
+        let mut r = Rig::clamping();
+        r.inputs.roll_moment = moment;
+        r.run(1.0);
+        assert_eq!(r.out.reason, shown, "{moment} N m");
+    }
+}
+
+#[test]
+fn a_perched_vehicle_that_turns_round_the_pipe_says_so() {
+    for (degrees, seconds, slips) in [
+        (6.0, 1.2, true),
+        (-6.0, 1.2, true),
+        (4.0, 5.0, false),
+        (6.0, 0.5, false),
+    ] {
+        let mut r = Rig::perched();
+        r.leans(degrees, 0.0);
+        r.expect(seconds, Mode::Perched);
+        assert_eq!(
+            r.out.reason == Some(Reason::Slips),
+            slips,
+            "{degrees} for {seconds} s"
+        );
+        r.leans(0.0, 0.0);
+        r.expect(0.1, Mode::Perched);
+        assert_eq!(r.out.reason, None);
+    }
 }

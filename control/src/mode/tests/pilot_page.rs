@@ -10,9 +10,11 @@ use std::{format, fs};
 
 use crate::arming::{ArmingInhibit, GESTURE_TIME, TILT_MAX};
 use crate::grip_fault::GripFault;
+use crate::math::deg;
 use crate::mode::*;
 use crate::params::Params;
 use crate::rc::{CHANNELS, RAW_CENTRE, RAW_HIGH, RAW_LOW};
+use crate::seat::Seat;
 
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/pilot.md");
 
@@ -60,7 +62,11 @@ fn on_reason(reason: Reason) -> &'static str {
         Reason::GripLost => "Let go and fly home, or fetch it.",
         Reason::PerchSwitchNotOn => "Perch on, then off.",
         Reason::ArmSwitchOff => "Arm switch on.",
+        Reason::CrownLeft => "It stands beside the crown. If it slides off, come down further left.",
+        Reason::CrownRight => "It stands beside the crown. If it slides off, come down further right.",
+        Reason::Slips => "Let go and land again nearer the crown, or fetch it.",
         Reason::LeansTooFar => "It stays closed: fetch it by hand.",
+        Reason::LiftsOff => "It lifts off by itself as the arms open: throttle to hover.",
         Reason::ThrottleTooHigh => "Less throttle.",
         Reason::ArmsStuck => "Keep the throttle, or perch on to hold again. Something holds the tendons.",
     }
@@ -193,6 +199,10 @@ fn numbers() -> [String; 14] {
     let percent = |share: f32| format!("{:.0} %", share * 100.0);
     let degrees = |angle: f32| format!("{:.0}°", angle.to_degrees());
     let most = percent(p.perch_thr_max);
+    let seat = Seat::from_params(&p);
+    let level = (0..90)
+        .take_while(|&lean| seat.holds(deg(lean as f32), p.perch_lift))
+        .count();
     let least = percent(releasing::RELEASE_THROTTLE_MIN);
     [
         format!("yaw full right, for {GESTURE_TIME:.0} s"),
@@ -200,7 +210,7 @@ fn numbers() -> [String; 14] {
         format!("idle for at most {:.0} s", armed::IDLE_MAX),
         format!("disarms by itself {:.0} s after", landed::LANDED_TIME),
         format!("throttle at or below {most}"),
-        format!("within {} of level", degrees(flight::PERCH_LEAN_MAX)),
+        format!("within {} of level", degrees(deg(level as f32 - 1.0))),
         format!("After {} s the arms close", contact::CONTACT_TIME),
         format!("at most {:.0} s", p.clamp_timeout),
         format!("between {least} and {most}"),

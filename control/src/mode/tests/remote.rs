@@ -36,11 +36,11 @@ impl Rig {
         assert_eq!((r.remote(Grab), r.out.mode), (None, Mode::Flight));
         r.expect(0.5, Mode::Flight);
         r.carried = true;
-        r.expect(0.45, Mode::Contact);
+        r.expect(0.17, Mode::Contact);
         r.grip(false, false, ArmState::Closing, 0.0);
         r.expect(3.5, Mode::Clamping);
         r.grip(true, false, ArmState::Holding, 950.0);
-        r.expect(3.0, Mode::Perched);
+        r.expect(4.0, Mode::Perched);
         r
     }
 

@@ -5,7 +5,7 @@ use crate::grip::ArmState;
 use crate::math::GRAVITY;
 use crate::mode::clamping::STOP_TIME;
 use crate::mode::contact::CONTACT_TIME;
-use crate::mode::hold::SPOOL_TIME;
+use crate::mode::hold::SPOOL_DOWN_TIME;
 use crate::mode::*;
 use crate::params::Params;
 use crate::rc::ArmChoice;
@@ -25,7 +25,10 @@ pub(super) struct Rig {
 
 impl Rig {
     pub(super) fn new() -> Self {
-        let params = Params::default();
+        Self::with(Params::default())
+    }
+
+    pub(super) fn with(params: Params) -> Self {
         let inputs = Inputs {
             sticks: Some(Sticks::default()),
             motion: Some(Motion::default()),
@@ -93,6 +96,12 @@ impl Rig {
 
     pub(super) fn armed() -> Self {
         let mut r = Self::new();
+        r.arm_at_rest();
+        r
+    }
+
+    fn arm_at_rest(&mut self) {
+        let r = self;
         r.expect(0.5, Mode::Calibrating);
         r.inputs.motion = Some(Motion {
             calibrated: true,
@@ -108,15 +117,21 @@ impl Rig {
         r.expect(0.2, Mode::Armed);
         assert_eq!(r.out.rotors, Setpoint::Idle);
         r.sticks().yaw = 0.0;
-        r
     }
 
     pub(super) fn flying() -> Self {
-        let mut r = Self::armed();
+        let mut r = Self::new();
+        r.fly();
+        r
+    }
+
+    /// Arms and takes off.
+    pub(super) fn fly(&mut self) {
+        self.arm_at_rest();
+        let r = self;
         r.sticks().throttle = 0.53;
         r.carried = false;
         r.expect(1.0, Mode::Flight);
-        r
     }
 
     pub(super) fn touched() -> Self {
@@ -125,15 +140,15 @@ impl Rig {
         r.sticks().perch_switch = true;
         r.expect(1.0, Mode::Flight);
         r.carried = true;
-        r.expect(0.2, Mode::Flight);
-        r.expect(0.25, Mode::Contact);
+        r.expect(0.02, Mode::Flight);
+        r.expect(0.15, Mode::Contact);
         r
     }
 
     pub(super) fn clamping() -> Self {
         let mut r = Self::touched();
         r.grip(false, false, ArmState::Closing, 0.0);
-        r.expect(CONTACT_TIME, Mode::Clamping);
+        r.expect(CONTACT_TIME + 0.1, Mode::Clamping);
         assert_eq!(r.out.tendons, ClampCommand::Close { arms: ArmChoice::All });
         r
     }
@@ -142,7 +157,7 @@ impl Rig {
         let mut r = Self::clamping();
         r.expect(3.0, Mode::Clamping);
         r.grip(true, false, ArmState::Holding, 950.0);
-        r.expect(SPOOL_TIME + STOP_TIME + 0.1, Mode::Perched);
+        r.expect(SPOOL_DOWN_TIME + STOP_TIME + 0.1, Mode::Perched);
         r.sticks().throttle = 0.0;
         r.expect(5.0, Mode::Perched);
         assert_eq!(r.out.reason, None);

@@ -117,7 +117,7 @@ fn a_grip_lost_while_spooling_down_brings_the_rotors_back() {
     assert!(r.out.rotors.thrust() < low, "outside its tolerance, but it holds");
     r.grip(false, false, ArmState::Touching, 100.0);
     r.expect(2.0, Mode::Clamping);
-    assert!(r.out.rotors.thrust() > 9.9);
+    assert!(r.out.rotors.thrust() > 6.6);
 }
 
 #[test]
@@ -213,13 +213,13 @@ fn a_lost_radio_on_the_pipe_keeps_closing_and_holds() {
         r.expect(CONTACT_TIME + 0.05, Mode::Clamping);
         assert_eq!(r.out.tendons, ClampCommand::Close { arms: ArmChoice::All });
         r.grip(true, false, ArmState::Holding, 950.0);
-        r.expect(3.0, Mode::Perched);
+        r.expect(4.0, Mode::Perched);
     }
     let mut r = Rig::releasing();
     let sticks = r.inputs.sticks.take();
-    r.expect(3.0, Mode::Perched);
+    r.expect(4.0, Mode::Perched);
     r.inputs.sticks = sticks;
-    r.expect(3.0, Mode::Perched);
+    r.expect(4.0, Mode::Perched);
     assert_eq!(r.out.reason, Some(Reason::PerchSwitchNotOn));
     let mut r = Rig::clamping();
     r.inputs.sticks = None;
@@ -373,7 +373,7 @@ fn a_silent_data_ready_line_on_the_pipe_stays_there() {
         r.run(0.5);
         // No cancelling once the arms hold.
         r.sticks().perch_switch = false;
-        r.expect(3.0, Mode::Perched);
+        r.expect(4.0, Mode::Perched);
         assert_eq!(
             (r.out.reason, r.out.rotors),
             (Some(Reason::LINE_SILENT), Setpoint::Stop)
