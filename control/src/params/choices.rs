@@ -282,7 +282,7 @@ mod tests {
                 assert!(choice.name.parse::<f32>().is_err(), "{}", choice.name);
             }
         }
-        assert_eq!(enumerated, 11);
+        assert_eq!(enumerated, 13);
     }
 
     #[test]

@@ -86,7 +86,7 @@ const GROUPS: [Group; 10] = [
     },
     Group {
         name: "flow",
-        what: "flow about the body's x and y in deg/s, its quality of 255, range in m",
+        what: "flow about the body's x and y, deg/s; quality of 255; range, m",
         columns: "       x       y quality   range",
         places: 2,
         read: flow,
