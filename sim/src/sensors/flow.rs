@@ -175,7 +175,7 @@ impl FlowModule {
                 distance = Some(f64::from(held));
             }
             Some(FlowFault::RangeJumps) => {
-                let high = self.ms / 300 % 2 == 0;
+                let high = (self.ms / 300).is_multiple_of(2);
                 distance = distance.map(|d| if high { d + 600.0 } else { d });
             }
         }
