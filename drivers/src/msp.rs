@@ -106,7 +106,7 @@ enum Start {
 }
 
 /// Frames out of bytes, however these are cut. After garbage it looks again at every byte that it holds, so that none of
-/// the next frame is lost: at most [`FRAME`] looks at [`FRAME`] bytes.
+/// the next frame is lost: at most as many looks as a frame has bytes at each.
 #[derive(Clone, Debug, Default)]
 pub struct Parser {
     held: Vec<u8, FRAME>,
