@@ -7,11 +7,11 @@ use sophie_sim::flight::fly;
 use sophie_sim::record::{FlightRecord, Sample, Silent};
 use sophie_sim::scenario::{FlowFault, PositionSensor, Scenario, Step};
 
-use super::{held, settled};
+use super::{NEVER_HELD, held, never_held, settled};
 
 /// What the hold may be: velocity, m/s RMS, level; drift within 10 s, m RMS over all flights; height, m RMS. Wanted are 0.05
-/// m/s: the law swings the vehicle at 8 rad/s in these gusts, by flow and by pose alike (docs/hold.md).
-const SPEED_RMS: f64 = 0.25;
+/// m/s: these gusts alone move a vehicle held by poses by 0.08 (docs/hold.md).
+const SPEED_RMS: f64 = 0.14;
 const DRIFT_RMS: f64 = 0.10;
 const HEIGHT_RMS: f64 = 0.03;
 /// Time over which the drift counts, s.
@@ -49,9 +49,14 @@ fn errors(samples: &[&Sample]) -> [f64; 3] {
 }
 
 fn judge(seeds: impl Iterator<Item = u64>, seconds: f64) {
-    let (mut drifts, mut wrong) = (vec![], vec![]);
+    let (mut drifts, mut wrong, mut never) = (vec![], vec![], 0);
     for seed in seeds {
         let record = fly(&by_flow(seed, seconds), &mut Silent);
+        if never_held(seed, &record) {
+            never += 1;
+            assert!(never <= NEVER_HELD);
+            continue;
+        }
         assert!(record.outcome.accomplished, "{seed}: {}", record.outcome.reason);
         let [speed, drift, height] = errors(&settled(&record));
         println!("{seed}: {speed:.3} m/s RMS, drift {drift:.3} m RMS within 10 s, height {height:.3} m RMS");
