@@ -8,7 +8,7 @@ use super::disarmed::Disarmed;
 use super::escaping::Escaping;
 use super::failsafe::Failsafe;
 use super::flight::Flight;
-use super::hold::{Hold, Spool};
+use super::hold::{Hold, Spool, pressed};
 use super::holding;
 use super::landed::Landed;
 use super::perched::Perched;
@@ -174,7 +174,14 @@ pub fn giving_up(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Escapi
     let from_thrust = step.context.collective.now();
     let least = release_thrust(&step.context.params);
     let grip_memory = from.behaviour().grip_memory();
-    Escaping::leaving(step.inputs, grip_memory, Some(from_thrust.max(least)))
+    let pressed = grip_memory
+        .arms()
+        .is_some_and(|arms| pressed(step.inputs.grip, arms, &step.context.params));
+    Escaping::leaving(
+        step.inputs,
+        grip_memory,
+        pressed.then_some(from_thrust.max(least)),
+    )
 }
 
 /// The failsafe acts for the reason of the transition.

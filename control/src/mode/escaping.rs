@@ -94,6 +94,10 @@ impl Behaviour for Escaping {
     fn observe(&mut self, step: &mut Step<'_>) {
         let context = &step.context;
         self.climb -= context.sinking * step.dt;
+        if context.lean.slides() || context.lean.falls() {
+            // Nothing stands there any more that would be worth the wait.
+            self.from = None;
+        }
         // Below this only the arms keep the vehicle on the pipe.
         self.opening |= context.collective.now() >= release_thrust(&context.params);
         if self.opening && step.arms_free() {

@@ -110,13 +110,25 @@ impl Spool {
 
 /// Every chosen arm has at least [`HELD_SHARE`] of the grip pressure.
 pub fn held(grip: Option<GripState>, arms: ArmChoice, p: &Params) -> bool {
-    let firm = |a: &ArmGrip| a.pressure >= HELD_SHARE * p.grip_pressure && a.state != ArmState::Faulty;
+    let firm = |a: &ArmGrip| presses(a, p) && a.state != ArmState::Faulty;
     grip.is_some_and(|g| {
         g.arms
             .iter()
             .zip(arms.mask())
             .all(|(a, chosen)| !chosen || firm(a))
     })
+}
+
+/// Nothing is known of a chosen arm, or it presses: its tendon must pay out before the rotors pull.
+pub fn pressed(grip: Option<GripState>, arms: ArmChoice, p: &Params) -> bool {
+    grip.is_none_or(|g| {
+        let mut chosen = g.arms.iter().zip(arms.mask());
+        chosen.any(|(a, chosen)| chosen && (presses(a, p) || a.state == ArmState::Faulty))
+    })
+}
+
+fn presses(arm: &ArmGrip, p: &Params) -> bool {
+    arm.pressure >= HELD_SHARE * p.grip_pressure
 }
 
 /// Reason for which a chosen arm will never hold.

@@ -93,7 +93,7 @@ const GROUPS: [Group; 10] = [
     },
     Group {
         name: "pos",
-        what: "position m, velocity m/s, wind m/s2, age of the newest pose or flow s",
+        what: "position m, velocity m/s, wind m/s2, age of the newest source s",
         columns: "       x       y       z      vx      vy      vz      wx      wy     age",
         places: 2,
         read: position,
