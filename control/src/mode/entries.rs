@@ -176,7 +176,7 @@ pub fn giving_up(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Escapi
     let grip_memory = from.behaviour().grip_memory();
     let pressed = grip_memory
         .arms()
-        .is_some_and(|arms| pressed(step.inputs.grip, arms, &step.context.params));
+        .is_some_and(|arms| pressed(step.inputs.grip, arms));
     Escaping::leaving(
         step.inputs,
         grip_memory,

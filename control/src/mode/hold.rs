@@ -110,7 +110,7 @@ impl Spool {
 
 /// Every chosen arm has at least [`HELD_SHARE`] of the grip pressure.
 pub fn held(grip: Option<GripState>, arms: ArmChoice, p: &Params) -> bool {
-    let firm = |a: &ArmGrip| presses(a, p) && a.state != ArmState::Faulty;
+    let firm = |a: &ArmGrip| a.pressure >= HELD_SHARE * p.grip_pressure && a.state != ArmState::Faulty;
     grip.is_some_and(|g| {
         g.arms
             .iter()
@@ -119,16 +119,13 @@ pub fn held(grip: Option<GripState>, arms: ArmChoice, p: &Params) -> bool {
     })
 }
 
-/// Nothing is known of a chosen arm, or it presses: its tendon must pay out before the rotors pull.
-pub fn pressed(grip: Option<GripState>, arms: ArmChoice, p: &Params) -> bool {
+/// A chosen arm may press: its tendon must pay out before the rotors pull at it.
+pub fn pressed(grip: Option<GripState>, arms: ArmChoice) -> bool {
+    use ArmState::{Closing, Free, Releasing};
     grip.is_none_or(|g| {
         let mut chosen = g.arms.iter().zip(arms.mask());
-        chosen.any(|(a, chosen)| chosen && (presses(a, p) || a.state == ArmState::Faulty))
+        chosen.any(|(a, chosen)| chosen && !matches!(a.state, Free | Closing | Releasing))
     })
-}
-
-fn presses(arm: &ArmGrip, p: &Params) -> bool {
-    arm.pressure >= HELD_SHARE * p.grip_pressure
 }
 
 /// Reason for which a chosen arm will never hold.
