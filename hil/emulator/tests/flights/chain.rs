@@ -5,9 +5,9 @@ use sophie_emulator::chain::Window;
 use super::*;
 
 /// Most instructions of a step, from sensor transfer to motor frame.
-const MOST: u64 = 4780;
+const MOST: u64 = 4800;
 /// The F405's core lacks float minimum and selection.
-const MOST_SMALL: u64 = 5140;
+const MOST_SMALL: u64 = 5200;
 const STEPS: usize = 40;
 
 /// Requires at most `most` instructions per step from sensor transfer to motor frame, and a function for each.
