@@ -38,7 +38,7 @@ const DEVIATION_BOUNDS: (f32, f32) = (0.003, 0.5);
 const REFUSED_MAX: u32 = 25;
 /// Age of the newest pose from which on flow and range are taken, s.
 const POSE_FRESH: f32 = 0.2;
-/// Flows refused in a row after which the next is believed, a second at 50 Hz; one that is wrong for good is found out by
+/// Flows refused in a row after which the next is taken, a second at 50 Hz; one that is wrong for good is found out by
 /// its agreement with the inertial sensor.
 const FLOWS_REFUSED_MAX: u32 = 50;
 /// Share of a new heading's difference that the turn follows: 1 s at 50 Hz.
@@ -326,7 +326,7 @@ impl Track {
         self.ready |= known && self.fixes >= READY_FIXES;
     }
 
-    /// Compares a range of `distance` m, measured at `at` µs, with the height; beside a pose it only tells where the ground is.
+    /// Compares a range of `distance` m, measured at `at` µs, with the height; beside a pose it gives the height of the ground alone.
     fn take_range(&mut self, past: &mut Past, sight: &mut Sight, (at, distance): (u64, f32), posed: bool) {
         let Some(then) = past.at(at) else {
             return;

@@ -235,7 +235,7 @@ mod tests {
     proptest! {
         #[test]
         fn the_frame_after_any_garbage_is_read(garbage in prop::collection::vec(any::<u8>(), 0..60), m in message()) {
-            // Garbage that begins a frame may take bytes of the next one until the sum tells: three frames on, none does.
+            // Garbage that begins a frame may take bytes of the next one until the checksum fails: three frames on, none does.
             let frame = m.frame();
             let bytes = [&garbage[..], &frame[..], &frame[..], &frame[..]].concat();
             prop_assert_eq!(parsed(&bytes).last().copied(), Some(m));

@@ -76,6 +76,29 @@ fn a_closing_that_is_called_off_on_the_crown_flies_away() {
     }
 }
 
+/// Called off when the belly slides already and no arm presses: a slow rise of the collective lost this one.
+#[test]
+fn a_closing_that_is_called_off_in_a_slide_leaves_at_once() {
+    let touch = Touch {
+        offset: -0.0557,
+        lean: -0.0158,
+        sink: 0.346,
+        sideways: 0.0528,
+        yaw: 0.0023,
+        diameter: 0.2905,
+        friction: 0.328,
+        gust: 0.037,
+        throttle: 0.29,
+        cancel: 0.695,
+        seed: 1209,
+    };
+    let touched = fly(&touch).expect("the vehicle arms");
+    assert!(
+        touched.escaped && touched.end == End::Away && touched.drop < 0.3,
+        "{touched:?}"
+    );
+}
+
 /// Offset (m), lean (degrees, to the same side), sink and sideways speed (m/s, outward) of touches that flights of the
 /// default mission once failed with (docs/results.md): planted 5 cm beside the crown, where an arm struck the flank while
 /// the vehicle slid (seeds 100263 and 100858), and slid off before an arm closed (seed 770011 at 8 %).

@@ -11,7 +11,7 @@ pub enum Warning {
     ArmTilt,
     /// Cause of an unusual start of the board.
     Restarted(StartCause),
-    /// Flow or range cannot be believed.
+    /// Flow or range is left out as faulty.
     Sight(SightFault),
     /// The servo cannot give the force limit of the parameters.
     ServoWeak,

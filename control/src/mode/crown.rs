@@ -9,7 +9,7 @@ use crate::support::Support;
 
 /// Time constant of the offset, s.
 const SMOOTHING: f32 = 0.3;
-/// Least load on the pipe that tells an offset, N.
+/// Least load on the pipe from which an offset follows, N.
 const LOAD_MIN: f32 = 3.0;
 /// Largest offset that is shown as one, m, and the least that is worth showing.
 const OFFSET_MAX: f32 = 0.2;

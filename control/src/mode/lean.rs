@@ -1,6 +1,6 @@
 //! Lean across the pipe: whether the vehicle stays on the crown, slides off, or leans too far to let go.
 //!
-//! What friction holds is the [seat](crate::seat)'s; what it holds less than believed shows in a lean that grows.
+//! What friction holds is the [seat](crate::seat)'s; less friction than its parameter shows in a lean that grows.
 
 use super::Motion;
 use super::releasing::release_thrust;
@@ -15,7 +15,7 @@ const LEVELLING_RATE: f32 = 0.2;
 const HOPELESS_LEAN: f32 = deg(25.0);
 /// Rate of a growing lean, rad/s.
 const GROWING_RATE: f32 = 0.3;
-/// Growth of the lean since the arms began to close, rad, and its rate, rad/s, that mean less friction than believed: on 0.3
+/// Growth of the lean since the arms began to close, rad, and its rate, rad/s, that mean less friction than the parameter's: on 0.3
 /// of friction the arms' first touch starts a slide at 10 to 14°. A sound closing 45 mm beside the crown grows by 2°.
 const CREEP: f32 = deg(6.0);
 const CREEP_RATE: f32 = 0.1;
@@ -108,7 +108,7 @@ impl Lean {
         self.seated = self.roll.abs();
     }
 
-    /// The lean has grown since the arms began to close, and grows on: less friction than believed.
+    /// The lean has grown since the arms began to close, and still does: less friction than the parameter's.
     pub fn creeps(&self) -> bool {
         self.creeping.time() >= SLIDE_TIME
     }

@@ -6,7 +6,7 @@ const CUTOFF: f32 = 5.0;
 const WINDOW: f32 = 3.0;
 /// Deviation of the factor with which it is judged, 1.
 const SURE: f32 = 0.15;
-/// Factors that are borne, and those that are believed again.
+/// Factors that are tolerated, and the narrower ones within which a measurement is used again.
 const BORNE: (f32, f32) = (0.45, 1.7);
 const BELIEVED: (f32, f32) = (0.6, 1.5);
 

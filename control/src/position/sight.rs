@@ -1,4 +1,4 @@
-//! Optical flow and range: the velocity over the ground and the height above it, and whether they can be believed.
+//! Optical flow and range: the velocity over the ground and the height above it, and whether they can be used.
 
 use super::about_down;
 use super::agreement::Agreement;
@@ -25,7 +25,7 @@ const STEP: f32 = 0.12;
 const STEP_RANGES: u32 = 3;
 /// Ranges that differ by less are of the same surface, m.
 const SAME: f32 = 0.08;
-/// Steps within [`STEPS_TIME`] from which on the range is not believed: no ground has so many.
+/// Steps within [`STEPS_TIME`] from which on the range is not used: no ground has so many.
 const STEPS_MAX: u32 = 6;
 const STEPS_TIME: u64 = 5_000_000;
 /// For how long the range is left out then, µs.
@@ -97,7 +97,7 @@ pub struct Sight {
     /// Step that ranges agree on, m, and how many do.
     step: f32,
     agreed: u32,
-    /// Steps since `window_us`, and until when the range is not believed, µs.
+    /// Steps since `window_us`, and until when the range is not used, µs.
     steps: u32,
     window_us: u64,
     distrusted_us: u64,

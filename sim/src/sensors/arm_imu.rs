@@ -29,7 +29,7 @@ const LEAK: (f64, f64) = (0.1, 0.3);
 pub enum TiltBreak {
     /// It does not answer.
     Silent,
-    /// It goes on sending its last vector.
+    /// It repeats its last vector.
     Stuck,
 }
 

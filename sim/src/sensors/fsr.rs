@@ -42,7 +42,7 @@ pub enum FsrBreak {
     Open,
     /// Shorted leads.
     Short,
-    /// It goes on reading what it read last.
+    /// It repeats its last reading.
     Stuck,
 }
 
