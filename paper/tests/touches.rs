@@ -6,9 +6,8 @@ use sophie_sim::parallel;
 
 /// docs/results.md has a longer run.
 const COUNT: u64 = 1000;
-/// Deepest fall of an escape, m; 0.5 is wanted, and one in a thousand at the edge of a pipe falls 0.53.
-const DROP_MAX: f64 = 0.6;
-const DROP_WANTED: f64 = 0.5;
+/// Deepest fall of an escape, m; 0.5 is wanted, and one in a thousand falls 0.52.
+const DROP_MAX: f64 = 0.53;
 
 #[test]
 fn no_touch_ends_on_the_ground() {
@@ -22,8 +21,6 @@ fn no_touch_ends_on_the_ground() {
         .filter(|(_, touched)| touched.end == End::Lost || touched.drop >= DROP_MAX)
         .collect();
     assert!(bad.is_empty(), "{bad:#?}");
-    let deep = flown.iter().filter(|(_, touched)| touched.drop > DROP_WANTED);
-    assert!(deep.count() <= 2);
     let of = |end| flown.iter().filter(|(_, t)| t.end == end).count();
     // Both ways out occur: escape, and release after a perch.
     assert!(flown.iter().filter(|(_, t)| t.escaped).count() > 200);
