@@ -324,7 +324,7 @@ mod tests {
     }
 
     #[test]
-    fn no_bias_beyond_a_tenth_is_believed() {
+    fn no_bias_beyond_a_tenth_is_accepted() {
         let p = Params {
             estimator_ki: 1.0,
             ..Params::default()

@@ -34,7 +34,7 @@ const POSITION_MAX: f32 = 10_000.0;
 /// Deviation of a fix whose sender does not say it, m, and the bounds of one that does.
 pub const FIX_DEVIATION: f32 = 0.01;
 const DEVIATION_BOUNDS: (f32, f32) = (0.003, 0.5);
-/// Fixes refused in a row after which the next is believed, half a second at 50 Hz: the sender has found another origin.
+/// Fixes refused in a row after which the next is accepted, half a second at 50 Hz: the sender has found another origin.
 const REFUSED_MAX: u32 = 25;
 /// Age of the newest pose from which on flow and range are taken, s.
 const POSE_FRESH: f32 = 0.2;

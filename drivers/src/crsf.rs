@@ -151,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn a_receiver_without_a_radio_is_not_believed() {
+    fn a_receiver_without_a_radio_is_not_heard() {
         let mut d = Decoder::new();
         assert_eq!(
             published(&mut d, &throttle(0.4), 0),

@@ -433,7 +433,7 @@ fn a_call_dropped_at_any_moment_leaves_nothing_half_done() {
 }
 
 #[test]
-fn nothing_is_believed_before_the_part_has_settled() {
+fn nothing_is_used_before_the_part_has_settled() {
     run(async {
         let (mut driver, _part) = pair(Config::default());
         let start = Instant::now();

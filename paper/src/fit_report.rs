@@ -243,7 +243,7 @@ pub fn parameters(
     let mut text = format!(
         "# Arm of {source}, fitted by sophie fit-arm: {} points, residual {:.3} deg RMS.\n\
          # sophie fly THIS_FILE flies the default mission with it. [vehicle] is what the simulator builds, [params] what the\n\
-         # flight stack believes, under the names of its parameter table.\n\n\
+         # flight stack assumes, under the names of its parameter table.\n\n\
          [vehicle]\ninfill = {rho}\ngain_k = 1.0\narm_coefficients = [{a1:.6}, {a2:.6}, {b1:.6}, {b2:.6}]\n\
          arm_level_share = {share:.6}\n\n\
          [params]\ninfill = {rho}\ngain_k = 1.0\narm_a1 = {a1:.6}\narm_a2 = {a2:.6}\narm_b1 = {b1:.6}\narm_b2 = {b2:.6}\n\

@@ -3,7 +3,7 @@
 use crate::study::rig::{Flown, Moment, rms};
 use sophie_control::wrench::Configuration;
 use sophie_sim::mixers::Variant;
-use sophie_sim::plant::tendon::believe;
+use sophie_sim::plant::tendon::assume_bending;
 use sophie_sim::scenario::{ArmBending, Scenario};
 
 use super::model::{Cell, num};
@@ -21,7 +21,7 @@ pub fn vehicle(configuration: Configuration, gain_k: f64, infill: f64, mixer: Va
     (s.params.gain_k, s.params.infill) = (gain_k as f32, infill as f32);
     (s.world.gust_force, s.world.gust_moment) = (0.0, 0.0);
     s.vehicle.arm_bending = ArmBending::Hinge;
-    believe(&mut s.params, s.vehicle.arm_bending);
+    assume_bending(&mut s.params, s.vehicle.arm_bending);
     s.mixer = mixer;
     s
 }

@@ -1,4 +1,4 @@
-//! Arms half to twice as soft as the stack believes close on the bench and in flight: the watch on unfelt contact trips on
+//! Arms half to twice as soft as the stack assumes close on the bench and in flight: the watch on unfelt contact trips on
 //! every open pressure sensor and on no sound one.
 
 use sophie_control::grip::ArmState;
@@ -11,7 +11,7 @@ use sophie_sim::record::Silent;
 use sophie_sim::scenario::{Scenario, ServoProfile, Step};
 use sophie_sim::sensors::fsr::FsrBreak;
 
-/// True response over the believed one.
+/// True response over the assumed one.
 const RESPONSES: [f32; 5] = [0.5, 0.71, 1.0, 1.41, 2.0];
 /// Largest pressure of an arm that is felt, Pa.
 const PEAK: f64 = 1300.0;

@@ -8,7 +8,7 @@ const WINDOW: f32 = 3.0;
 const SURE: f32 = 0.15;
 /// Factors that are tolerated, and the narrower ones within which a measurement is used again.
 const BORNE: (f32, f32) = (0.45, 1.7);
-const BELIEVED: (f32, f32) = (0.6, 1.5);
+const REGAINED: (f32, f32) = (0.6, 1.5);
 
 /// The regression of one axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -36,7 +36,7 @@ impl Agreement {
         // Deviation of the factor: noise over the root of the sum.
         if *square * SURE * SURE >= noise * noise {
             let factor = *both / *square;
-            let (least, most) = if self.wrong { BELIEVED } else { BORNE };
+            let (least, most) = if self.wrong { REGAINED } else { BORNE };
             self.wrong = !(least..=most).contains(&factor);
         }
         self.wrong

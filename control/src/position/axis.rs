@@ -137,7 +137,7 @@ impl Axis {
         )
     }
 
-    /// Believes a velocity, m/s, whatever it was before.
+    /// Takes a velocity, m/s, whatever it was before.
     pub fn set_speed(&mut self, velocity: f32) {
         let [_, v, _] = START;
         self.velocity = velocity;

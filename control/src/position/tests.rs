@@ -164,7 +164,7 @@ fn nothing_comes_out_without_a_fix_or_before_it_is_sure() {
 }
 
 #[test]
-fn an_outlier_is_refused_and_a_new_origin_believed_after_half_a_second() {
+fn an_outlier_is_refused_and_a_new_origin_accepted_after_half_a_second() {
     let mut r = Rig::new();
     r.run(10.0);
     let mut wild = r.fix().unwrap();

@@ -86,7 +86,7 @@ fn sticks_mean_what_they_mean_over_crsf() {
 }
 
 #[test]
-fn a_frame_after_garbage_is_not_believed_before_the_stream_is_understood() {
+fn a_frame_after_garbage_is_not_decoded_before_the_stream_is_understood() {
     let good = pilot().encode();
     let mut bytes = Vec::from([0x55; 11]);
     for _ in 0..3 {
@@ -138,7 +138,7 @@ fn believing() -> Decoder {
 }
 
 #[test]
-fn the_third_frame_in_a_row_is_believed() {
+fn the_third_frame_in_a_row_is_decoded() {
     let mut d = believing();
     assert_eq!((d.state.frames, d.state.errors), (3, 0));
     let frame = pilot().encode();
@@ -169,7 +169,7 @@ fn only_a_pause_beyond_the_bytes_own_time_is_silence() {
 }
 
 #[test]
-fn a_receiver_without_its_transmitter_publishes_nothing_and_is_believed_again_at_once() {
+fn a_receiver_without_its_transmitter_publishes_nothing_and_is_heard_again_at_once() {
     for flags in [(true, false), (false, true), (true, true)] {
         let mut d = believing();
         let lost = Frame {

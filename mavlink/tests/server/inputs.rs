@@ -366,7 +366,7 @@ fn the_time_of_measurement_is_the_senders_once_its_clock_is_known() {
 }
 
 #[test]
-fn a_sender_that_keeps_the_vehicles_time_is_believed() {
+fn a_sender_that_keeps_the_vehicles_time_is_accepted() {
     let mut station = Station::new();
     station.now = 5_000_000;
     assert_eq!(

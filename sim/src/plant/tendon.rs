@@ -107,9 +107,9 @@ impl TendonSpec {
     }
 }
 
-/// What the stack has to believe of arms that bend as `bending` says: the tendon's lever, and what tendon and thrust do to
+/// What the stack has to assume of arms that bend as `bending` says: the tendon's lever, and what tendon and thrust do to
 /// a free arm and to one on a pipe.
-pub fn believe(params: &mut Params, bending: ArmBending) {
+pub fn assume_bending(params: &mut Params, bending: ArmBending) {
     params.tendon_lever = TendonSpec::of(bending).lever as f32;
     (params.tendon_bend, params.tendon_relief) = match bending {
         ArmBending::Hinge => (1.0, 1.0),

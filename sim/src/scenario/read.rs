@@ -76,7 +76,7 @@ impl Source<'_> {
             }
         }
         overrides.apply(&mut scenario);
-        believe_the_vehicle(&mut scenario);
+        params_from_vehicle(&mut scenario);
         if let Some(table) = params {
             for Setting { row, value, .. } in self.settings(table)? {
                 // In its range: never an error.
@@ -207,7 +207,7 @@ pub(super) fn table<'t, 'i>(root: &'t Spanned<DeTable<'i>>, name: &str) -> Optio
 }
 
 /// The stack's parameters follow the vehicle unless the file has them.
-fn believe_the_vehicle(scenario: &mut Scenario) {
+fn params_from_vehicle(scenario: &mut Scenario) {
     let Scenario { params, vehicle, .. } = scenario;
     params.infill = vehicle.infill as f32;
     params.gain_k = vehicle.gain_k as f32;

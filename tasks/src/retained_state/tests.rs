@@ -115,7 +115,7 @@ fn the_later_copy_counts_also_where_the_sequence_wraps() {
 }
 
 #[test]
-fn what_is_no_number_or_out_of_range_is_neither_kept_nor_believed() {
+fn what_is_no_number_or_out_of_range_is_neither_kept_nor_used() {
     let nan = f32::NAN;
     let bad = [
         RetainedState {

@@ -86,7 +86,7 @@ fn the_batterys_scales_are_the_parameters() {
 }
 
 #[test]
-fn each_sensor_has_its_own_pressure_and_fault_and_is_believed_again_after_a_fifth_of_a_second() {
+fn each_sensor_has_its_own_pressure_and_fault_and_is_valid_again_after_a_fifth_of_a_second() {
     let (mut rig, port) = started();
     // x = 1000/4095: x/((1 - x)·10 kΩ) is 32.31 µS, 223.8 Pa at 100 µS/N and 1444 mm². 4050 counts are a short.
     let short = [1000, 4050, 0, 1000];

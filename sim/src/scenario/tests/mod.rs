@@ -95,7 +95,7 @@ fn numbers_are_converted_once() {
 }
 
 #[test]
-fn the_stack_believes_the_vehicle_unless_told_otherwise() {
+fn the_stack_knows_the_vehicle_unless_params_say_otherwise() {
     let s = parse("[vehicle]\ninfill = 8\ngain_k = 5\nservo = 'mg996r'").unwrap();
     assert_eq!(
         (s.params.infill, s.params.gain_k, s.params.servo_stall),
