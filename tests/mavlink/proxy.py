@@ -12,6 +12,9 @@ import sys
 import tempfile
 import time
 
+# Time after which a request is typed again, s: MAVProxy repeats none whose every answer was lost.
+AGAIN = 30.0
+
 
 def main() -> int:
     master, seconds, name, value = sys.argv[1], float(sys.argv[2]), sys.argv[3], sys.argv[4]
@@ -25,13 +28,17 @@ def main() -> int:
         os.set_blocking(proxy.stdout.fileno(), False)
         said = ""
 
-        def until(words):
+        def until(words, ask=None):
             nonlocal said
             end = time.monotonic() + seconds
+            next_ask = time.monotonic()
             while words not in said:
                 if time.monotonic() > end:
                     proxy.kill()
                     raise SystemExit(f"MAVProxy does not say '{words}': {said}")
+                if ask and time.monotonic() >= next_ask:
+                    types(ask)
+                    next_ask += AGAIN
                 time.sleep(0.05)
                 said += (proxy.stdout.read() or b"").decode("ascii", "replace")
 
@@ -53,8 +60,7 @@ def main() -> int:
             types("long PREFLIGHT_REBOOT_SHUTDOWN 1")
             until("CALIBRATING")
             # Nothing of before is left.
-            types("param fetch")
-            until("Received")
+            until("Received", ask="param fetch")
         types(f"param save {path}")
         until("Saved ")
         proxy.stdin.close()
