@@ -4,6 +4,7 @@
 //! and the rotors' stop.
 
 use crate::grip_fault::GripFault;
+use crate::grip_fit::Misfit;
 use crate::math;
 use crate::params::Params;
 use crate::wrench::PerArm;
@@ -11,8 +12,10 @@ use crate::wrench::PerArm;
 /// State of the grip.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct GripState {
-    /// All chosen arms together held the pressure for the dwell time with a force below the limit.
+    /// All chosen arms together held the pressure for the dwell time with a force below the limit, and lay round a pipe.
     pub proven: bool,
+    /// They hold the pressure, but no pipe.
+    pub misfit: Option<Misfit>,
     /// Every arm is free: no pressure, tendon slack, servo back at release.
     pub released: bool,
     /// Per arm.

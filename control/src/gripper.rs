@@ -19,7 +19,7 @@
 //! | lag | force less tension |
 //! | touch | pressure above the sensor's threshold |
 //! | hold position | the servo stays, whatever the force, until the tension is known after a restart |
-//! | proven | every closing arm holds, and all were within the tolerance at once for the dwell time |
+//! | proven | every closing arm holds, all were within the tolerance at once for the dwell time, and [fit](crate::grip_fit) |
 //! | released | every arm is free: light, tendon slack, servo back at its release position |
 
 mod arm;
@@ -36,6 +36,7 @@ pub use self::config::{Config, force_per_thrust};
 pub use self::input::{ArmInput, Pressure};
 use crate::grip::{ArmGrip, ArmState};
 use crate::grip_fault::GripFault;
+use crate::grip_fit::{Laid, Misfit, misfit};
 use crate::math;
 use crate::wrench::PerArm;
 
@@ -58,8 +59,10 @@ pub struct ArmOutput {
 pub struct GripperOutput {
     /// Per arm.
     pub arms: PerArm<ArmOutput>,
-    /// All chosen arms (at least one) hold, and were within the tolerance together for the dwell time.
+    /// All chosen arms (at least one) hold, were within the tolerance together for the dwell time, and lay round a pipe.
     pub proven: bool,
+    /// Why they do not, where all else is given.
+    pub misfit: Option<Misfit>,
     /// Every arm is free.
     pub released: bool,
 }
@@ -111,8 +114,25 @@ impl Gripper {
         } else {
             0.0
         };
-        self.proven = holding && (self.proven || self.together >= cfg.demand.dwell);
+        if holding && !self.proven && self.together >= cfg.demand.dwell {
+            out.misfit = self.misfit(cfg, input);
+            self.proven = out.misfit.is_none() && input.iter().all(|i| !i.close || i.tilt.is_some());
+        }
+        self.proven &= holding;
         out.proven = self.proven;
         out
+    }
+
+    /// What is wrong with the closed arms whose tilt is known.
+    fn misfit(&self, cfg: &Config, input: &PerArm<ArmInput>) -> Option<Misfit> {
+        let mut laid = [None; 4];
+        for ((slot, arm), input) in laid.iter_mut().zip(&self.arms).zip(input) {
+            let relief = cfg.per_thrust * input.thrust;
+            *slot = input.tilt.filter(|_| input.close).map(|tilt| Laid {
+                tilt,
+                force: arm.force - relief,
+            });
+        }
+        misfit(&laid, cfg.pipe_bend)
     }
 }

@@ -30,6 +30,7 @@ pub mod filter;
 pub mod fsr;
 pub mod grip;
 pub mod grip_fault;
+pub mod grip_fit;
 pub mod grip_memory;
 pub mod gripper;
 pub mod ground;

@@ -75,6 +75,7 @@ fn picture() -> Vehicle {
         reel: [0.0, 1.0, 2.0, 4.5],
         grip: Some(GripState {
             proven: true,
+            misfit: None,
             released: false,
             arms: [
                 arm(ArmState::Holding, 950.0, 64.0),

@@ -1,6 +1,7 @@
 //! 1000 random touches of the pipe, half of them cancelled: none ends on the ground.
 
-use sophie_control::mode::Mode;
+use sophie_control::grip_fault::GripFault;
+use sophie_control::mode::{Mode, Reason};
 use sophie_paper::study::touch::{End, Touch, Touched, fly};
 use sophie_sim::parallel;
 
@@ -133,5 +134,31 @@ fn touches_that_once_failed_hold_or_are_flown_away_from() {
             );
             assert!(touched.proven || touched.mode == Mode::Flight, "{what}");
         }
+    }
+}
+
+/// Headed across a pipe of 0.3 m: what an oblique one presses is refused, and one lengthwise lets go again.
+#[test]
+fn an_oblique_pipe_is_no_grip_and_the_reason_is_named() {
+    for (heading, proven, why) in [
+        (-5.0f64, true, None),
+        (5.0, true, None),
+        (20.0, false, Some(Reason::PipeOblique)),
+        (-26.0, false, Some(Reason::PipeOblique)),
+        (30.0, false, Some(Reason::PipeOblique)),
+        (90.0, false, Some(Reason::ArmFault(Some(GripFault::Unfelt)))),
+    ] {
+        let touch = Touch {
+            yaw: heading.to_radians(),
+            offset: 0.0,
+            ..central(7)
+        };
+        let touched = fly(&touch).expect("the vehicle arms");
+        let end = if proven { End::Released } else { End::Away };
+        assert!(
+            touched.proven == proven && touched.end == end && touched.drop < 0.1,
+            "{heading}: {touched:?}"
+        );
+        assert_eq!(touched.why, why, "{heading}: {touched:?}");
     }
 }

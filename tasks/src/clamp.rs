@@ -47,6 +47,7 @@ pub async fn run(links: &Links) -> ! {
         let at = contact.map_or(command.at, |contact| contact.at);
         let grip = GripState {
             proven: out.proven,
+            misfit: out.misfit,
             released: out.released,
             arms: out.arms.map(|arm| arm.grip),
         };

@@ -31,6 +31,8 @@ pub struct Config {
     /// Tilt loss of a free arm by tendon force, rad/N.
     pub(super) bend_per_force: f32,
     pub(super) demand: GripDemand,
+    /// Bending of an arm round the pipe, rad.
+    pub(super) pipe_bend: f32,
 }
 
 impl Config {
@@ -52,6 +54,7 @@ impl Config {
             thrust_per_force,
             bend_per_force,
             demand: GripDemand::from_params(p, limit),
+            pipe_bend: math::clamp(2.0 * p.arm_d / p.pipe_diameter, 0.01, 10.0),
         }
     }
 

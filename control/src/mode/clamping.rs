@@ -30,6 +30,22 @@ impl Clamping {
         held(step.inputs.grip, self.hold.arms, &step.context.params)
     }
 
+    /// The grip is proven where the rotors may stop.
+    fn proven(step: &Step<'_>) -> bool {
+        step.grip_proven() && step.context.lean.may_stay()
+    }
+
+    /// Reason for which these arms will never let the rotors stop.
+    fn hopeless(&self, step: &Step<'_>) -> Option<Reason> {
+        if !step.grip_proven() {
+            hopeless(step.inputs.grip, self.hold.arms)
+        } else if !self.spool.down && !step.context.lean.may_stay() {
+            Some(Reason::LeansToStay)
+        } else {
+            None
+        }
+    }
+
     /// Reason to end the closing. Without radio no pilot can fly away: a poor grip is then better than none.
     pub fn doubt(&self, step: &Step<'_>) -> Option<Reason> {
         let sticks = step.inputs.sticks?;
@@ -38,7 +54,7 @@ impl Clamping {
         if !sticks.perch_switch && context.perch_switch.seen_on {
             return Some(Reason::ClosingCancelled);
         }
-        match hopeless(step.inputs.grip, self.hold.arms) {
+        match self.hopeless(step) {
             Some(why) if self.spool.hopeless >= HOPELESS_TIME => Some(why),
             _ if context.since >= limit => Some(Reason::GripNotProven),
             _ => None,
@@ -74,7 +90,7 @@ impl Clamping {
         let down = if spool.down {
             self.holds(step)
         } else {
-            step.grip_proven()
+            Self::proven(step)
         };
         if down || Self::last_resort(step) {
             spool.down = true;
@@ -100,8 +116,7 @@ impl Behaviour for Clamping {
         if step.inputs.sticks.is_none() {
             return;
         }
-        let hope = hopeless(step.inputs.grip, self.hold.arms);
-        self.spool.hopeless = if hope.is_some() && !step.grip_proven() {
+        self.spool.hopeless = if self.hopeless(step).is_some() {
             self.spool.hopeless + step.dt
         } else {
             0.0

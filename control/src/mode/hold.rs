@@ -2,6 +2,7 @@
 
 use super::{GripState, Inputs, Reason, Setpoint};
 use crate::grip::{ArmGrip, ArmState};
+use crate::grip_fit::Misfit;
 use crate::math::clamp_abs;
 use crate::params::Params;
 use crate::rc::ArmChoice;
@@ -128,7 +129,16 @@ pub fn pressed(grip: Option<GripState>, arms: ArmChoice) -> bool {
     })
 }
 
-/// Reason for which a chosen arm will never hold.
+const fn misfit(misfit: Misfit) -> Reason {
+    match misfit {
+        Misfit::Thickness => Reason::PipeMisfit,
+        Misfit::Oblique => Reason::PipeOblique,
+        Misfit::Uneven => Reason::ArmsUneven,
+        Misfit::Opposed => Reason::ArmsOpposed,
+    }
+}
+
+/// Reason for which the chosen arms will never hold.
 pub fn hopeless(grip: Option<GripState>, arms: ArmChoice) -> Option<Reason> {
     let grip = grip?;
     let chosen = || {
@@ -143,6 +153,6 @@ pub fn hopeless(grip: Option<GripState>, arms: ArmChoice) -> Option<Reason> {
     } else if chosen().any(|a| a.state == ArmState::ForceLimited) {
         Some(Reason::ForceLimit)
     } else {
-        None
+        grip.misfit.map(misfit)
     }
 }

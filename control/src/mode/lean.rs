@@ -98,6 +98,11 @@ impl Lean {
         self.seat.holds(self.roll, self.closing_share)
     }
 
+    /// Friction holds the vehicle once the rotors stand.
+    pub fn may_stay(&self) -> bool {
+        self.seat.holds(self.roll, 0.0)
+    }
+
     /// The lean is or will be beyond closing arms.
     pub fn slides(&self) -> bool {
         self.sliding.time() >= SLIDE_TIME

@@ -64,6 +64,16 @@ reasons! {
     ClosingCancelled = "closing cancelled",
     /// A chosen arm pulls as hard as it may and does not hold.
     ForceLimit = "force limit reached without grip",
+    /// The arms press as round another pipe than the parameters', or round none.
+    PipeMisfit = "arms do not fit the pipe",
+    /// The arms press round a pipe that does not run lengthwise.
+    PipeOblique = "pipe is oblique: line up with it",
+    /// The arms press round a pipe to one side, or one of them presses on something else.
+    ArmsUneven = "arms lie unevenly",
+    /// A tendon hardly pulls: the other arms press this one.
+    ArmsOpposed = "arms pull against each other",
+    /// The arms press, but friction would not hold this lean once the rotors stand.
+    LeansToStay = "leaning too far to stay",
     /// The arms have closed for as long as they may.
     GripNotProven = "grip not proven in time",
     /// The rotors come back because the arms do not hold any more.

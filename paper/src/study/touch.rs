@@ -6,7 +6,7 @@
 use std::collections::VecDeque;
 
 use glam::{DQuat, DVec3};
-use sophie_control::mode::Mode;
+use sophie_control::mode::{Mode, Reason};
 use sophie_control::rc::Sticks;
 
 use sophie_sim::crsf::{FRAME_HZ, rc_frame};
@@ -136,6 +136,8 @@ pub struct Touched {
     pub clearance: f64,
     /// Mode at the end.
     pub mode: Mode,
+    /// What the pilot last read while it escaped or let go.
+    pub why: Option<Reason>,
 }
 
 struct Hand {
@@ -156,8 +158,7 @@ struct Try {
 }
 
 impl Try {
-    fn new(touch: &Touch) -> Self {
-        let mut scenario = Scenario::default_mission();
+    fn new(mut scenario: Scenario, touch: &Touch) -> Self {
         scenario.seed = touch.seed;
         scenario.world.pipe_diameter = touch.diameter;
         scenario.world.pipe_friction = touch.friction;
@@ -255,10 +256,20 @@ fn touch_height(attitude: DQuat, offset: f64, radius: f64, arms: &[[DVec3; 3]; 4
         .fold(-BELLY_Z, f64::min)
 }
 
-/// `None` if arming fails.
+/// With the default vehicle; `None` if arming fails.
 #[must_use]
 pub fn fly(touch: &Touch) -> Option<Touched> {
-    let mut flight = Try::new(touch);
+    fly_as(Scenario::default_mission(), touch, |_, _, _| ())
+}
+
+/// With the vehicle of `scenario`; `each` millisecond sees the time since the set-down (s), and may change the plant.
+#[must_use]
+pub fn fly_as(
+    scenario: Scenario,
+    touch: &Touch,
+    mut each: impl FnMut(f64, &mut Plant, &Stack),
+) -> Option<Touched> {
+    let mut flight = Try::new(scenario, touch);
     if !flight.take_off(touch.lean) {
         return None;
     }
@@ -286,11 +297,17 @@ pub fn fly(touch: &Touch) -> Option<Touched> {
         closing_pressure: 0.0,
         clearance: f64::INFINITY,
         mode: Mode::Flight,
+        why: None,
     };
     for ms in 0..(DURATION * 1e3) as u32 {
         hand.act(&flight, f64::from(ms) * 1e-3, touch, height);
         flight.step(&hand.sticks);
+        each(f64::from(ms) * 1e-3, &mut flight.plant, &flight.stack);
         let mode = flight.stack.mode();
+        if matches!(mode, Mode::Escaping | Mode::Releasing) {
+            let status = flight.stack.links.status.latest();
+            out.why = status.and_then(|s| s.value.reason).or(out.why);
+        }
         out.mode = mode;
         out.escaped |= mode == Mode::Escaping;
         out.drop = out.drop.max(flight.plant.pose().position.z - height);

@@ -142,6 +142,7 @@ impl Toy {
             lift: self.out.rotors.thrust(),
             grip: Some(GripState {
                 proven,
+                misfit: None,
                 released: self.closed <= 0.0,
                 arms: [ArmGrip {
                     state,

@@ -65,6 +65,40 @@ fn every_chosen_arm_must_hold_and_every_arm_be_free() {
     assert!(out.released && !out.proven);
 }
 
+#[test]
+fn arms_round_no_pipe_are_no_proof_until_they_lie_round_one() {
+    let cfg = config();
+    let mut gripper = Gripper::default();
+    let mut drive = |tilts: PerArm<f32>, pressure: f32, seconds: f32| {
+        let mut out = GripperOutput::default();
+        for _ in 0..(seconds / DT) as u32 {
+            let mut inputs = [ArmInput::default(); 4];
+            for ((i, arm), tilt) in inputs.iter_mut().zip(&gripper.arms).zip(tilts) {
+                *i = ArmInput {
+                    tilt: Some(-math::deg(tilt)),
+                    ..input(&cfg, arm, pressure)
+                };
+            }
+            out = gripper.step(&cfg, &inputs, DT);
+        }
+        (out.proven, out.misfit)
+    };
+    let round = [75.0, 67.0, 66.0, 75.0];
+    assert_eq!(drive(round, 500.0, 0.1), (false, None));
+    assert_eq!(
+        drive([30.0, 110.0, 110.0, 30.0], 950.0, 2.0),
+        (false, Some(Misfit::Oblique))
+    );
+    assert_eq!(
+        drive([75.0, 67.0, 20.0, 75.0], 950.0, 0.1),
+        (false, Some(Misfit::Uneven))
+    );
+    assert_eq!(drive(round, 950.0, 0.1), (true, None));
+    // Proven, a knock of one sensor does not take it back: the pressure does.
+    assert_eq!(drive([75.0, 67.0, 20.0, 75.0], 950.0, 1.0), (true, None));
+    assert_eq!(drive(round, 200.0, 1.0), (false, None));
+}
+
 fn any_pressure() -> impl Strategy<Value = Pressure> {
     prop_oneof![
         proptest::num::f32::ANY.prop_map(Pressure::Known),

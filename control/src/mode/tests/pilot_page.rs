@@ -56,6 +56,13 @@ fn on_reason(reason: Reason) -> &'static str {
         Reason::NotTakenOver => "Throttle to hover ends the descent.",
         Reason::ClosingCancelled => "You turned perch off: throttle to hover.",
         Reason::ForceLimit => "Throttle to hover. Pipe or skin does not give the pressure: another spot.",
+        Reason::PipeMisfit => "Throttle to hover. Is `pipe_diameter` this pipe's? Else another spot.",
+        Reason::PipeOblique => "Throttle to hover; turn the nose along the pipe.",
+        Reason::ArmsUneven => {
+            "Throttle to hover; come down over the middle, where nothing is in an arm's way."
+        }
+        Reason::ArmsOpposed => "Throttle to hover; line up, come down over the middle.",
+        Reason::LeansToStay => "Throttle to hover; come down nearer to the crown.",
         Reason::GripNotProven => "Throttle to hover; another spot.",
         Reason::GripLostSpooling => "Wait: the rotors carry again and it tries anew.",
         Reason::ClampSilent => "Do not let go: fetch it, read the log.",

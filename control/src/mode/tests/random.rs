@@ -2,6 +2,7 @@
 
 extern crate std;
 use crate::grip::ArmGrip;
+use crate::grip_fit::Misfit;
 use crate::rc::ArmChoice;
 use std::vec::Vec;
 
@@ -68,8 +69,14 @@ fn grip() -> impl Strategy<Value = Option<GripState>> {
         Just(ArmState::ForceLimited),
         Just(ArmState::Faulty),
     ];
-    let some = (prop::bool::weighted(0.7), any::<bool>(), state, 0.0f32..1000.0).prop_map(
-        |(proven, released, state, pressure)| {
+    let some = (
+        prop::bool::weighted(0.7),
+        any::<bool>(),
+        state,
+        0.0f32..1000.0,
+        prop::bool::weighted(0.1),
+    )
+        .prop_map(|(proven, released, state, pressure, misfit)| {
             let arm = ArmGrip {
                 state,
                 pressure,
@@ -77,11 +84,11 @@ fn grip() -> impl Strategy<Value = Option<GripState>> {
             };
             Some(GripState {
                 proven,
+                misfit: (misfit && !proven).then_some(Misfit::Oblique),
                 released,
                 arms: [arm; 4],
             })
-        },
-    );
+        });
     prop_oneof![9 => some, 1 => Just(None)]
 }
 

@@ -61,6 +61,7 @@ impl Rig {
         };
         self.inputs.grip = Some(GripState {
             proven,
+            misfit: None,
             released,
             arms: [arm; 4],
         });
@@ -135,7 +136,12 @@ impl Rig {
     }
 
     pub(super) fn touched() -> Self {
-        let mut r = Self::flying();
+        Self::touched_with(Params::default())
+    }
+
+    fn touched_with(params: Params) -> Self {
+        let mut r = Self::with(params);
+        r.fly();
         r.sticks().throttle = 0.3;
         r.sticks().perch_switch = true;
         r.expect(1.0, Mode::Flight);
@@ -146,7 +152,11 @@ impl Rig {
     }
 
     pub(super) fn clamping() -> Self {
-        let mut r = Self::touched();
+        Self::clamping_with(Params::default())
+    }
+
+    pub(super) fn clamping_with(params: Params) -> Self {
+        let mut r = Self::touched_with(params);
         r.grip(false, false, ArmState::Closing, 0.0);
         r.expect(CONTACT_TIME + 0.1, Mode::Clamping);
         assert_eq!(r.out.tendons, ClampCommand::Close { arms: ArmChoice::All });

@@ -3,14 +3,17 @@
 use super::rig::Rig;
 use crate::arming::{ArmingInhibit, ArmingInhibits};
 use crate::grip::ArmState;
+use crate::grip_fit::Misfit;
 use crate::math::{GRAVITY, deg};
-use crate::mode::clamping::HOPELESS_TIME;
+use crate::mode::clamping::{HOPELESS_TIME, STOP_TIME};
 use crate::mode::contact::CONTACT_TIME;
 use crate::mode::dangers::BATTERY_TIME;
 use crate::mode::dangers::IMU_LOST_TIME;
 use crate::mode::dangers::TIPPED_TIME;
 use crate::mode::failsafe::RESUME_TIME;
+use crate::mode::hold::SPOOL_DOWN_TIME;
 use crate::mode::*;
+use crate::params::Params;
 use crate::rc::ArmChoice;
 use crate::rc::StickMode;
 
@@ -103,6 +106,45 @@ fn a_closing_without_grip_is_given_up_and_not_tried_again_by_itself() {
         r.run(0.1);
         r.sticks().perch_switch = true;
         r.expect(0.1, Mode::Contact);
+    }
+}
+
+#[test]
+fn arms_that_press_and_hold_no_pipe_are_given_up_with_the_reason() {
+    for (misfit, why) in [
+        (Misfit::Thickness, Reason::PipeMisfit),
+        (Misfit::Oblique, Reason::PipeOblique),
+        (Misfit::Uneven, Reason::ArmsUneven),
+        (Misfit::Opposed, Reason::ArmsOpposed),
+    ] {
+        let mut r = Rig::clamping();
+        r.grip(false, false, ArmState::Holding, 950.0);
+        r.inputs.grip.as_mut().unwrap().misfit = Some(misfit);
+        r.expect(HOPELESS_TIME - 0.05, Mode::Clamping);
+        assert!(r.out.rotors.thrust() > 6.6, "the rotors keep their share");
+        r.expect(0.1, Mode::Escaping);
+        assert_eq!(r.out.reason, Some(why));
+    }
+}
+
+#[test]
+fn a_grip_that_leans_where_friction_alone_would_not_hold_it_is_given_up() {
+    // On 0.3 of friction and 0.3 m it is 13.6 degrees without thrust (the seat's own test).
+    let slippery = Params {
+        pipe_friction: 0.3,
+        perch_lift: 0.1,
+        ..Params::default()
+    };
+    for (lean, mode) in [(12.5, Mode::Perched), (14.5, Mode::Escaping)] {
+        let mut r = Rig::clamping_with(slippery);
+        let motion = r.inputs.motion.as_mut().unwrap();
+        motion.q = Quat::from_euler(deg(lean), 0.0, 0.0);
+        r.grip(true, false, ArmState::Holding, 950.0);
+        r.run(HOPELESS_TIME + 0.05);
+        let why = (mode == Mode::Escaping).then_some(Reason::LeansToStay);
+        assert!(why.is_none() || r.out.reason == why, "{lean}: {:?}", r.out.reason);
+        r.run(SPOOL_DOWN_TIME + STOP_TIME);
+        assert_eq!(r.out.mode, mode, "{lean} deg");
     }
 }
 

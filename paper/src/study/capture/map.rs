@@ -112,6 +112,7 @@ mod tests {
                 closing_pressure: 0.0,
                 clearance: 0.1,
                 mode: Mode::Flight,
+                why: None,
             },
             outcome,
         }
