@@ -71,7 +71,12 @@ pub struct Unfit {
 }
 
 /// `Ok` for a value within `allowed`; a value that is no number is not.
-fn within(what: &'static str, value: f32, allowed: [f32; 2], unit: &'static str) -> Result<(), Unfit> {
+pub(crate) fn within(
+    what: &'static str,
+    value: f32,
+    allowed: [f32; 2],
+    unit: &'static str,
+) -> Result<(), Unfit> {
     let [least, most] = allowed;
     if (least..=most).contains(&value) {
         Ok(())

@@ -6,6 +6,9 @@
 
 mod agreement;
 mod axis;
+mod fit;
+#[cfg(test)]
+mod fit_tests;
 mod past;
 mod sight;
 #[cfg(test)]
@@ -14,9 +17,10 @@ mod sight_tests;
 mod tests;
 
 use self::axis::{Axis, Change};
+pub use self::fit::{FlowFit, FlowTurns, Round, flow_fit};
 use self::past::{Moment, Past};
 use self::sight::Sight;
-pub use self::sight::{FLOW_HEIGHT, SightFault};
+pub use self::sight::{FLOW_HEIGHT, SightFault, SightLimit};
 use crate::ground::{Flow, GroundView};
 use crate::math::{self, GRAVITY};
 use crate::params::Params;

@@ -4,6 +4,7 @@
 
 use embassy_time::{Duration, Instant};
 use sophie_control::mode::{Inputs, Mode, ModeLogic, Motion, Outputs};
+use sophie_control::position::SightLimit;
 use sophie_control::tendon::ForceLimit;
 
 use crate::deadline::{FixedRate, Level, TaskId};
@@ -12,6 +13,8 @@ use crate::warning::Warning;
 
 /// Smallest infill flown in the paper, %.
 const INFILL_FLOWN: f32 = 6.0;
+/// Age of a position, s, beyond which the pilot reads what limits the flow: with it a hold may not begin.
+const PLACED_AGE: f32 = 0.2;
 const LATE_WINDOW: Duration = Duration::from_secs(1);
 /// Allowed misses of the flight level in that window: 1 % of one task's runs.
 const LATE_MAX: u32 = 10;
@@ -64,6 +67,8 @@ fn warning(links: &Links, mode: Mode) -> &'static str {
         started.text()
     } else if let Some(fault) = links.position.fresh_to(Instant::now(), |e| e.fault).flatten() {
         Warning::Sight(fault).text()
+    } else if let Some(limit) = flow_limit(links, mode) {
+        Warning::Limit(limit).text()
     } else if mode == Mode::Disarmed && ForceLimit::from_params(&links.params).capped_by_servo {
         Warning::ServoWeak.text()
     } else if mode == Mode::Disarmed && links.params.infill < INFILL_FLOWN {
@@ -71,6 +76,14 @@ fn warning(links: &Links, mode: Mode) -> &'static str {
     } else {
         ""
     }
+}
+
+/// What limits the flow of a vehicle in the air that has no fresher position.
+fn flow_limit(links: &Links, mode: Mode) -> Option<SightLimit> {
+    let flies = matches!(mode, Mode::Flight | Mode::Hold);
+    let placed = links.position.fresh_to(Instant::now(), |e| e.age <= PLACED_AGE);
+    let view = links.ground.fresh().filter(|_| flies && placed != Some(true))?;
+    SightLimit::of(&view)
 }
 
 fn collect(links: &Links, late: bool) -> Inputs {

@@ -79,7 +79,9 @@ fn mode_text(status: Status) -> String<TEXT> {
         warning,
         ..
     } = status;
-    let reason = reason.map_or(warning, Reason::text);
+    // Why there is no position says more than that there is none.
+    let said = reason.filter(|reason| *reason != Reason::NoPosition || warning.is_empty());
+    let reason = said.map_or(warning, Reason::text);
     let mut text = String::new();
     let written = if reason.is_empty() {
         text.write_str(mode.name())
@@ -143,6 +145,13 @@ mod tests {
                 assert!(encode(packets::FlightMode::new(&text).ok()).is_some());
             }
         }
+        let why = Status {
+            mode: Mode::Flight,
+            reason: Some(Reason::NoPosition),
+            warning: "too high",
+            ..Status::default()
+        };
+        assert_eq!(mode_text(why), "FLIGHT: too high");
         let long = "a warning far too long for the one line that a transmitter's display has for it";
         assert_eq!(
             mode_text(Status {

@@ -1,6 +1,6 @@
 //! Warnings to the pilot that do not affect the modes.
 
-use sophie_control::position::SightFault;
+use sophie_control::position::{SightFault, SightLimit};
 
 use crate::start::StartCause;
 
@@ -13,6 +13,8 @@ pub enum Warning {
     Restarted(StartCause),
     /// Flow or range is left out as faulty.
     Sight(SightFault),
+    /// Flow cannot be used where the vehicle is.
+    Limit(SightLimit),
     /// The servo cannot give the force limit of the parameters.
     ServoWeak,
     /// The arms are softer than any flown.
@@ -21,7 +23,7 @@ pub enum Warning {
 
 impl Warning {
     /// Every warning.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 14] = [
         Self::ArmTilt,
         Self::Restarted(StartCause::BrownOut),
         Self::Restarted(StartCause::Watchdog),
@@ -30,6 +32,10 @@ impl Warning {
         Self::Sight(SightFault::FlowDisagrees),
         Self::Sight(SightFault::RangeFrozen),
         Self::Sight(SightFault::RangeJumps),
+        Self::Limit(SightLimit::TooLow),
+        Self::Limit(SightLimit::TooHigh),
+        Self::Limit(SightLimit::NoRange),
+        Self::Limit(SightLimit::TooDark),
         Self::ServoWeak,
         Self::InfillLow,
     ];
@@ -40,6 +46,7 @@ impl Warning {
             Self::ArmTilt => "arm tilt beyond its model",
             Self::Restarted(cause) => cause.warning(),
             Self::Sight(fault) => fault.text(),
+            Self::Limit(limit) => limit.text(),
             Self::ServoWeak => "servo weaker than the force limit",
             Self::InfillLow => "infill below what was flown",
         }

@@ -244,6 +244,8 @@ fn sensors_and_actuators(builder: &mut Builder, board: &Board) {
         builder.at("full mark", "--");
         builder.at("2430 us", "");
     }
+    builder.step("flow");
+    builder.hears("no flow module: flow_port is none");
     builder.step("battery");
     builder.at("Type off", "yes");
     builder.at("Type off", "off");
@@ -363,11 +365,11 @@ fn brought_up(temp: &Temp, board: &Board, more: &[&str]) {
     builder.step("final");
     let (status, said, complaint) = builder.ends();
     assert_eq!((status, &*complaint), (Some(0), ""), "{said}");
-    assert!(said.contains("\nall 26 steps passed"), "{said}");
-    assert!(file().contains("state = \"all 26 steps passed\""), "{}", file());
+    assert!(said.contains("\nall 27 steps passed"), "{said}");
+    assert!(file().contains("state = \"all 27 steps passed\""), "{}", file());
     assert_eq!(board.stored().motor_map, MotorMap::M1324);
     let build = "build 1234abcd, ";
-    assert_eq!(file().matches(build).count(), 1 + 26, "{}", file());
+    assert_eq!(file().matches(build).count(), 1 + 27, "{}", file());
     let name = board.name();
     // Another image: said in one line, and nothing is asked again.
     board.hands(|hands| hands.build = 0xC0DE);

@@ -85,7 +85,7 @@ impl Past {
 }
 
 /// From `a` to `b` by `share`, along the shorter way. A few milliseconds apart they are nearly the same.
-fn between(a: Quat, b: Quat, share: f32) -> Quat {
+pub(super) fn between(a: Quat, b: Quat, share: f32) -> Quat {
     let dot = a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z;
     let share = math::clamp(share, 0.0, 1.0);
     let (of_a, of_b) = (1.0 - share, if dot < 0.0 { -share } else { share });

@@ -7,8 +7,8 @@ use crate::ground::{Flow, GroundView, Range};
 use crate::math;
 use crate::vector::{Quat, Vec3};
 
-/// Heights between which flow is used, m: nearer its lens sees no picture (PMW3901), and above it the error of its scale
-/// times the vehicle's own rotation swings the hold.
+/// Heights between which flow is used, m: nearer its lens sees no picture (PMW3901). Up to 2.4 m a scale 10 % too large,
+/// five times what calibration leaves, does not swing the hold; one 20 % too large does from 2 m on (docs/hold.md).
 pub const FLOW_HEIGHT: (f32, f32) = (0.08, 2.5);
 /// Least quality of a flow, of 255.
 const QUALITY_MIN: u8 = 20;
@@ -70,6 +70,46 @@ impl SightFault {
             Self::FlowDisagrees => "flow mirrored or scaled, left out",
             Self::RangeFrozen => "range frozen, left out",
             Self::RangeJumps => "range jumps, left out",
+        }
+    }
+}
+
+/// Why flow cannot be used where the vehicle is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SightLimit {
+    /// Its lens sees no picture so near.
+    TooLow,
+    /// The error of its scale would swing the hold.
+    TooHigh,
+    /// There is nothing within the range's reach.
+    NoRange,
+    /// The picture has too little in it.
+    TooDark,
+}
+
+impl SightLimit {
+    /// Every limit.
+    pub const ALL: [Self; 4] = [Self::TooLow, Self::TooHigh, Self::NoRange, Self::TooDark];
+
+    /// What limits the newest flow and range; `None` where they can be used.
+    pub fn of(view: &GroundView) -> Option<Self> {
+        let (least, most) = FLOW_HEIGHT;
+        match view.range.and_then(|range| range.checked()?.distance) {
+            None => Some(Self::NoRange),
+            Some(distance) if distance < least => Some(Self::TooLow),
+            Some(distance) if distance > most => Some(Self::TooHigh),
+            Some(_) if view.flow.is_none_or(|flow| flow.quality < QUALITY_MIN) => Some(Self::TooDark),
+            Some(_) => None,
+        }
+    }
+
+    /// For the pilot's display: at most 40 ASCII characters.
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::TooLow => "too low for flow",
+            Self::TooHigh => "too high for flow: 2.5 m",
+            Self::NoRange => "no range: too high, or over an edge",
+            Self::TooDark => "flow sees no picture",
         }
     }
 }

@@ -302,3 +302,35 @@ mod any {
         }
     }
 }
+
+#[test]
+fn where_flow_cannot_be_used_is_named() {
+    let view = |distance: Option<f32>, quality: u8| GroundView {
+        flow: Some(Flow {
+            until_us: 1,
+            seconds: 0.02,
+            angle: [0.0; 2],
+            quality,
+        }),
+        range: Some(Range {
+            at_us: 1,
+            distance,
+            reach: (0.02, 8.0),
+        }),
+    };
+    let cases = [
+        (view(Some(1.0), 100), None),
+        (view(Some(0.07), 100), Some(SightLimit::TooLow)),
+        (view(Some(2.6), 100), Some(SightLimit::TooHigh)),
+        (view(Some(f32::NAN), 100), Some(SightLimit::NoRange)),
+        (view(None, 100), Some(SightLimit::NoRange)),
+        (view(Some(1.0), 10), Some(SightLimit::TooDark)),
+        (GroundView::default(), Some(SightLimit::NoRange)),
+    ];
+    for (view, limit) in cases {
+        assert_eq!(SightLimit::of(&view), limit, "{view:?}");
+    }
+    let high = FLOW_HEIGHT.1;
+    assert!(SightLimit::TooHigh.text().contains(&std::format!("{high} m")));
+    assert!(SightLimit::ALL.iter().all(|limit| limit.text().len() <= 40));
+}

@@ -276,7 +276,14 @@ fn gap(rng: &mut Pcg64Mcg, ms: u64) -> (u64, u64) {
 
 #[cfg(test)]
 mod tests {
+    use embassy_time::Instant;
+    use sophie_control::ground::GroundView;
+    use sophie_control::params::{FlowMounting, Params};
+    use sophie_control::position::{FlowFit, FlowTurns, Round, flow_fit};
+    use sophie_control::vector::Quat;
+    use sophie_drivers::ground_module::GroundModule;
     use sophie_drivers::msp::Parser;
+    use sophie_tasks::ports::GroundDecoder;
 
     use super::*;
 
@@ -373,5 +380,64 @@ mod tests {
         // A gap within 40 s.
         let (.., dark) = seen(45, |_| level(-8.0, 1.0));
         assert!((15..200).contains(&dark), "{dark}");
+    }
+
+    /// Turned by hand about a point 10 cm over the lens, `height` m over the floor, through the driver with `p`.
+    fn turned(module: &mut FlowModule, p: &Params, height: f64, far: bool) -> Round {
+        let (mut driver, mut turns) = (GroundModule::from_params(p), FlowTurns::default());
+        let mut view = GroundView::default();
+        let begin = module.ms;
+        while module.ms < begin + 9000 {
+            let t = module.ms as f64 * 1e-3;
+            let (roll, pitch) = (0.35 * (3.5 * t).sin(), 0.35 * (4.3 * t).sin());
+            let attitude = DQuat::from_rotation_y(pitch) * DQuat::from_rotation_x(roll);
+            let pivot = DVec3::new(-8.0, 0.0, -height - 0.1);
+            module.step(&Pose {
+                position: pivot + attitude * (DVec3::new(0.0, 0.0, 0.1) - MOUNTED),
+                attitude,
+                velocity: DVec3::ZERO,
+                omega: DVec3::ZERO,
+            });
+            let now = Instant::from_millis(module.ms);
+            let bytes = module.take(module.ms * 1000).unwrap_or_default();
+            view = driver.take(&bytes, now).unwrap_or(view);
+            if module.ms.is_multiple_of(10) {
+                let q = attitude.as_quat();
+                let q = Quat {
+                    w: q.w,
+                    x: q.x,
+                    y: q.y,
+                    z: q.z,
+                };
+                turns.add(now.as_micros(), q, &view);
+            }
+        }
+        turns.round(far).unwrap()
+    }
+
+    #[test]
+    fn its_scale_and_mounting_are_found_through_the_driver_by_turning_it() {
+        for seed in 1..=4 {
+            let mut module = FlowModule::new(Streams::new(seed), PIPE);
+            let now = FlowFit {
+                scale: 14.0,
+                mounting: FlowMounting::Left,
+            };
+            let p = Params {
+                flow_scale: now.scale,
+                flow_mounting: now.mounting,
+                ..Params::default()
+            };
+            let near = turned(&mut module, &p, 0.5, false);
+            let far = turned(&mut module, &p, 1.5, true);
+            let (fit, pivot) = flow_fit(&near, &far, now).unwrap();
+            let off = fit.scale / (10.5 * module.scale as f32) - 1.0;
+            println!("seed {seed}: scale off by {off:.3}, turned {pivot:.3} m over the lens");
+            assert!(
+                off.abs() < 0.02 && (pivot - 0.1).abs() < 0.03,
+                "{seed}: {off} {pivot}"
+            );
+            assert_eq!(fit.mounting, FlowMounting::Forward);
+        }
     }
 }

@@ -8,6 +8,7 @@ use sophie_control::calibration::{self, AccelFit, BIAS, Face, FsrFit, SCALES, Sa
 use sophie_control::math::{clamp, to_deg};
 use sophie_control::mounting::{Direction, Mounting};
 use sophie_control::params::Params;
+use sophie_control::position::{FlowFit, FlowTurns, Round, flow_fit};
 use sophie_control::tendon::{Reel, SPAN_MIN_US};
 use sophie_control::vector::Vec3;
 
@@ -21,11 +22,14 @@ use sophie_control::decimal::{self, Decimal};
 /// Samples of one rest, and the time between two: 2 s, in which a breath of wind is over.
 const SAMPLES: u16 = 200;
 const SAMPLING: Duration = Duration::from_millis(10);
+/// Samples of one round of turning, 8 s, and between two lines that say how it goes.
+const TURNS: u16 = 800;
+const TURNS_SHOWN: u16 = 200;
 /// Step of a servo under the keys, µs: 1.4 degrees.
 const STEP_US: f32 = 10.0;
 
 /// What can be calibrated, and what that buys.
-const WHAT: [(&str, &str); 9] = [
+const WHAT: [(&str, &str); 10] = [
     (
         "gyro",
         "what it reads at rest; taken anew at each start, nothing to store",
@@ -43,6 +47,10 @@ const WHAT: [(&str, &str); 9] = [
         "zero and gain of one pressure sensor by a weight: calibrate fsr N NEWTON",
     ),
     ("arm", "zero and sign of one arm's tilt sensor: calibrate arm N"),
+    (
+        "flow",
+        "scale and mounting of the flow module, by turning it over a floor",
+    ),
     ("esc", "whether the motor controllers understand the protocol"),
 ];
 
@@ -84,6 +92,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
             ("mounting", [None, _]) => self.calibrate_mounting().await,
             ("battery", [Some(volts), None]) => self.calibrate_battery(volts).await,
             ("servo", [Some(number), None]) => self.calibrate_servo(number).await,
+            ("flow", [None, _]) => self.calibrate_flow().await,
             ("esc", [None, _]) => self.calibrate_esc().await,
             ("fsr", [Some(number), Some(newton)]) => self.calibrate_fsr(number, newton).await,
             ("arm", [Some(number), None]) => self.calibrate_arm(number).await,
@@ -270,6 +279,76 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         }
     }
 
+    /// The module turned near a floor, and far from it.
+    async fn calibrate_flow(&mut self) {
+        let near = "Hold it 0.5 m over a floor with a pattern. From Enter on, for 8 s: roll it to both sides, then pitch it.";
+        let far = "Now 1.5 m over it, and the same again.";
+        let Some(near) = self.turned(near, false).await else {
+            return;
+        };
+        let Some(far) = self.turned(far, true).await else {
+            return;
+        };
+        let p = &self.links.params;
+        let now = FlowFit {
+            scale: p.flow_scale,
+            mounting: p.flow_mounting,
+        };
+        match flow_fit(&near, &far, now) {
+            Ok((fit, pivot)) => {
+                let pivot = Decimal(pivot * 100.0);
+                self.out
+                    .line(format_args!("turned about a point {pivot:.0} cm over the lens"))
+                    .await;
+                let values = [fit.scale, fit.mounting.number()];
+                self.put_all(&["flow_scale", "flow_mounting"], values).await;
+            }
+            Err(unfit) => self.unfit(unfit).await,
+        }
+    }
+
+    /// A round of turning; `None` when it was ended or is not fit.
+    async fn turned(&mut self, text: &str, far: bool) -> Option<Round> {
+        if !self.confirmed(text).await {
+            return None;
+        }
+        let mut turns = FlowTurns::default();
+        for left in (0..TURNS).rev() {
+            Timer::after(SAMPLING).await;
+            if left > 0 && left.is_multiple_of(TURNS_SHOWN) {
+                let seconds = left / 100;
+                self.out.line(format_args!("{seconds} s more")).await;
+            }
+            let attitude = self.links.attitude.look(|m| (m.at, m.value.q));
+            let view = self.links.ground.fresh().unwrap_or_default();
+            if let Some((at, q)) = attitude {
+                turns.add(at.as_micros(), q, &view);
+            }
+            if self.keys.pressed() {
+                self.out.line(format_args!("ended: nothing is changed")).await;
+                return None;
+            }
+        }
+        match turns.round(far) {
+            Ok(round) => Some(round),
+            Err(unfit) => {
+                self.unfit(unfit).await;
+                None
+            }
+        }
+    }
+
+    /// Says what to do; true with Enter.
+    async fn confirmed(&mut self, text: &str) -> bool {
+        self.out.line(format_args!("{text}")).await;
+        let key = self.ask("Enter when it is so, any other key ends: ").await;
+        let done = matches!(key, Some(b'\r' | b'\n'));
+        if !done {
+            self.out.line(format_args!("ended: nothing is changed")).await;
+        }
+        done
+    }
+
     fn in_force(&self, name: &str) -> f32 {
         self.links.params.get(name).unwrap_or_default()
     }
@@ -383,12 +462,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
 
     /// Says what to do, waits for a key, and samples a rest of two seconds; `None` when it was ended.
     async fn rest(&mut self, text: &str, read: Read<'_>) -> Option<Samples> {
-        self.out.line(format_args!("{text}")).await;
-        if !matches!(
-            self.ask("Enter when it is so, any other key ends: ").await,
-            Some(b'\r' | b'\n')
-        ) {
-            self.out.line(format_args!("ended: nothing is changed")).await;
+        if !self.confirmed(text).await {
             return None;
         }
         let mut samples = Samples::default();

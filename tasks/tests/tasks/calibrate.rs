@@ -1,8 +1,10 @@
 //! Calibration and the rotors' order, typed key by key: what is asked, what is found, what would change.
 
+use embassy_time::Instant;
 use sophie_control::calibration::Face;
+use sophie_control::ground::{Flow, GroundView, Range};
 use sophie_control::params::{MotorMap, Params};
-use sophie_control::vector::Vec3;
+use sophie_control::vector::{Quat, Vec3};
 use sophie_tasks::ports::ImuReading;
 
 use crate::bench::{Table, UNLOADED};
@@ -188,8 +190,8 @@ fn the_gyro_is_shown_and_a_key_ends_any_of_it() {
         assert_eq!(table.presses("x", 100), [ended], "{command}");
     }
     assert_eq!(table.says("changes", 100), ["no changes"]);
-    assert_eq!(table.says("calibrate", 100).len(), 9);
-    assert_eq!(table.says("calibrate all", 100).len(), 9);
+    assert_eq!(table.says("calibrate", 100).len(), 10);
+    assert_eq!(table.says("calibrate all", 100).len(), 10);
 }
 
 #[test]
@@ -476,4 +478,89 @@ fn the_mounting_is_found_by_tilting() {
         table.lies(lie[2], Vec3::ZERO);
         assert_eq!(table.presses("\r", 2500)[1..], *answers);
     }
+}
+
+/// Hands that turn the vehicle `distance` m over a floor, and a module that sits a quarter turn beyond its parameter
+/// with 1.2 times its counts.
+fn turned_over_a_floor(table: &mut Table, distance: f32, quality: u8) -> Vec<String> {
+    let mut turn = Vec::new();
+    table.line.put(b"\r");
+    let mut said = Vec::new();
+    for ms in 0..8600u32 {
+        let t = ms as f32 * 1e-3;
+        let rate = |w: f32| 0.35 * w * (w * t).cos();
+        let gyro = Vec3::new(rate(3.5), rate(4.3), 0.0);
+        // What the accelerometer would read in hands, so that the attitude follows the gyro.
+        let q = Quat::from_euler(0.35 * (3.5 * t).sin(), 0.35 * (4.3 * t).sin(), 0.0);
+        table.imu.2.set(ImuReading {
+            gyro,
+            accel: q.rotate_inverse(Face::Belly.force()) - Face::Belly.force(),
+        });
+        turn.push(gyro);
+        if ms % 20 == 0 && ms >= 45 {
+            let until = ms as usize - 25;
+            let seen = turn[until - 20..until]
+                .iter()
+                .fold(Vec3::ZERO, |sum, rate| sum + *rate * 1e-3);
+            let noise = (ms / 20 % 5) as f32 * 1e-4;
+            let now = Instant::now();
+            let measured = now.as_micros() - 25_000;
+            let view = GroundView {
+                flow: Some(Flow {
+                    until_us: measured,
+                    seconds: 0.02,
+                    angle: [1.2 * seen.y + noise, -1.2 * seen.x],
+                    quality,
+                }),
+                range: Some(Range {
+                    at_us: measured,
+                    distance: Some(distance + noise),
+                    reach: (0.02, 8.0),
+                }),
+            };
+            table.rig.links.ground.send(now, view);
+        }
+        said.extend(table.goes_on(1));
+    }
+    table.imu.2.set(ImuReading::default());
+    said
+}
+
+#[test]
+fn the_flow_modules_scale_and_mounting_are_found_by_turning_it() {
+    let mut table = Table::set();
+    let asked = table.says_trimmed("calibrate flow", 100);
+    assert!(asked[0].starts_with("Hold it 0.5 m over a floor"), "{asked:?}");
+    let asked = turned_over_a_floor(&mut table, 0.5, 120);
+    assert!(
+        asked.iter().any(|line| line.starts_with("Now 1.5 m")),
+        "{asked:?}"
+    );
+    let said = turned_over_a_floor(&mut table, 1.5, 120);
+    let line = |begin: &str| {
+        let found = said.iter().find(|line| line.starts_with(begin));
+        found.unwrap_or_else(|| panic!("{said:?}")).clone()
+    };
+    let scale = value(&line("flow_scale 10.5 -> "));
+    assert!((scale / 12.6 - 1.0).abs() < 0.02, "{scale}");
+    assert!(line("flow_mounting").contains("-> 90 right"), "{said:?}");
+    assert!(
+        line("turned about a point").contains(" 0 cm over the lens"),
+        "{said:?}"
+    );
+    // In the dark nothing is taken.
+    table.says("defaults", 100);
+    table.says("calibrate flow", 100);
+    let said = turned_over_a_floor(&mut table, 0.5, 5);
+    let why = "not taken: quality of the picture is 5.00; 20.00 to 255.00 allowed";
+    assert!(said.iter().any(|line| line == why), "{said:?}");
+    // Without a module.
+    table.says("calibrate flow", 100);
+    table.run(500);
+    let said = table.presses("\r", 9000);
+    assert!(
+        said.iter()
+            .any(|line| line.starts_with("not taken: flows is 0.00")),
+        "{said:?}"
+    );
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use sophie_control::position::SightFault;
+use sophie_control::position::{SightFault, SightLimit};
 use sophie_tasks::start::StartCause;
 use sophie_tasks::warning::Warning;
 
@@ -24,6 +24,11 @@ fn to_do(warning: Warning) -> &'static str {
         }
         Warning::Sight(SightFault::FlowFrozen | SightFault::RangeFrozen) => "Steer it, land: a new module.",
         Warning::Sight(SightFault::RangeJumps) => "Steer it away from what is rough below; look at the lens.",
+        Warning::Limit(SightLimit::TooLow | SightLimit::TooHigh) => {
+            "Fly within 8 cm to 2.5 m of what is below, or by hand."
+        }
+        Warning::Limit(SightLimit::NoRange) => "Come down, or off the edge.",
+        Warning::Limit(SightLimit::TooDark) => "By hand: more light, a floor with a pattern.",
         Warning::ServoWeak => {
             "`servo_torque_max` is above what `servo_stall` gives: a full grip may not hold."
         }

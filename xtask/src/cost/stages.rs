@@ -26,7 +26,7 @@ const fn stage(name: &'static str, what: &'static str, target: Option<f64>, peer
     }
 }
 
-pub const STAGES: [Stage; 13] = [
+pub const STAGES: [Stage; 18] = [
     Stage {
         parts: 3.0,
         ..stage("biquads", "low pass, one biquad-axis", Some(16.0), "22 (PX4)")
@@ -88,4 +88,24 @@ pub const STAGES: [Stage; 13] = [
         Some(1800.0),
         "4700 (Betaflight F745, RPM notches, no tilt)",
     ),
+    stage(
+        "position",
+        "position estimate, three steps in four: the inertial sensor alone",
+        None,
+        "none compares",
+    ),
+    stage(
+        "position-flow",
+        "the same, with new flow and range",
+        None,
+        "none compares",
+    ),
+    stage(
+        "position-pose",
+        "the same, with a new pose",
+        None,
+        "none compares",
+    ),
+    stage("hold", "law of the hold, 100 Hz", None, "none compares"),
+    stage("ground", "bytes of flow and range, 50 Hz", None, "none compares"),
 ];

@@ -122,7 +122,7 @@ fn a_new_board_is_brought_up_through_all_steps() {
     let said = builder.said();
     assert_eq!(all_passed, Ok(true), "{said}\n{log}");
     let protocol = folder.read();
-    assert_eq!(protocol["state"].as_str(), Some("all 26 steps passed"));
+    assert_eq!(protocol["state"].as_str(), Some("all 27 steps passed"));
     assert!(protocol["firmware"].as_str().unwrap().ends_with(" on matek-h743"));
     assert!(
         protocol["build"].as_str().unwrap().starts_with("build "),

@@ -11,6 +11,7 @@
 mod chain;
 mod counter;
 mod inputs;
+mod position;
 mod run;
 
 #[cfg(not(target_os = "none"))]

@@ -9,6 +9,7 @@ use sophie_control::chain::{Demand, FlightChain};
 use crate::chain::{self, Laws};
 use crate::counter::{self, Tally, gross};
 use crate::inputs::{FLIGHT, Inputs, REST, Sequence};
+use crate::position;
 
 type Part<S> = (&'static str, fn(&mut S, &Inputs));
 
@@ -39,6 +40,7 @@ pub fn run(print: &mut dyn FnMut(Arguments<'_>)) {
     let commands = stages(print, overhead);
     let (again, tally) = whole(overhead);
     line(print, "whole", &tally);
+    position::run(print, overhead);
     print(format_args!("commands {commands}"));
     print(format_args!("commands-whole {again}"));
 }
@@ -151,7 +153,7 @@ fn add(fold: &mut Fold, chain: &FlightChain) {
     }
 }
 
-fn line(print: &mut dyn FnMut(Arguments<'_>), name: &str, t: &Tally) {
+pub fn line(print: &mut dyn FnMut(Arguments<'_>), name: &str, t: &Tally) {
     print(format_args!(
         "stage {name} {} {} {} {}",
         t.calls, t.total, t.min, t.max

@@ -48,6 +48,7 @@ fn figures(said: &[String]) -> Vec<String> {
                 "after the change",
                 "after 'save'",
                 "nose is",
+                "turned about",
             ]
             .iter()
             .any(|begin| line.starts_with(begin))
@@ -95,6 +96,17 @@ pub(super) fn fsr(walk: &mut Walk<'_>, step: &Step) -> Judged {
 pub(super) fn servo(walk: &mut Walk<'_>, step: &Step) -> Judged {
     walk.ready()?;
     calibrated(walk, &format!("calibrate servo {}", step.number))
+}
+
+/// A vehicle without a module has nothing to calibrate.
+pub(super) fn flow(walk: &mut Walk<'_>, _: &Step) -> Judged {
+    let said = walk.session.command("get flow_port")?;
+    if said.first().is_some_and(|line| line.contains(" none")) {
+        let none = "no flow module: flow_port is none";
+        return Ok(Verdict::of(true, vec![none.to_owned()]));
+    }
+    walk.ready()?;
+    calibrated(walk, "calibrate flow")
 }
 
 pub(super) fn battery(walk: &mut Walk<'_>, _: &Step) -> Judged {

@@ -69,7 +69,7 @@ const SERVO: &str =
     "Tendons off, servos on their own battery. Find the reel's release mark, then its full mark.";
 
 /// All steps, in their order.
-pub const STEPS: [Step; 26] = [
+pub const STEPS: [Step; 27] = [
     step(
         "chip",
         "Chip and image",
@@ -136,6 +136,12 @@ pub const STEPS: [Step; 26] = [
     numbered("servo-2", "Servo 2, rear-left", SERVO, 2, calibrate::servo),
     numbered("servo-3", "Servo 3, front-right", SERVO, 3, calibrate::servo),
     numbered("servo-4", "Servo 4, rear-right", SERVO, 4, calibrate::servo),
+    step(
+        "flow",
+        "Flow and range module",
+        "Turned by hand over a floor with a pattern, 0.5 m and 1.5 m high; a vehicle without one has nothing to do.",
+        calibrate::flow,
+    ),
     step(
         "battery",
         "Battery voltage",
