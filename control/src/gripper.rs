@@ -32,7 +32,7 @@ mod pressure_loop;
 mod tests;
 
 pub use self::arm::ArmGripper;
-pub use self::config::{Config, force_per_thrust};
+pub use self::config::{Config, TIGHTENINGS, force_per_thrust};
 pub use self::input::{ArmInput, Pressure};
 use crate::grip::{ArmGrip, ArmState};
 use crate::grip_fault::GripFault;

@@ -32,6 +32,7 @@ mod probe;
 mod reason;
 mod releasing;
 mod remote;
+mod slip;
 #[cfg(test)]
 mod tests;
 mod transitions;

@@ -114,6 +114,13 @@ pub enum ClampCommand {
         /// Which arms.
         arms: ArmChoice,
     },
+    /// The same, beyond the grip pressure.
+    Tighten {
+        /// Which arms.
+        arms: ArmChoice,
+        /// How often they were tightened, 1 to [`TIGHTENINGS`](crate::gripper::TIGHTENINGS).
+        times: u8,
+    },
     /// No pulses: the gears keep hold as at power-up.
     Keep,
     /// One servo at a bench pulse, the others as with [`Self::Release`].

@@ -2,8 +2,9 @@
 
 use sophie_control::grip_fault::GripFault;
 use sophie_control::mode::{Mode, Reason};
-use sophie_paper::study::touch::{End, Touch, Touched, fly};
+use sophie_paper::study::touch::{End, STAY, Touch, Touched, fly, fly_as};
 use sophie_sim::parallel;
+use sophie_sim::scenario::Scenario;
 
 /// docs/results.md has a longer run.
 const COUNT: u64 = 1000;
@@ -40,6 +41,7 @@ fn central(seed: u64) -> Touch {
         gust: 0.05,
         throttle: 0.3,
         cancel: f64::INFINITY,
+        stay: STAY,
         seed,
     }
 }
@@ -88,6 +90,7 @@ fn a_closing_that_is_called_off_in_a_slide_leaves_at_once() {
         gust: 0.037,
         throttle: 0.29,
         cancel: 0.695,
+        stay: STAY,
         seed: 1209,
     };
     let touched = fly(&touch).expect("the vehicle arms");
@@ -161,4 +164,47 @@ fn an_oblique_pipe_is_no_grip_and_the_reason_is_named() {
         );
         assert_eq!(touched.why, why, "{heading}: {touched:?}");
     }
+}
+
+/// Friction falls under a perched vehicle 30 mm beside the crown: the arms tighten, and it stays.
+#[test]
+fn a_slip_is_answered_by_tightening_and_held() {
+    let touch = Touch {
+        offset: 0.03,
+        lean: 0.0,
+        sink: 0.15,
+        gust: 0.0,
+        stay: 18.0,
+        ..central(7)
+    };
+    let (mut perched, mut before, mut after) = (None, 0.0f64, 0.0f64);
+    let mut shown = Vec::new();
+    let touched = fly_as(Scenario::default_mission(), &touch, |t, plant, stack| {
+        let Some(status) = stack.links.status.latest().map(|s| s.value) else {
+            return;
+        };
+        if status.mode != Mode::Perched {
+            return;
+        }
+        let since = t - *perched.get_or_insert(t);
+        plant.wet((0.45 - 0.02 * (since - 1.0).max(0.0)).max(0.22));
+        let lean = plant.euler()[0].to_degrees();
+        if since < 1.0 {
+            before = lean;
+        } else if since > 16.0 {
+            after = after.max(lean);
+        }
+        if let Some(why) = status.reason.filter(|why| shown.last() != Some(why)) {
+            shown.push(why);
+        }
+    });
+    assert!(touched.is_some_and(|t| t.proven), "{touched:?}");
+    assert!(
+        before > 8.0 && after < before + 4.0,
+        "{before:.1}, then {after:.1} deg: {shown:?}"
+    );
+    assert!(
+        shown.starts_with(&[Reason::TightensOnce, Reason::TightensLast]),
+        "{shown:?}"
+    );
 }

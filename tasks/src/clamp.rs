@@ -37,11 +37,15 @@ pub async fn run(links: &Links) -> ! {
         };
         let close = match command.value {
             ClampCommand::Release | ClampCommand::Keep | ClampCommand::Place(_) => [false; 4],
-            ClampCommand::Close { arms } => arms.mask(),
+            ClampCommand::Close { arms } | ClampCommand::Tighten { arms, .. } => arms.mask(),
         };
         let contact = match links.contact.newest() {
             Some(Newest::Fresh(contact)) => Some(contact),
             Some(Newest::Held(_)) | None => None,
+        };
+        let config = match command.value {
+            ClampCommand::Tighten { times, .. } => config.tightened(times),
+            _ => config,
         };
         let out = gripper.step(&config, &inputs(links, close, contact), tick.dt);
         let at = contact.map_or(command.at, |contact| contact.at);

@@ -15,8 +15,15 @@ pub(super) const LAG_MAX: f32 = 20.0;
 /// Cut-off of the fallback force after a lost touch, rad/s.
 const MEAN_FORCE_CUTOFF: f32 = 3.0;
 
+/// Force by which a newton per square metre more is pressed on a pipe, N/Pa (94 Pa/N, docs/physics.md).
+const FORCE_PER_PRESSURE: f32 = 0.0106;
+/// Change of the target that is one, Pa.
+const TIGHTENED: f32 = 1.0;
+
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PressureLoop {
+    /// At the last step, Pa.
+    target: Option<f32>,
     /// Commanded less actual force at touch, decaying, N.
     touch_transient: CascadedLowPass,
     /// Mean force of the last third of a second in touch, N.
@@ -37,6 +44,7 @@ impl PressureLoop {
     pub fn new(contact: &Contact, force: f32, transient: f32) -> Self {
         let base = force - transient - contact.feed_forward;
         Self {
+            target: None,
             touch_transient: CascadedLowPass::at(transient),
             mean_force: LowPass::at(base + contact.feed_forward),
             reference: contact.pressure,
@@ -48,6 +56,13 @@ impl PressureLoop {
 
     /// One step of `dt` s with the tendon's `lag` (N); returns the force, N.
     pub fn step(&mut self, cfg: &Config, contact: &Contact, lag: f32, dt: f32) -> f32 {
+        let tighter = cfg.demand.pressure - self.target.unwrap_or(cfg.demand.pressure);
+        self.target = Some(cfg.demand.pressure);
+        if tighter > TIGHTENED {
+            // A slip does not wait for the reference.
+            self.reference += tighter;
+            self.integral += FORCE_PER_PRESSURE * tighter;
+        }
         let towards = dt / (REFERENCE_TAU + dt);
         self.reference += (cfg.demand.pressure - self.reference) * towards;
         let error = self.reference - contact.pressure;

@@ -9,7 +9,7 @@ use super::lean::Lean;
 use super::power_up_grip::PowerUpGripCheck;
 use super::probe::Probe;
 use super::remote::Remote;
-use super::{Inputs, Reason, remote};
+use super::{ClampCommand, Inputs, Reason, remote};
 use crate::arming::{ArmingInhibit, ArmingInhibits, Checks, Gesture, GestureWatch};
 use crate::grip_memory::GripMemory;
 use crate::math::clamp;
@@ -77,6 +77,8 @@ pub struct Context {
     pub sinking: f32,
     pub collective: Collective,
     pub probe: Probe,
+    /// How often the arms have tightened since they closed.
+    pub tightened: u8,
     pub bench: Bench,
     pub remote: Remote,
     /// A reason and its remaining display time, s.
@@ -108,6 +110,7 @@ impl Context {
             sinking: 0.0,
             collective: Collective::default(),
             probe: Probe::default(),
+            tightened: 0,
             bench: Bench::default(),
             remote: Remote::default(),
             note: (None, 0.0),
@@ -247,6 +250,17 @@ impl Context {
             GripMemory::Open
         } else {
             grip_memory
+        }
+    }
+
+    /// The arms of `wish` as tight as they have become.
+    pub fn tight(&self, wish: ClampCommand) -> ClampCommand {
+        match wish {
+            ClampCommand::Close { arms } if self.tightened > 0 => ClampCommand::Tighten {
+                arms,
+                times: self.tightened,
+            },
+            other => other,
         }
     }
 

@@ -76,6 +76,7 @@ pub fn contact(_: &State, step: &mut Step<'_>, _: Option<Reason>) -> Contact {
 /// The arms begin to close. A radio lost just now finishes the landing that the pilot began.
 pub fn closing(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Clamping {
     step.context.lean.sit();
+    step.context.tightened = 0;
     step.context.perch_switch.seen_on = step.inputs.sticks.is_some();
     Clamping {
         hold: hold(from),

@@ -108,7 +108,7 @@ impl ModeLogic {
         Outputs {
             mode,
             rotors,
-            tendons: state.tendons(),
+            tendons: context.tight(state.tendons()),
             grip_memory,
             reason: state.reason(context, inputs, inhibits),
             inhibits,

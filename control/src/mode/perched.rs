@@ -3,27 +3,22 @@
 use super::behaviour::Behaviour;
 use super::context::{Context, Step};
 use super::releasing::RELEASE_THROTTLE_MIN;
+use super::slip::Slip;
 use super::{Inputs, Reason, Setpoint};
 use crate::arming::ArmingInhibits;
+use crate::grip::{ArmState, GripDemand};
 use crate::grip_memory::GripMemory;
-use crate::math::deg;
+use crate::gripper::TIGHTENINGS;
 use crate::params::Params;
 use crate::rc::Sticks;
-use crate::support::Held;
-
-/// Turn of the body since the perch that is a slip, rad, and the time that it must last, s: a push passes.
-const SLIP_ANGLE: f32 = deg(5.0);
-const SLIP_TIME: f32 = 1.0;
+use crate::tendon::ForceLimit;
 
 /// See [`super::Mode::Perched`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Perched {
     /// Closed by the clamp loops, or held by the gears.
     pub grip_memory: GripMemory,
-    /// Roll and pitch at the first look, rad.
-    attitude: Option<[f32; 2]>,
-    /// Turned away from it.
-    turned: Held,
+    slip: Slip,
 }
 
 impl Perched {
@@ -31,8 +26,7 @@ impl Perched {
     pub fn on(grip_memory: GripMemory) -> Self {
         Self {
             grip_memory,
-            attitude: None,
-            turned: Held::default(),
+            slip: Slip::default(),
         }
     }
 
@@ -51,6 +45,19 @@ impl Perched {
         (RELEASE_THROTTLE_MIN..=params.perch_thr_max).contains(&sticks.throttle)
     }
 
+    /// Every arm presses and has force left.
+    fn may_tighten(&self, step: &Step<'_>) -> bool {
+        let (GripMemory::Controlled(arms), Some(grip)) = (self.grip_memory, step.inputs.grip) else {
+            return false;
+        };
+        let p = &step.context.params;
+        let most = GripDemand::from_params(p, ForceLimit::from_params(p).asked).force;
+        let mut chosen = grip.arms.iter().zip(arms.mask()).filter(|(_, chosen)| *chosen);
+        step.context.tightened < TIGHTENINGS
+            && chosen
+                .all(|(a, _)| matches!(a.state, ArmState::Holding | ArmState::Touching) && a.force < most)
+    }
+
     fn trouble(&self, context: &Context, i: &Inputs) -> Option<Reason> {
         let asked = i
             .sticks
@@ -59,8 +66,8 @@ impl Perched {
             Some(Reason::ClampSilent)
         } else if !context.grasps(i, self.grip_memory) {
             Some(Reason::GripLost)
-        } else if self.turned.time() >= SLIP_TIME {
-            Some(Reason::Slips)
+        } else if let Some(slips) = self.slip.reason() {
+            Some(slips)
         } else if i.sticks.is_none() {
             Some(Reason::RADIO_LOST)
         } else if i.motion.is_none() {
@@ -86,10 +93,16 @@ impl Behaviour for Perched {
         let Some(motion) = step.inputs.motion else {
             return;
         };
-        let (roll, pitch, _) = motion.q.to_euler();
-        let [first_roll, first_pitch] = *self.attitude.get_or_insert([roll, pitch]);
-        let turned = (roll - first_roll).abs().max((pitch - first_pitch).abs());
-        self.turned.step(turned > SLIP_ANGLE, step.dt);
+        if self.slip.step(motion, self.may_tighten(step), step.dt) {
+            let times = step.context.tightened.saturating_add(1);
+            step.context.tightened = times;
+            let last = times >= TIGHTENINGS;
+            step.context.note(Some(if last {
+                Reason::TightensLast
+            } else {
+                Reason::TightensOnce
+            }));
+        }
     }
 
     fn grip_memory(&self) -> GripMemory {

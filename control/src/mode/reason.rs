@@ -82,7 +82,11 @@ reasons! {
     CrownLeft = "on the pipe: crown to the left",
     /// Resting on the pipe: the crown is to the right.
     CrownRight = "on the pipe: crown to the right",
-    /// Perched: the body has turned about the pipe since the grip was proven.
+    /// Perched: the body turns about the pipe, and the arms tighten for the first time.
+    TightensOnce = "slips: arms tighten, 1 of 2",
+    /// The same for the last time.
+    TightensLast = "slips: arms tighten, 2 of 2",
+    /// Perched: the body goes on turning about the pipe, and the arms do not tighten any more.
     Slips = "slipping round the pipe",
     /// Perched: nothing is known of the grip.
     ClampSilent = "clamp loop silent",

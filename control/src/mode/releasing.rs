@@ -55,7 +55,9 @@ impl Releasing {
 
     /// Rotors are up, and friction would not hold the vehicle while the arms open.
     pub fn lifts_off(&self, step: &Step<'_>) -> bool {
-        !self.opening && self.spooled(step.dt) >= 1.0 && step.context.lean.lifts_off()
+        // Arms that were tightened mean less friction than the parameter's.
+        let slips = step.context.lean.lifts_off() || step.context.tightened > 0;
+        !self.opening && self.spooled(step.dt) >= 1.0 && slips
     }
 
     /// Share of the collective after a step of `dt` s.

@@ -42,8 +42,8 @@ const SEEN_DEPTH: f64 = 0.06;
 const LOST_DEPTH: f64 = 0.95;
 /// Height over the touch height clear of the pipe, m.
 const CLEAR: f64 = 0.4;
-/// On the pipe before the arms open, s.
-const STAY: f64 = 2.0;
+/// On the pipe before the arms open, s; throttle there.
+pub const STAY: f64 = 2.0;
 const RELEASE: f64 = 0.25;
 
 /// A touch to try.
@@ -69,6 +69,8 @@ pub struct Touch {
     pub throttle: f64,
     /// Time from touch to perch switch off, s; infinite: never.
     pub cancel: f64,
+    /// On the pipe before the arms open, s.
+    pub stay: f64,
     /// Seed of sensor errors and gusts.
     pub seed: u64,
 }
@@ -95,6 +97,7 @@ impl Touch {
                 t if t < 0.0 => f64::INFINITY,
                 t => t,
             },
+            stay: STAY,
             seed,
         }
     }
@@ -299,7 +302,8 @@ pub fn fly_as(
         mode: Mode::Flight,
         why: None,
     };
-    for ms in 0..(DURATION * 1e3) as u32 {
+    let duration = DURATION + touch.stay - STAY;
+    for ms in 0..(duration * 1e3) as u32 {
         hand.act(&flight, f64::from(ms) * 1e-3, touch, height);
         flight.step(&hand.sticks);
         each(f64::from(ms) * 1e-3, &mut flight.plant, &flight.stack);
@@ -331,7 +335,7 @@ pub fn fly_as(
     }
     out.end = match out.mode {
         Mode::Perched => End::Perched,
-        _ if hand.perched > STAY => End::Released,
+        _ if hand.perched > touch.stay => End::Released,
         _ => End::Away,
     };
     Some(out)
@@ -365,7 +369,7 @@ impl Hand {
         if shown == Some(Mode::Perched) {
             self.perched += 1e-3;
             throttle = 0.0;
-            if self.perched > STAY {
+            if self.perched > touch.stay {
                 throttle = RELEASE;
                 self.releases |= self.sticks.throttle > 0.22;
                 self.sticks.perch_switch &= !self.releases;

@@ -170,6 +170,11 @@ impl Plant {
         pose.velocity = turn * pose.velocity;
     }
 
+    /// Gives the pipe another coefficient of friction: it gets wet. For studies.
+    pub fn wet(&mut self, friction: f64) {
+        self.base.pipe.friction = friction;
+    }
+
     /// Distance of the turning propellers from the pipe, m: negative inside, infinite while none turns.
     #[must_use]
     pub fn propeller_clearance(&self) -> f64 {

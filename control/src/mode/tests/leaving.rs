@@ -426,23 +426,73 @@ fn the_pilot_reads_on_which_side_the_crown_is() {
 }
 
 #[test]
-fn a_perched_vehicle_that_turns_round_the_pipe_says_so() {
-    for (degrees, seconds, slips) in [
-        (6.0, 1.2, true),
-        (-6.0, 1.2, true),
-        (4.0, 5.0, false),
-        (6.0, 0.5, false),
+fn a_perched_vehicle_that_turns_round_the_pipe_is_tightened_a_few_times() {
+    let tight = |times| ClampCommand::Tighten {
+        arms: ArmChoice::All,
+        times,
+    };
+    let closed = ClampCommand::Close { arms: ArmChoice::All };
+    // A push, and what the spool-down leaves.
+    let mut r = Rig::perched();
+    r.leans(-6.0, 0.0);
+    r.expect(0.4, Mode::Perched);
+    r.leans(0.4, 0.0);
+    r.expect(5.0, Mode::Perched);
+    assert_eq!((r.out.reason, r.out.tendons), (None, closed));
+    // A sensor that drifts by two degrees in ten minutes.
+    for second in 0..600u16 {
+        r.leans(0.4 + f32::from(second) / 300.0, 0.0);
+        r.run(1.0);
+        assert_eq!((r.out.reason, r.out.tendons), (None, closed), "{second} s");
+    }
+
+    // Creeping on after each answer, then at once.
+    let mut r = Rig::perched();
+    r.leans(3.0, 0.0);
+    r.expect(0.6, Mode::Perched);
+    assert_eq!(
+        (r.out.reason, r.out.tendons),
+        (Some(Reason::TightensOnce), tight(1))
+    );
+    r.leans(4.5, 0.2);
+    r.expect(0.15, Mode::Perched);
+    assert_eq!(r.out.tendons, tight(1), "too soon for another");
+    r.expect(0.1, Mode::Perched);
+    assert_eq!(
+        (r.out.reason, r.out.tendons),
+        (Some(Reason::TightensLast), tight(2))
+    );
+    r.leans(7.0, 0.0);
+    r.expect(0.6, Mode::Perched);
+    assert_eq!((r.out.reason, r.out.tendons), (Some(Reason::Slips), tight(2)));
+
+    // Until the arms open, they stay as tight.
+    r.sticks().throttle = 0.3;
+    r.sticks().perch_switch = false;
+    r.expect(1.0, Mode::Releasing);
+    assert_eq!(r.out.tendons, tight(2));
+}
+
+#[test]
+fn arms_that_have_no_force_left_are_not_tightened() {
+    for (state, force) in [
+        (ArmState::Holding, 1000.0),
+        (ArmState::ForceLimited, 40.0),
+        (ArmState::Faulty, 40.0),
     ] {
         let mut r = Rig::perched();
-        r.leans(degrees, 0.0);
-        r.expect(seconds, Mode::Perched);
-        assert_eq!(
-            r.out.reason == Some(Reason::Slips),
-            slips,
-            "{degrees} for {seconds} s"
-        );
-        r.leans(0.0, 0.0);
-        r.expect(0.1, Mode::Perched);
-        assert_eq!(r.out.reason, None);
+        let grip = r.inputs.grip.as_mut().unwrap();
+        grip.arms[2].state = state;
+        grip.arms[2].force = force;
+        // Faulty, it holds nothing that counts.
+        let why = if state == ArmState::Faulty {
+            Reason::GripLost
+        } else {
+            Reason::Slips
+        };
+        r.leans(4.0, 0.0);
+        r.expect(3.0, Mode::Perched);
+        assert_eq!(r.out.reason, Some(why), "{state:?}");
+        assert_eq!(r.out.tendons, ClampCommand::Close { arms: ArmChoice::All });
     }
 }

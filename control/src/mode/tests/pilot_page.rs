@@ -71,6 +71,8 @@ fn on_reason(reason: Reason) -> &'static str {
         Reason::ArmSwitchOff => "Arm switch on.",
         Reason::CrownLeft => "It stands beside the crown. If it slides off, come down further left.",
         Reason::CrownRight => "It stands beside the crown. If it slides off, come down further right.",
+        Reason::TightensOnce => "Nothing yet: the arms press twice as hard.",
+        Reason::TightensLast => "Be ready to let go.",
         Reason::Slips => "Let go and land again nearer the crown, or fetch it.",
         Reason::LeansTooFar => "It stays closed: fetch it by hand.",
         Reason::LiftsOff => "It lifts off by itself as the arms open: throttle to hover.",

@@ -2,7 +2,7 @@
 
 use sophie_sim::streams::Streams;
 
-use super::super::touch::Touch;
+use super::super::touch::{STAY, Touch};
 
 /// A pipe on which half-widths are measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,6 +94,7 @@ fn anywhere(seed: u64, heading: f64) -> Touch {
             t if t < 0.0 => f64::INFINITY,
             t => t,
         },
+        stay: STAY,
         seed,
     }
 }
@@ -114,6 +115,7 @@ fn careful(gauge: &Gauge, seed: u64, heading: f64) -> Touch {
         gust: GUST,
         throttle: THROTTLE,
         cancel: f64::INFINITY,
+        stay: STAY,
         seed,
     }
 }
