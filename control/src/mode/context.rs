@@ -1,6 +1,7 @@
 //! What outlives a state: parameters, the pilot's switches, evidence of support and lean, dangers, the collective.
 
 use super::bench::Bench;
+use super::by_itself::ByItself;
 use super::crown::Crown;
 use super::dangers::Dangers;
 use super::demand::Collective;
@@ -79,6 +80,7 @@ pub struct Context {
     pub probe: Probe,
     pub bench: Bench,
     pub remote: Remote,
+    pub by_itself: ByItself,
     /// A reason and its remaining display time, s.
     note: (Option<Reason>, f32),
     /// Specific force at rest, m/s².
@@ -110,6 +112,7 @@ impl Context {
             probe: Probe::default(),
             bench: Bench::default(),
             remote: Remote::default(),
+            by_itself: ByItself::default(),
             note: (None, 0.0),
             gravity: crate::math::GRAVITY,
         }
@@ -255,10 +258,15 @@ impl Context {
         4.0 * self.params.thrust_max
     }
 
-    /// The collective on the pipe while the arms close, N: the pilot's throttle, limited to `perch_lift` of the weight.
+    /// The collective on the pipe while the arms close, N: `perch_lift` of the weight; not more than the pilot's throttle,
+    /// unless that is centred for a perch by itself.
     pub fn set_down_thrust(&self) -> f32 {
         let most = self.params.perch_lift * self.support.weight();
-        clamp(self.throttle * self.full_thrust(), 0.0, most)
+        if self.by_itself.active {
+            most
+        } else {
+            clamp(self.throttle * self.full_thrust(), 0.0, most)
+        }
     }
 }
 
