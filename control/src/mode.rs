@@ -7,6 +7,7 @@
 mod armed;
 mod behaviour;
 mod bench;
+mod by_itself;
 mod calibrating;
 mod clamping;
 mod contact;
@@ -26,6 +27,7 @@ mod holding;
 mod landed;
 mod lean;
 mod logic;
+mod nearing;
 mod perched;
 mod power_up_grip;
 mod probe;
@@ -119,6 +121,8 @@ modes! {
     Flight in flight = 3, "FLIGHT";
     /// Free flight that holds the position; the sticks ask for velocities.
     Hold in holding = 11, "HOLD";
+    /// Free flight onto the pipe, or off it, by itself.
+    Approach in nearing = 12, "APPROACH";
     /// Resting on the pipe with the rotors still helping; attitude held, yaw given up.
     Contact in contact = 4, "CONTACT";
     /// Tendons closing the chosen arms under the pressure loop; rotors spool down once the grip is proven.

@@ -6,6 +6,7 @@
 
 mod agreement;
 mod axis;
+mod band;
 mod fit;
 #[cfg(test)]
 mod fit_tests;
@@ -19,8 +20,8 @@ mod tests;
 use self::axis::{Axis, Change};
 pub use self::fit::{FlowFit, FlowTurns, Round, flow_fit};
 use self::past::{Moment, Past};
-use self::sight::Sight;
 pub use self::sight::{FLOW_HEIGHT, SightFault, SightLimit};
+use self::sight::{Sight, beam};
 use crate::ground::{Flow, GroundView};
 use crate::math::{self, GRAVITY};
 use crate::params::Params;
@@ -45,6 +46,9 @@ const POSE_FRESH: f32 = 0.2;
 /// Flows refused in a row after which the next is taken, a second at 50 Hz; one that is wrong for good is found out by
 /// its agreement with the inertial sensor.
 const FLOWS_REFUSED_MAX: u32 = 50;
+/// Range of a vehicle that stands, m, and the variance of its level speed, (m/s)².
+const STANDING: f32 = 0.05;
+const STAND_SPEED: f32 = 0.01;
 /// Share of a new heading's difference that the turn follows: 1 s at 50 Hz.
 const TURN_GAIN: f32 = 0.02;
 /// Cut-off of the lateral and the vertical disturbance, rad/s.
@@ -110,12 +114,38 @@ pub struct Estimate {
     pub jumps: u8,
     /// What is wrong with flow or range, which are left out then.
     pub fault: Option<SightFault>,
+    /// Where the beam of the range falls.
+    pub foot: Foot,
+}
+
+/// Where the beam of a range has met what is below.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Foot {
+    /// In the estimate's axes, m; `None` where nothing was within reach.
+    pub point: Option<Vec3>,
+    /// Counts the ranges.
+    pub count: u8,
+    /// Since it was measured, s.
+    pub age: f32,
+}
+
+impl Default for Foot {
+    /// None yet.
+    fn default() -> Self {
+        Self {
+            point: None,
+            count: 0,
+            age: f32::MAX,
+        }
+    }
 }
 
 impl Estimate {
     /// True if every number is finite.
     pub fn is_finite(&self) -> bool {
-        (self.position + self.velocity + self.disturbance).is_finite() && (self.turn + self.age).is_finite()
+        let foot = self.foot.point.unwrap_or_default();
+        let sum = self.position + self.velocity + self.disturbance + foot;
+        sum.is_finite() && (self.turn + self.age).is_finite() && !self.foot.age.is_nan()
     }
 }
 
@@ -162,7 +192,10 @@ impl PositionEstimator {
         let flow = view.and_then(|view| view.flow).and_then(Flow::checked);
         let flow = flow.filter(|flow| flow.until_us > self.flow_us && flow.until_us <= at_us);
         self.flow_us = flow.map_or(self.flow_us, |flow| flow.until_us);
+        let before = self.sight.looked_us();
         let range = view.and_then(|view| self.sight.new_range(view, at_us));
+        let ranged = self.sight.looked_us();
+        let looked = (ranged != before && self.sight.range_is_sound()).then_some(ranged);
         if !(felt.q.is_finite() && felt.accel.is_finite() && lift.is_finite()) {
             return None;
         }
@@ -191,6 +224,9 @@ impl PositionEstimator {
         });
         if let Some(fix) = new {
             track.take(&mut self.past, fix);
+        }
+        if let Some(at) = looked {
+            track.step_on(&self.past, at, range.map(|(_, distance)| distance));
         }
         let posed = track.posed && seconds(track.pose_us, at_us) < POSE_FRESH;
         if let Some((at, distance)) = range {
@@ -225,6 +261,9 @@ struct Track {
     resets: u8,
     jumps: u8,
     ready: bool,
+    foot: Foot,
+    /// When that was measured, µs; 0 before the first.
+    foot_us: u64,
 }
 
 impl Track {
@@ -245,6 +284,8 @@ impl Track {
             resets: fix.resets,
             jumps: 0,
             ready: false,
+            foot: Foot::default(),
+            foot_us: 0,
         }
     }
 
@@ -330,13 +371,31 @@ impl Track {
         self.ready |= known && self.fixes >= READY_FIXES;
     }
 
+    /// Notes where the beam of a range of `distance` m, measured at `at` µs, has met something.
+    fn step_on(&mut self, past: &Past, at: u64, distance: Option<f32>) {
+        let Some(then) = past.at(at) else {
+            return;
+        };
+        self.foot.point = distance.map(|d| then.position + beam(then.q, d, self.turn));
+        self.foot.count = self.foot.count.wrapping_add(1);
+        self.foot_us = at;
+    }
+
     /// Compares a range of `distance` m, measured at `at` µs, with the height; beside a pose it gives the height of the ground alone.
     fn take_range(&mut self, past: &mut Past, sight: &mut Sight, (at, distance): (u64, f32), posed: bool) {
         let Some(then) = past.at(at) else {
             return;
         };
+        if distance < STANDING && !posed {
+            // Flow sees nothing there, and what is so near carries the vehicle, or soon will.
+            let lag = seconds(at, self.at_us);
+            let [x, y, _] = &mut self.axes;
+            let [along, across] = [x, y].map(|axis| axis.correct_speed(-axis.velocity(), STAND_SPEED, lag));
+            past.change(at, &[along, across, Change::default()]);
+        }
+        let motion = (self.velocity(), self.turn);
         let [_, _, axis] = &mut self.axes;
-        let Some((innovation, variance)) = sight.height(&then, distance, posed) else {
+        let Some((innovation, variance)) = sight.height(&then, distance, posed, motion) else {
             return;
         };
         let change = axis.correct(innovation, variance, seconds(at, self.at_us));
@@ -423,6 +482,13 @@ impl Track {
             age: seconds(self.fixed_us, self.at_us),
             jumps: self.jumps,
             fault,
+            foot: match self.foot_us {
+                0 => Foot::default(),
+                at => Foot {
+                    age: seconds(at, self.at_us),
+                    ..self.foot
+                },
+            },
         };
         (self.ready && estimate.is_finite()).then_some(estimate)
     }

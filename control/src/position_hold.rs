@@ -95,6 +95,11 @@ impl PositionHold {
         self.jumps = e.jumps;
     }
 
+    /// The point that is held, m, in the estimate's axes.
+    pub fn held(&self) -> Vec3 {
+        self.anchor
+    }
+
     /// One step of `dt` s; without `known` the position is none, and the sticks tilt.
     pub fn step(&mut self, e: &Estimate, felt: &Felt, wish: &Wish, known: bool, dt: f32) -> Setpoint {
         let heading = felt.q.to_euler().2 + e.turn;

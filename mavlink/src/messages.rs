@@ -392,7 +392,7 @@ pub fn extended_sys_state(vehicle: &Vehicle) -> EXTENDED_SYS_STATE_DATA {
         Some(Mode::Calibrating | Mode::Disarmed | Mode::Armed | Mode::Landed | Mode::Perched) => {
             MavLandedState::MAV_LANDED_STATE_ON_GROUND
         }
-        Some(Mode::Flight | Mode::Hold | Mode::Escaping | Mode::Failsafe) => {
+        Some(Mode::Flight | Mode::Hold | Mode::Approach | Mode::Escaping | Mode::Failsafe) => {
             MavLandedState::MAV_LANDED_STATE_IN_AIR
         }
         Some(Mode::Contact | Mode::Clamping) => MavLandedState::MAV_LANDED_STATE_LANDING,

@@ -51,7 +51,8 @@ impl Clamping {
         let sticks = step.inputs.sticks?;
         let context = &step.context;
         let limit = context.params.clamp_timeout + if self.spool.down { SPOOL_ALLOWANCE } else { 0.0 };
-        if !sticks.perch_switch && context.perch_switch.seen_on {
+        let switched = !sticks.perch_switch && context.perch_switch.seen_on;
+        if switched || context.by_itself.taken {
             return Some(Reason::ClosingCancelled);
         }
         match self.hopeless(step) {

@@ -1,6 +1,7 @@
 //! What outlives a state: parameters, the pilot's switches, evidence of support and lean, dangers, the collective.
 
 use super::bench::Bench;
+use super::by_itself::ByItself;
 use super::crown::Crown;
 use super::dangers::Dangers;
 use super::demand::Collective;
@@ -81,6 +82,7 @@ pub struct Context {
     pub tightened: u8,
     pub bench: Bench,
     pub remote: Remote,
+    pub by_itself: ByItself,
     /// A reason and its remaining display time, s.
     note: (Option<Reason>, f32),
     /// Specific force at rest, m/s².
@@ -113,6 +115,7 @@ impl Context {
             tightened: 0,
             bench: Bench::default(),
             remote: Remote::default(),
+            by_itself: ByItself::default(),
             note: (None, 0.0),
             gravity: crate::math::GRAVITY,
         }
@@ -269,10 +272,15 @@ impl Context {
         4.0 * self.params.thrust_max
     }
 
-    /// The collective on the pipe while the arms close, N: the pilot's throttle, limited to `perch_lift` of the weight.
+    /// The collective on the pipe while the arms close, N: `perch_lift` of the weight; not more than the pilot's throttle,
+    /// unless that is centred for a perch by itself.
     pub fn set_down_thrust(&self) -> f32 {
         let most = self.params.perch_lift * self.support.weight();
-        clamp(self.throttle * self.full_thrust(), 0.0, most)
+        if self.by_itself.active {
+            most
+        } else {
+            clamp(self.throttle * self.full_thrust(), 0.0, most)
+        }
     }
 }
 

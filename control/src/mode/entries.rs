@@ -1,6 +1,7 @@
 //! How a state begins from the one before.
 
 use super::armed::Armed;
+use super::by_itself::ByItself;
 use super::clamping::Clamping;
 use super::contact::Contact;
 use super::context::Step;
@@ -11,6 +12,7 @@ use super::flight::Flight;
 use super::hold::{Hold, Spool, pressed};
 use super::holding;
 use super::landed::Landed;
+use super::nearing::Approach;
 use super::perched::Perched;
 use super::releasing::{Releasing, release_thrust};
 use super::{Reason, State};
@@ -58,6 +60,37 @@ pub fn flight(_: &State, _: &mut Step<'_>, _: Option<Reason>) -> Flight {
 pub fn holding(_: &State, step: &mut Step<'_>, _: Option<Reason>) -> holding::Hold {
     step.context.hold_seen_off = false;
     holding::Hold::here(step)
+}
+
+/// The same after it has flown by itself: perching again takes a new turn of its switch.
+pub fn handed_back(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> holding::Hold {
+    step.context.hold_seen_off = false;
+    step.context.perch_switch.seen_off = false;
+    let law = match from {
+        State::Approach(a) => Some(a.law),
+        _ => None,
+    };
+    holding::Hold::after(law, step)
+}
+
+/// The search for the pipe begins.
+pub fn approach(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Approach {
+    step.context.perch_switch.seen_off = false;
+    let heading = present_heading(step);
+    step.context.by_itself.begin(heading);
+    let law = match from {
+        State::Hold(h) => Some(h.law),
+        _ => None,
+    };
+    Approach::search(law, step)
+}
+
+/// Clear of the pipe: up, and another try, or only up after a release.
+pub fn approach_again(_: &State, step: &mut Step<'_>, _: Option<Reason>) -> Approach {
+    let by_itself = &mut step.context.by_itself;
+    by_itself.tries = by_itself.tries.saturating_add(1);
+    let leaves = by_itself.leaving;
+    Approach::climb(step, leaves)
 }
 
 /// On the ground.
@@ -119,6 +152,7 @@ pub fn armed_on_pipe(from: &State, step: &mut Step<'_>, why: Option<Reason>) -> 
 
 /// The pilot wants to leave: rotors first.
 pub fn releasing(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Releasing {
+    step.context.by_itself = ByItself::default();
     let grip_memory = from.behaviour().grip_memory();
     Releasing {
         hold: present(step, grip_memory.arms().unwrap_or_default()),
@@ -143,6 +177,19 @@ pub fn releasing_instead(from: &State, step: &mut Step<'_>, _: Option<Reason>) -
         opening: false,
         kept: false,
     }
+}
+
+/// The same by itself, with the throttle centred.
+pub fn releasing_by_itself(from: &State, step: &mut Step<'_>, why: Option<Reason>) -> Releasing {
+    let releasing = releasing(from, step, why);
+    let heading = present_heading(step);
+    step.context.by_itself.leave(heading);
+    releasing
+}
+
+/// Off the pipe by itself, with free arms.
+pub fn lifting_off(_: &State, step: &mut Step<'_>, _: Option<Reason>) -> Escaping {
+    Escaping::leaving(step.inputs, GripMemory::Open, None)
 }
 
 /// Arms that do not come free while the rotors pull at them: less throttle, and the tendons stay slack.
@@ -190,6 +237,10 @@ pub fn failsafe(_: &State, _: &mut Step<'_>, why: Option<Reason>) -> Failsafe {
     Failsafe {
         cause: why.unwrap_or(Reason::RADIO_LOST),
     }
+}
+
+fn present_heading(step: &Step<'_>) -> f32 {
+    step.inputs.motion.map_or(0.0, |m| m.q.to_euler().2)
 }
 
 /// The present attitude, held with `arms`.

@@ -1,5 +1,6 @@
 //! Conditions of the transitions, with their names in the printed table.
 
+use super::by_itself::centred;
 use super::clamping::Clamping;
 use super::contact::{CONTACT_MARGIN, CONTACT_TIME};
 use super::context::Step;
@@ -7,6 +8,7 @@ use super::escaping::{TAKE_OVER_TIME, takes_over};
 use super::failsafe::{RESUME_STICK, RESUME_TIME};
 use super::flight::Flight;
 use super::holding;
+use super::nearing::{self, Approach};
 use super::perched::Perched;
 use super::releasing::{FREE_TIME, Releasing};
 use super::{Reason, State};
@@ -59,10 +61,28 @@ guards! {
     GROUNDED = "the ground carries nearly all", |_, s| s.context.support.grounded();
 
     HOLD_ON = "hold switch on, sticks in angle mode, perch switch off", |_, s| sticks(s, holding::asked);
-    HOLD_OFF = "hold switch off, sticks in another mode, or perch switch on", |_, s| sticks(s, |t| !holding::asked(t));
+    HOLD_OFF = "hold switch off, or sticks in another mode", |_, s| sticks(s, |t| !holding::kept(t));
+    HOLD_KEPT = "hold switch on, sticks in angle mode", |_, s| sticks(s, holding::kept);
     HOLD_TURNED = "hold switch was off since the last try", |_, s| s.context.hold_seen_off;
     POSITION_FRESH = "position known", |_, s| holding::fresh(s.inputs);
     POSITION_LOST = "position lost for too long", |_, s| holding::lost(s.inputs);
+
+    POSITION_ADRIFT = "position stale", |_, s| holding::adrift(s.inputs);
+
+    ASKED_TO_PERCH = "perch switch turned on", |_, s| nearing::asked(s);
+    MAY_APPROACH = "position and range known, sticks centred", |_, s| nearing::obstacle(s).is_none();
+    TAKEN_OVER = "a stick moved, or perch or hold switch turned", |_, s| s.context.by_itself.taken;
+    BY_ITSELF = "perching or leaving by itself", |_, s| s.context.by_itself.active;
+    BY_HAND = "flown by hand", |_, s| !s.context.by_itself.acts();
+    TRY_LEFT = "another try is left", |_, s| s.context.by_itself.may_try();
+    LEAVES = "leaving by itself", |_, s| s.context.by_itself.acts() && s.context.by_itself.leaving;
+    HAS_LEFT = "climbed off the pipe", |state, _| approaching(state, Approach::has_left);
+    GIVEN_UP = "no other try", |state, _| approaching(state, |a| a.given_up.is_some());
+    COMMITTED = "on the way down", |state, _| approaching(state, Approach::committed);
+    RELEASE_BY_ITSELF = "perch switch off again, hold switch on, sticks centred, perched by itself", |_, s| {
+        let sticks_ask = |t: &Sticks| t.arm_switch && !t.perch_switch && holding::kept(t) && centred(t);
+        s.context.by_itself.active && s.context.perch_switch.seen_on && sticks(s, sticks_ask)
+    };
 
     MEANS_TO_PERCH = "perch switch on, throttle down", |_, s| Flight::means_to_perch(s);
     SWITCH_TURNED = "perch switch was off since the last try", |_, s| s.context.perch_switch.seen_off;
@@ -137,6 +157,10 @@ fn closing(state: &State, test: impl Fn(&Clamping) -> bool) -> bool {
 
 fn releasing(state: &State, test: impl Fn(&Releasing) -> bool) -> bool {
     matches!(state, State::Releasing(r) if test(r))
+}
+
+fn approaching(state: &State, test: impl Fn(&Approach) -> bool) -> bool {
+    matches!(state, State::Approach(a) if test(a))
 }
 
 fn acts_for(state: &State, cause: Reason) -> bool {

@@ -2,7 +2,7 @@
 
 use super::behaviour::Behaviour;
 use super::context::{Context, Step};
-use super::{Inputs, Reason, Setpoint, demand};
+use super::{Inputs, Reason, Setpoint, demand, nearing};
 use crate::arming::ArmingInhibits;
 use crate::math::{GRAVITY, clamp, clamp_abs, tan};
 use crate::position::Estimate;
@@ -14,20 +14,32 @@ use crate::vector::Vec3;
 pub const FRESH_AGE: f32 = 0.2;
 /// Age up to which the inertial sensor alone carries the position, s: centimetres off.
 pub const COAST_AGE: f32 = 1.0;
+/// Age up to which an approach goes on, s: a module's longest gap, and what it is late.
+pub const APPROACH_AGE: f32 = 1.3;
 /// Age up to which it carries the height, s: some decimetres off. Then the pilot has the throttle.
 pub const HEIGHT_AGE: f32 = 4.0;
 /// Throttle of a centred stick, and the half width about it that asks for no climb, 1.
 pub const THROTTLE_CENTRE: f32 = 0.5;
 pub const THROTTLE_ZONE: f32 = 0.1;
 
-/// The pilot wants the position held: the arms close and open in [`super::Mode::Flight`] alone.
+/// The pilot wants the position held: with the perch switch on he lands on the pipe by hand.
 pub fn asked(s: &Sticks) -> bool {
-    s.hold_switch && s.stick_mode == StickMode::Angle && !s.perch_switch
+    kept(s) && !s.perch_switch
+}
+
+/// He still does. The perch switch then means perching by itself.
+pub fn kept(s: &Sticks) -> bool {
+    s.hold_switch && s.stick_mode == StickMode::Angle
 }
 
 /// There is a position to begin with.
 pub fn fresh(i: &Inputs) -> bool {
     i.motion.is_some() && younger(i, FRESH_AGE)
+}
+
+/// The inertial sensor alone is no longer good for an approach.
+pub fn adrift(i: &Inputs) -> bool {
+    !younger(i, APPROACH_AGE)
 }
 
 /// Nothing is known any more.
@@ -42,7 +54,7 @@ fn younger(i: &Inputs, age: f32) -> bool {
 /// See [`super::Mode::Hold`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hold {
-    law: PositionHold,
+    pub law: PositionHold,
     wanted: Setpoint,
     /// The throttle was centred since the hold began: until then, where it stands is no wish.
     centred: bool,
@@ -54,10 +66,25 @@ impl Hold {
     /// Holds where the vehicle is.
     pub fn here(step: &mut Step<'_>) -> Self {
         let estimate = step.inputs.position.unwrap_or_default();
+        let law = PositionHold::begin(&step.context.params, &estimate, &felt(step));
+        Self::begin(law, false, step)
+    }
+
+    /// Holds where the vehicle is after it has flown by itself, with what `law` has learnt: the sticks were centred.
+    pub fn after(law: Option<PositionHold>, step: &mut Step<'_>) -> Self {
+        let estimate = step.inputs.position.unwrap_or_default();
+        let mut law =
+            law.unwrap_or_else(|| PositionHold::begin(&step.context.params, &estimate, &felt(step)));
+        law.anchor_at(&estimate);
+        Self::begin(law, true, step)
+    }
+
+    fn begin(law: PositionHold, centred: bool, step: &mut Step<'_>) -> Self {
+        let estimate = step.inputs.position.unwrap_or_default();
         let mut hold = Self {
-            law: PositionHold::begin(&step.context.params, &estimate, &felt(step)),
+            law,
             wanted: Setpoint::Stop,
-            centred: false,
+            centred,
             adrift: false,
         };
         hold.step(&estimate, step);
@@ -98,7 +125,8 @@ fn climb(throttle: f32) -> f32 {
     clamp(if off < 0.0 { -beyond } else { beyond }, -1.0, 1.0)
 }
 
-fn felt(step: &Step<'_>) -> Felt {
+/// What the inertial sensor says, for the law.
+pub fn felt(step: &Step<'_>) -> Felt {
     let motion = step.inputs.motion.unwrap_or_default();
     Felt {
         q: motion.q,
@@ -112,6 +140,12 @@ impl Behaviour for Hold {
         // A silent inertial sensor stops the rotors within some steps; until then the last setpoint stands.
         if let (Some(estimate), Some(_)) = (step.inputs.position, step.inputs.motion) {
             self.step(&estimate, step);
+        }
+        if nearing::asked(step)
+            && step.context.noted().is_none()
+            && let Some(why) = nearing::obstacle(step)
+        {
+            step.context.note(Some(why));
         }
     }
 

@@ -35,6 +35,11 @@ impl ModeLogic {
         }
     }
 
+    #[cfg(test)]
+    pub(super) fn state(&self) -> &State {
+        &self.state
+    }
+
     /// One step, `dt` s after the last.
     pub fn step(&mut self, inputs: &Inputs, dt: f32) -> Outputs {
         let dt = clamp(dt, 0.0, STEP_MAX);
@@ -55,12 +60,14 @@ impl ModeLogic {
             inputs,
             dt,
         };
+        step.context.by_itself.follow(before, inputs);
         self.state.behaviour_mut().observe(step);
         match Transition::first(&self.state, step) {
             Some(transition) => {
                 self.state = transition.enter(&self.state, step);
                 if self.state.mode() != before {
                     self.context.since = 0.0;
+                    self.context.by_itself.enters(self.state.mode());
                     let dropped = self.context.remote.enters(self.state.mode());
                     self.context.perch_switch.forget(dropped);
                     let time = self.state.behaviour().hand_over_time();

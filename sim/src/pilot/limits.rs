@@ -1,10 +1,12 @@
 //! Time limits of the steps.
 
-use crate::scenario::Step;
+use crate::scenario::{Assist, Step};
 
-/// Longest time for `step`, s.
-pub fn of(step: &Step) -> f64 {
+/// Longest time for `step` with `assist`, s.
+pub fn of(step: &Step, assist: Assist) -> f64 {
     match *step {
+        // Five tries of a search each.
+        Step::Touch | Step::Clamp { .. } | Step::Perch { .. } if assist == Assist::Itself => 400.0,
         // Includes the calibration at rest.
         Step::Arm => 30.0,
         Step::TakeOff { height } => 12.0 + 4.0 * height,

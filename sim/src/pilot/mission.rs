@@ -161,7 +161,8 @@ impl Mission {
 
     /// Begins a step.
     pub fn begin(&mut self, seen: &Seen) {
-        self.hold_switch = false;
+        // By itself the vehicle takes a switch turned off as the wish to fly by hand.
+        self.hold_switch &= self.assist == Assist::Itself;
         self.enter(Phase::Start);
         self.step_time = 0.0;
         self.missed = 0;
@@ -175,7 +176,7 @@ impl Mission {
         self.guidance.foresee(&view.seen, view.now, sticks, dt);
         match view.mode {
             Some(Mode::Failsafe) if self.trouble.is_none() => self.trouble = Some(view.text.to_owned()),
-            Some(Mode::Flight | Mode::Hold) => self.trouble = None,
+            Some(Mode::Flight | Mode::Hold | Mode::Approach) => self.trouble = None,
             _ => (),
         }
         if let Some(why) = self.stopped(step, view) {
@@ -191,6 +192,17 @@ impl Mission {
             Step::Hover { seconds } if self.assist == Assist::Hold => self.hover_held(view, seconds, dt),
             Step::FlyTo { north, east, height } if self.assist == Assist::Hold => {
                 self.fly_to_held(view, DVec2::new(north, east), height, dt)
+            }
+            Step::FlyToPipe if self.assist == Assist::Itself => self.fly_to_pipe_held(view, dt),
+            Step::Touch | Step::Clamp { .. } | Step::Perch { .. } if self.assist == Assist::Itself => {
+                self.perch_by_itself(step, view, dt)
+            }
+            Step::Hold { seconds, .. } if self.assist == Assist::Itself => {
+                let held = self.hold(view, seconds, dt);
+                self.hands_off(held)
+            }
+            Step::Open | Step::Release if self.assist == Assist::Itself => {
+                self.release_by_itself(step, view, dt)
             }
             Step::Hover { seconds } => self.hover(view, seconds, dt),
             Step::Yaw { heading, seconds } => self.yaw(view, heading, seconds, dt),
@@ -208,7 +220,7 @@ impl Mission {
             Step::RadioOff { seconds } => self.radio_off(view, seconds, sticks[3]),
             Step::Reset { after, off, .. } => self.reset(view, after + off, sticks[3], dt),
         };
-        let limit = limits::of(step);
+        let limit = limits::of(step, self.assist);
         match progress {
             Progress::Going(_) if self.step_time > limit => Progress::Failed(format!(
                 "not done after {limit:.0} s: {}",

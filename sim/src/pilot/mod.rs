@@ -9,6 +9,7 @@ mod air;
 mod ground;
 mod guidance;
 mod held;
+mod itself;
 mod limits;
 mod mission;
 mod perception;

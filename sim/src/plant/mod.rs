@@ -310,7 +310,7 @@ impl Base {
             pipe_belly: Belly::default(),
             pipe: Pipe {
                 north: w.pipe_position[0],
-                half_length: 1.0,
+                half_length: 0.5 * w.pipe_length,
                 east: w.pipe_position[1],
                 down: -w.pipe_top + radius,
                 radius,

@@ -50,6 +50,7 @@ impl Default for World {
             pipe_diameter: 0.30,
             pipe_position: [3.0, 0.0],
             pipe_top: 1.5,
+            pipe_length: 2.0,
             pipe_friction: 0.6,
         }
     }

@@ -103,7 +103,7 @@ pub const FLOW_FAULTS: &[&str] = &[
     "range-jumps",
 ];
 /// Words for what the pilot leaves to the vehicle.
-pub const ASSISTS: &[&str] = &["none", "hold"];
+pub const ASSISTS: &[&str] = &["none", "hold", "self"];
 
 /// Infill that Eq. 1 of the paper covers.
 pub const INFILL: Range = Range::new(4.0, 10.0, "%");
@@ -190,10 +190,10 @@ pub fn flow_fault(word: &str) -> FlowFault {
 
 /// A word from [`ASSISTS`].
 pub fn assist(word: &str) -> Assist {
-    if word == "hold" {
-        Assist::Hold
-    } else {
-        Assist::None
+    match word {
+        "hold" => Assist::Hold,
+        "self" => Assist::Itself,
+        _ => Assist::None,
     }
 }
 
@@ -238,6 +238,7 @@ pub const fn assist_word(assist: Assist) -> &'static str {
     match assist {
         Assist::None => "none",
         Assist::Hold => "hold",
+        Assist::Itself => "self",
     }
 }
 
@@ -386,6 +387,11 @@ pub const KEYS: &[Key] = &[
     number!("world.pipe_north_m", PIPE_PLACE, world.pipe_position[0]),
     number!("world.pipe_east_m", PIPE_PLACE, world.pipe_position[1]),
     number!("world.pipe_top_m", PIPE_TOP, world.pipe_top),
+    number!(
+        "world.pipe_length_m",
+        Range::new(0.3, 100.0, "m"),
+        world.pipe_length
+    ),
     number!(
         "world.pipe_friction",
         Range::new(0.05, 1.5, ""),

@@ -148,6 +148,8 @@ pub struct World {
     pub pipe_position: [f64; 2],
     /// Height, m.
     pub pipe_top: f64,
+    /// From end to end, m; the perch spot is in its middle.
+    pub pipe_length: f64,
     /// Coefficient, vehicle on pipe.
     pub pipe_friction: f64,
 }
@@ -217,6 +219,8 @@ pub enum Assist {
     None,
     /// Hovering and flying to a point in the mode HOLD.
     Hold,
+    /// Perching, and leaving the pipe: he holds within a metre of it and turns the perch switch.
+    Itself,
 }
 
 /// Sensors beside those of every board.

@@ -31,7 +31,7 @@ pub struct MissionArgs {
     /// What measures the position: none, pose (poses over MAVLink), or flow (flow and range below the vehicle).
     #[arg(long, value_name = "NAME", value_parser = position_sensor)]
     sensors: Option<PositionSensor>,
-    /// What the pilot leaves to the vehicle: none, or hold (hovers in the mode HOLD).
+    /// What the pilot leaves to the vehicle: none, hold (hovers in the mode HOLD), or self (perches by itself).
     #[arg(long, value_name = "NAME", value_parser = assist)]
     assist: Option<Assist>,
     /// Gain on the elastic term of the arm equation, 1 (literal) to 10.

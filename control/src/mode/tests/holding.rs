@@ -54,11 +54,10 @@ fn a_turn_of_the_switch_holds_and_another_hands_back_within_a_step() {
 }
 
 #[test]
-fn another_stick_mode_or_the_perch_switch_hands_back_too() {
-    let changes: [fn(&mut Sticks); 3] = [
+fn another_stick_mode_hands_back_too() {
+    let changes: [fn(&mut Sticks); 2] = [
         |s| s.stick_mode = StickMode::Rate,
         |s| s.stick_mode = StickMode::Direct,
-        |s| s.perch_switch = true,
     ];
     for change in changes {
         let mut r = holding();
@@ -68,7 +67,6 @@ fn another_stick_mode_or_the_perch_switch_hands_back_too() {
         // It does not come back by itself.
         *r.sticks() = Sticks {
             stick_mode: StickMode::Angle,
-            perch_switch: false,
             ..*r.sticks()
         };
         r.expect(0.1, Mode::Flight);

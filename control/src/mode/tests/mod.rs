@@ -2,6 +2,7 @@
 //! trouble.
 
 mod bench;
+mod by_itself;
 mod diagram;
 mod docs;
 mod hand_over;

@@ -24,6 +24,7 @@ fn in_mode(mode: Mode) -> &'static str {
         Mode::Disarmed => "Stopped. The only mode in which to touch it.",
         Mode::Armed => "Rotors idle. Throttle up to fly.",
         Mode::Flight => "The sticks fly it.",
+        Mode::Approach => "It looks for the pipe and comes down onto it by itself; any stick ends that.",
         Mode::Hold => "It stays where it is; the sticks move it, centred they stop it.",
         Mode::Contact => "It feels the pipe. Keep the throttle; climb or turn perch off to leave.",
         Mode::Clamping => "Arms close, then the rotors spool down. Wait.",
@@ -77,6 +78,17 @@ fn on_reason(reason: Reason) -> &'static str {
         Reason::LeansTooFar => "It stays closed: fetch it by hand.",
         Reason::LiftsOff => "It lifts off by itself as the arms open: throttle to hover.",
         Reason::ThrottleTooHigh => "Less throttle.",
+        Reason::SticksNotCentred => {
+            "Perching by itself: roll, pitch and yaw centred, throttle in its middle."
+        }
+        Reason::NoRange => "The module below is silent. Hold off, and perch by hand.",
+        Reason::TakenOver => "It holds, or flies by hand if hold is off. Perch off, then on, to try again.",
+        Reason::NoPipe => "Hold over the pipe, within a metre, nose along it; perch off, then on.",
+        Reason::PipeTooShort => "Hold over another part of the pipe, 0.3 m from each end.",
+        Reason::PipeLost | Reason::NotCentred | Reason::NotTouched => {
+            "It climbs and tries again, five times in all; then it holds. Wait for less wind."
+        }
+        Reason::RangeStale => "It holds. Look after the module below, or perch by hand.",
         Reason::ArmsStuck => "Keep the throttle, or perch on to hold again. Something holds the tendons.",
     }
 }

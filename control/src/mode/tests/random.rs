@@ -11,7 +11,7 @@ use proptest::prelude::*;
 use super::rig::Rig;
 use crate::grip::ArmState;
 use crate::mode::*;
-use crate::position::Estimate;
+use crate::position::{Estimate, Foot};
 use crate::rc::StickMode;
 use crate::remote::RemoteOrder;
 
@@ -96,8 +96,11 @@ fn position() -> impl Strategy<Value = Option<Estimate>> {
     let age = prop_oneof![Just(0.02f32), 0.0f32..10.0];
     let vector = |size: f32| [-size..size, -size..size, -size..size].prop_map(Vec3::from);
     let jumps = prop_oneof![9 => Just(0u8), 1 => any::<u8>()];
-    let some = (vector(20.0), vector(5.0), vector(8.0), number(), age, jumps).prop_map(
-        |(position, velocity, disturbance, turn, age, jumps)| {
+    let point = prop_oneof![3 => vector(20.0).prop_map(Some), 1 => Just(None)];
+    let foot = (point, any::<u8>(), prop_oneof![3 => Just(0.02f32), 1 => number()])
+        .prop_map(|(point, count, age)| Foot { point, count, age });
+    let some = (vector(20.0), vector(5.0), vector(8.0), number(), age, jumps, foot).prop_map(
+        |(position, velocity, disturbance, turn, age, jumps, foot)| {
             Some(Estimate {
                 position,
                 velocity,
@@ -106,6 +109,7 @@ fn position() -> impl Strategy<Value = Option<Estimate>> {
                 age,
                 jumps,
                 fault: None,
+                foot,
             })
         },
     );

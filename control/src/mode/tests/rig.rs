@@ -18,7 +18,7 @@ pub(super) struct Rig {
     pub(super) inputs: Inputs,
     pub(super) carried: bool,
     /// Sink rate at touch-down, m/s.
-    falling: f32,
+    pub(super) falling: f32,
     pub(super) out: Outputs,
     pub(super) params: Params,
 }

@@ -1,0 +1,546 @@
+//! The way onto the pipe by itself, 100 Hz: finds the crown by the steps of the range, looks for the pipe's ends, and
+//! comes down over it. It asks for velocities, as the sticks do in a hold, and docs/hold.md describes it.
+//!
+//! Lengths are from where a try began: forward and right along its heading, down.
+
+mod edges;
+#[cfg(test)]
+mod tests;
+
+use self::edges::{Edge, Edges};
+use crate::math::{self, clamp, clamp_abs};
+use crate::params::Params;
+use crate::position::{Foot, about_down};
+use crate::position_hold::Wish;
+use crate::support::Held;
+use crate::vector::Vec3;
+
+/// Half the width of the first sweep, by how much each next one is wider, and the widest, m: the hold begins within a metre of
+/// the pipe.
+const SWEEP: f32 = 0.4;
+const SWEEP_MAX: f32 = 1.3;
+/// Speeds across and along the pipe, m/s: first sweep, and the slower rest.
+const SWEEP_SPEED: f32 = 0.35;
+const CROSS_SPEED: f32 = 0.25;
+/// Way beside the pipe at which a crossing turns back, m.
+const BESIDE: f32 = 0.13;
+/// Crossings that the crown is taken from, with the way out to the first.
+const LEGS: u8 = 3;
+/// Farthest that two crossings, or the last one and the edge on the way back, may differ, m; and the weight of the newer.
+const AGREE: f32 = 0.12;
+const NEWER: f32 = 0.7;
+/// Offset of the beam at which it falls off the pipe's side, not its end, m.
+const SIDE: f32 = 0.08;
+/// Widths of a crossing that are the pipe's, share of its diameter.
+const WIDTH: (f32, f32) = (0.7, 1.35);
+/// Heights over the crown, m: to which it climbs for another try, and of the crossings.
+const HIGH: f32 = 0.6;
+const LOW: f32 = 0.4;
+/// Climb where no crown is known, m.
+const RISE: f32 = 0.4;
+/// Fastest climb between tries, and fastest way down, m/s.
+const CLIMB_SPEED: f32 = 0.35;
+const DESCENT: f32 = 0.2;
+/// How far it looks along the pipe each way, and how near to an end it sits down, m: the arms reach 0.2 m.
+const LOOK: f32 = 0.3;
+const END: f32 = 0.3;
+/// Speed at which it follows a corrected crown, m/s.
+const CORRECT_SPEED: f32 = 0.05;
+/// Offset and speed across at which it is over the crown, m and m/s, and for how long, s.
+const SETTLED: f32 = 0.03;
+const SETTLED_SPEED: f32 = 0.06;
+const SETTLED_TIME: f32 = 0.3;
+/// Range below which it does not sink while it is this far off, m.
+const NEAR: f32 = 0.25;
+const NEAR_OFF: f32 = 0.06;
+/// Range at which it waits to be over the crown, m: the last at which flow is seen with some margin.
+const GATE: f32 = 0.12;
+/// Time from there to the touch, s.
+const LAST_TIME: f32 = 0.5;
+/// Offset that goes on from there, at once and after [`PATIENCE`], m, the speed across, m/s, and for how long, s.
+const STRICT: f32 = 0.015;
+const CONTENT: f32 = 0.03;
+const GATE_SPEED: f32 = 0.05;
+const GATE_TIME: f32 = 0.05;
+const PATIENCE: f32 = 10.0;
+/// Offset on the last bit beyond which it goes up again, m: what the pads hold (docs/results.md).
+const ASTRAY: f32 = 0.05;
+/// Longest of what is waited for, s: a way, the crown under it, the gate, the touch.
+const WAY_TIME: f32 = 15.0;
+const CENTRE_TIME: f32 = 12.0;
+const GATE_WAIT: f32 = 15.0;
+const TOUCH_WAIT: f32 = 2.5;
+/// Age of a range beyond which it is none, s.
+pub const RANGE_AGE: f32 = 0.3;
+/// Change of the level speed asked for, m/s²: the hold follows what turns faster with twice the speed.
+const SLEW: f32 = 0.3;
+/// Height error to vertical speed, 1/s.
+const HEIGHT_GAIN: f32 = 1.5;
+/// Distances at which a place is reached, m.
+const REACHED: f32 = 0.02;
+const OVER: f32 = 0.08;
+/// Least time that the way there is given, s: it is not just passed.
+const OVER_TIME: f32 = 0.5;
+/// Heading error to yaw rate, 1/s, and its limit, rad/s.
+const HEADING_GAIN: f32 = 1.0;
+const YAW_RATE_MAX: f32 = 0.3;
+
+/// Why a try ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Doubt {
+    /// No pipe across the whole sweep.
+    NoPipe,
+    /// Between its ends there is no room.
+    TooShort,
+    /// The range no longer sees it.
+    PipeLost,
+    /// It does not come to rest over the crown, or two crossings differ.
+    NotCentred,
+    /// Nothing was touched where the crown should be.
+    NotTouched,
+    /// No range.
+    RangeStale,
+}
+
+/// What the law sees, in the estimate's axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// m.
+    pub position: Vec3,
+    /// m/s.
+    pub velocity: Vec3,
+    /// Of the nose, rad.
+    pub heading: f32,
+    /// The point that is held, m.
+    pub held: Vec3,
+    /// Where the range sees something.
+    pub foot: Foot,
+}
+
+/// Part of the way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Phase {
+    /// Up from the pipe; then another try, or the end.
+    Climb,
+    /// Across, wider and wider, until the pipe was crossed.
+    Search,
+    /// Over the crown, and down to the height of the crossings.
+    Over,
+    /// Along the pipe, forward and back.
+    Fore,
+    Aft,
+    /// Across, for the crown.
+    Cross,
+    /// To rest over the crown.
+    Centre,
+    /// Down to the gate.
+    Descend,
+    /// Onto the pipe.
+    Commit,
+}
+
+/// The law and its state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Approach {
+    diameter: f32,
+    origin: Vec3,
+    heading: f32,
+    jumps: u8,
+    phase: Phase,
+    /// Time in it, s.
+    since: f32,
+    /// It only climbs, to be left there.
+    leaves: bool,
+    /// Height to climb to, m.
+    up: f32,
+    edges: Edges,
+    seen: u8,
+    /// Side of the present leg, half the sweep's width, m, and legs flown.
+    side: f32,
+    reach: f32,
+    legs: u8,
+    /// Where the range came onto the pipe, m.
+    entered: Option<f32>,
+    /// The pipe's crown: right and down, m, half its width, m.
+    crown: f32,
+    top: f32,
+    half: f32,
+    /// Crown by the crossing before.
+    before: Option<f32>,
+    /// Where it sits down along the pipe, m, and the ends that were seen.
+    along: f32,
+    ends: [Option<f32>; 2],
+    /// It was crossed at this height, and looked along.
+    crossed: bool,
+    looked: bool,
+    settled: Held,
+    left: bool,
+    /// Asked for, m/s.
+    speed: Vec3,
+}
+
+impl Approach {
+    /// Begins where the vehicle is, over or beside a pipe along `heading`, rad.
+    pub fn begin(p: &Params, v: &View, heading: f32, jumps: u8) -> Self {
+        Self {
+            diameter: p.pipe_diameter,
+            origin: v.position,
+            heading,
+            jumps,
+            phase: Phase::Search,
+            since: 0.0,
+            leaves: false,
+            up: -RISE,
+            edges: Edges::default(),
+            seen: v.foot.count,
+            side: 1.0,
+            reach: SWEEP,
+            legs: 0,
+            entered: None,
+            crown: 0.0,
+            top: 0.0,
+            half: 0.5 * p.pipe_diameter,
+            before: None,
+            along: 0.0,
+            ends: [None; 2],
+            crossed: false,
+            looked: false,
+            settled: Held::default(),
+            left: false,
+            speed: Vec3::ZERO,
+        }
+    }
+
+    /// Climbs first: another try, or with `leaves` the way off the pipe.
+    pub fn again(p: &Params, v: &View, heading: f32, jumps: u8, leaves: bool) -> Self {
+        Self {
+            phase: Phase::Climb,
+            leaves,
+            up: if leaves { -HIGH } else { -RISE },
+            ..Self::begin(p, v, heading, jumps)
+        }
+    }
+
+    /// Another try from the top: over the crown where that is known.
+    pub fn retried(&self, p: &Params, v: &View, heading: f32, jumps: u8) -> Self {
+        let again = Self::again(p, v, heading, jumps, false);
+        let known = !matches!(self.phase, Phase::Climb | Phase::Search);
+        let over = self.origin.z + self.top - HIGH - v.position.z;
+        Self {
+            up: if known {
+                clamp(over, -2.0 * HIGH, 0.0)
+            } else {
+                -RISE
+            },
+            ..again
+        }
+    }
+
+    /// A touch from here on is the pipe's.
+    pub fn committed(&self) -> bool {
+        matches!(self.phase, Phase::Descend | Phase::Commit)
+    }
+
+    /// It has climbed off the pipe.
+    pub fn has_left(&self) -> bool {
+        self.left
+    }
+
+    /// Origin of the estimate's axes has jumped since the beginning.
+    pub fn jumped(&self, jumps: u8) -> bool {
+        self.jumps != jumps
+    }
+
+    /// One step of `dt` s: what to ask for.
+    ///
+    /// # Errors
+    /// Why the try ends.
+    pub fn step(&mut self, v: &View, dt: f32) -> Result<Wish, Doubt> {
+        self.since += dt;
+        if v.foot.age > RANGE_AGE && !self.leaves && self.phase != Phase::Commit {
+            return Err(Doubt::RangeStale);
+        }
+        let edge = self.look(v);
+        let at = self.local(v.position);
+        let held = self.local(v.held);
+        let velocity = about_down(v.velocity, -self.heading);
+        let wanted = match self.phase {
+            Phase::Climb => self.climb(at, held),
+            Phase::Search => self.search(edge, held)?,
+            Phase::Over => self.over(at, held)?,
+            Phase::Fore | Phase::Aft => self.look_along(edge, held)?,
+            Phase::Cross => self.cross(edge, held)?,
+            Phase::Centre => self.centre(edge, at, velocity, held, dt)?,
+            Phase::Descend => self.descend(edge, at, velocity, held, dt)?,
+            Phase::Commit => self.commit(at, held)?,
+        };
+        self.speed = Vec3::new(
+            math::slew(self.speed.x, wanted.x, SLEW * dt),
+            math::slew(self.speed.y, wanted.y, SLEW * dt),
+            wanted.z,
+        );
+        let off = math::wrap_pi(self.heading - v.heading);
+        Ok(Wish {
+            velocity: about_down(self.speed, -off),
+            yaw_rate: clamp_abs(HEADING_GAIN * off, YAW_RATE_MAX),
+            lean: [0.0; 2],
+        })
+    }
+
+    fn local(&self, place: Vec3) -> Vec3 {
+        about_down(place - self.origin, -self.heading)
+    }
+
+    fn enter(&mut self, phase: Phase) {
+        self.phase = phase;
+        self.since = 0.0;
+        self.entered = None;
+        self.settled = Held::default();
+    }
+
+    fn late(&self, limit: f32, doubt: Doubt) -> Result<(), Doubt> {
+        if self.since > limit { Err(doubt) } else { Ok(()) }
+    }
+
+    /// The step that a new range shows.
+    fn look(&mut self, v: &View) -> Option<Edge> {
+        if v.foot.count == self.seen {
+            return None;
+        }
+        self.seen = v.foot.count;
+        match v.foot.point {
+            Some(point) => self.edges.step(self.local(point)),
+            // Nothing within reach: farther than all that is.
+            None => self.edges.step_beyond(self.local(v.position)),
+        }
+    }
+
+    /// Velocity from the held point to `target`, level at most `speed` and vertically at most `climb`, m/s.
+    fn way(held: Vec3, target: Vec3, speed: f32, climb: f32) -> Vec3 {
+        let off = target - held;
+        Vec3::new(
+            level(off.x, speed),
+            level(off.y, speed),
+            clamp_abs(HEIGHT_GAIN * off.z, climb),
+        )
+    }
+
+    fn climb(&mut self, at: Vec3, held: Vec3) -> Vec3 {
+        let target = Vec3::new(0.0, 0.0, self.up);
+        if (at.z - self.up).abs() < OVER || self.since > WAY_TIME {
+            self.left = self.leaves;
+            self.enter(Phase::Search);
+        }
+        Self::way(held, target, CROSS_SPEED, CLIMB_SPEED)
+    }
+
+    /// The middle of the pipe, right, m, where this `edge` ends a crossing.
+    fn crossed(&mut self, edge: Option<Edge>) -> Option<f32> {
+        match (edge?, self.entered) {
+            (Edge::Onto(at), _) => {
+                self.entered = Some(at.y);
+                None
+            }
+            (Edge::Off(at), Some(from)) => {
+                self.entered = None;
+                let width = (at.y - from).abs();
+                let (least, most) = WIDTH;
+                if !(least * self.diameter..=most * self.diameter).contains(&width) {
+                    return None;
+                }
+                (self.half, self.top) = (0.5 * width, self.edges.top());
+                Some(0.5 * (at.y + from))
+            }
+            (Edge::Off(_), None) => None,
+        }
+    }
+
+    fn search(&mut self, edge: Option<Edge>, held: Vec3) -> Result<Vec3, Doubt> {
+        if let Some(middle) = self.crossed(edge) {
+            self.crown = middle;
+            self.along = held.x;
+            self.enter(Phase::Over);
+        }
+        let target = Vec3::new(0.0, self.side * self.reach, held.z);
+        if (target.y - held.y).abs() < REACHED {
+            self.reach += if self.side < 0.0 { SWEEP } else { 0.0 };
+            self.side = -self.side;
+            if self.reach > SWEEP_MAX {
+                return Err(Doubt::NoPipe);
+            }
+        }
+        Ok(Self::way(held, target, SWEEP_SPEED, 0.0))
+    }
+
+    /// The place over the crown, `height` m above it.
+    fn spot(&self, height: f32) -> Vec3 {
+        Vec3::new(self.along, self.crown, self.top - height)
+    }
+
+    fn over(&mut self, at: Vec3, held: Vec3) -> Result<Vec3, Doubt> {
+        self.late(WAY_TIME, Doubt::NotCentred)?;
+        let target = self.spot(LOW);
+        let off = target - at;
+        if off.y.abs() < OVER && off.z.abs() < OVER && self.since > OVER_TIME {
+            if self.crossed {
+                self.ends = [None; 2];
+                self.enter(Phase::Fore);
+            } else {
+                self.turn_across();
+            }
+        }
+        Ok(Self::way(held, target, CROSS_SPEED, DESCENT))
+    }
+
+    /// The crossings begin.
+    fn turn_across(&mut self) {
+        (self.side, self.legs, self.before) = (1.0, 0, None);
+        self.enter(Phase::Cross);
+    }
+
+    /// The range sees the pipe's back.
+    fn sees_pipe(&self) -> bool {
+        (self.edges.level() - self.top).abs() < 0.5 * self.diameter
+    }
+
+    fn look_along(&mut self, edge: Option<Edge>, held: Vec3) -> Result<Vec3, Doubt> {
+        self.late(WAY_TIME, Doubt::NotCentred)?;
+        let fore = self.phase == Phase::Fore;
+        let goal = if fore { LOOK } else { -LOOK };
+        let target = Vec3::new(goal, self.crown, self.top - LOW);
+        // A gust carries the beam off the side too: there it comes back.
+        let end = match edge {
+            Some(Edge::Off(at)) if (at.y - self.crown).abs() < SIDE => Some(at.x),
+            _ => None,
+        };
+        let there = (target.x - held.x).abs() < REACHED;
+        let end = end.or((there && !self.sees_pipe()).then_some(held.x));
+        if end.is_some() || there {
+            let [front, rear] = &mut self.ends;
+            *(if fore { front } else { rear }) = end;
+            if fore {
+                self.enter(Phase::Aft);
+            } else {
+                let [front, rear] = self.ends;
+                let most = front.map_or(LOOK, |end| end - END);
+                let least = rear.map_or(-LOOK, |end| end + END);
+                if most < least {
+                    return Err(Doubt::TooShort);
+                }
+                self.along = clamp(0.0, least, most);
+                self.looked = true;
+                self.turn_across();
+            }
+        }
+        Ok(Self::way(held, target, CROSS_SPEED, DESCENT))
+    }
+
+    fn cross(&mut self, edge: Option<Edge>, held: Vec3) -> Result<Vec3, Doubt> {
+        self.late(2.0 * WAY_TIME, Doubt::NotCentred)?;
+        if let Some(middle) = self.crossed(edge) {
+            if self.before.is_some_and(|before| (before - middle).abs() > AGREE) {
+                return Err(Doubt::NotCentred);
+            }
+            self.before = Some(middle);
+            self.crown = middle;
+        }
+        let mut target = self.spot(LOW);
+        target.y += self.side * (self.half + BESIDE);
+        if (target.y - held.y).abs() < REACHED {
+            self.side = -self.side;
+            self.legs = self.legs.saturating_add(1);
+            if self.legs >= LEGS {
+                if self.before.is_none() {
+                    return Err(Doubt::PipeLost);
+                }
+                self.crossed = true;
+                self.enter(if self.looked { Phase::Centre } else { Phase::Over });
+            }
+        }
+        Ok(Self::way(held, target, CROSS_SPEED, DESCENT))
+    }
+
+    fn centre(
+        &mut self,
+        edge: Option<Edge>,
+        at: Vec3,
+        velocity: Vec3,
+        held: Vec3,
+        dt: f32,
+    ) -> Result<Vec3, Doubt> {
+        self.late(CENTRE_TIME, Doubt::NotCentred)?;
+        match edge {
+            // From the side at which the last crossing ended: what has drifted since shows.
+            Some(Edge::Onto(onto)) => {
+                let inwards = if onto.y < self.crown {
+                    self.half
+                } else {
+                    -self.half
+                };
+                let middle = onto.y + inwards;
+                if (middle - self.crown).abs() > AGREE {
+                    return Err(Doubt::NotCentred);
+                }
+                self.crown += NEWER * (middle - self.crown);
+            }
+            // A gust carries the beam off the side.
+            Some(Edge::Off(_)) | None => (),
+        }
+        let target = self.spot(LOW);
+        let off = at.y - self.crown;
+        let there = off.abs() < SETTLED && velocity.y.abs() < SETTLED_SPEED && self.sees_pipe();
+        if self.settled.step(there, dt) >= SETTLED_TIME {
+            self.enter(Phase::Descend);
+        }
+        Ok(Self::way(held, target, CROSS_SPEED, DESCENT))
+    }
+
+    fn descend(
+        &mut self,
+        edge: Option<Edge>,
+        at: Vec3,
+        velocity: Vec3,
+        held: Vec3,
+        dt: f32,
+    ) -> Result<Vec3, Doubt> {
+        self.late(GATE_WAIT, Doubt::NotCentred)?;
+        if matches!(edge, Some(Edge::Off(_))) || !self.sees_pipe() {
+            return Err(Doubt::PipeLost);
+        }
+        let off = at.y - self.crown;
+        let range = self.edges.level() - at.z;
+        let share = clamp(self.since / PATIENCE, 0.0, 1.0);
+        let within = STRICT + (CONTENT - STRICT) * share;
+        let ahead = off + LAST_TIME * velocity.y;
+        let over = off.abs() < within && ahead.abs() < within && velocity.y.abs() < GATE_SPEED;
+        let at_gate = range < 1.3 * GATE;
+        if self.settled.step(at_gate && over, dt) >= GATE_TIME {
+            self.enter(Phase::Commit);
+        }
+        let mut way = Self::way(held, self.spot(LOW), CORRECT_SPEED, DESCENT);
+        let waits = range < NEAR && off.abs() > NEAR_OFF;
+        way.z = if waits {
+            0.0
+        } else {
+            clamp(HEIGHT_GAIN * (range - GATE), -CORRECT_SPEED, DESCENT)
+        };
+        Ok(way)
+    }
+
+    fn commit(&mut self, at: Vec3, held: Vec3) -> Result<Vec3, Doubt> {
+        self.late(TOUCH_WAIT, Doubt::NotTouched)?;
+        if (at.y - self.crown).abs() > ASTRAY {
+            return Err(Doubt::NotCentred);
+        }
+        let mut way = Self::way(held, self.spot(LOW), CORRECT_SPEED, DESCENT);
+        way.z = DESCENT;
+        Ok(way)
+    }
+}
+
+/// Speed towards what is `off` m away that a stop at [`SLEW`] still ends there, at most `speed`, m/s.
+fn level(off: f32, speed: f32) -> f32 {
+    let most = 1.6 * SLEW * off.abs();
+    let braked = most * math::inv_sqrt(most);
+    clamp(braked, 0.0, speed) * if off < 0.0 { -1.0 } else { 1.0 }
+}

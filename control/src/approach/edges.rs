@@ -1,0 +1,76 @@
+//! Steps of what is below: where the beam of the range comes onto something and where it falls off it.
+
+use crate::vector::Vec3;
+
+/// Least step, m: half the height of the smallest pipe, and three times what a pipe's flank falls between two ranges.
+const STEP: f32 = 0.12;
+/// Share by which the level follows each range of the same surface.
+const FOLLOW: f32 = 0.5;
+/// Depth that stands for nothing within reach, m.
+const BEYOND: f32 = 50.0;
+
+/// A step, with the place of the beam's foot: forward, right, down, m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Edge {
+    /// Onto something nearer.
+    Onto(Vec3),
+    /// Off it.
+    Off(Vec3),
+}
+
+/// What the ranges before have shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Edges {
+    /// Depth of the present surface, m; `None` before the first range.
+    level: Option<f32>,
+    /// Highest of the one that was come onto last, m.
+    top: f32,
+    last: Vec3,
+    /// First place of another surface, to be confirmed by the next range.
+    other: Option<Vec3>,
+}
+
+impl Edges {
+    /// Takes the next foot of the beam.
+    pub fn step(&mut self, foot: Vec3) -> Option<Edge> {
+        let Some(level) = self.level else {
+            (self.level, self.top, self.last) = (Some(foot.z), foot.z, foot);
+            return None;
+        };
+        let off = foot.z - level;
+        if off.abs() < STEP {
+            let level = level + FOLLOW * off;
+            (self.level, self.last, self.other) = (Some(level), foot, None);
+            self.top = self.top.min(level);
+            return None;
+        }
+        let other = self.other.replace(foot)?;
+        if (other.z - level) * off < 0.0 || (other.z - foot.z).abs() > STEP {
+            return None;
+        }
+        // Between the last range of the one and the first of the other surface.
+        let at = (self.last + other) * 0.5;
+        (self.level, self.last, self.other) = (Some(foot.z), foot, None);
+        if off < 0.0 {
+            self.top = foot.z;
+            Some(Edge::Onto(at))
+        } else {
+            Some(Edge::Off(at))
+        }
+    }
+
+    /// The same where nothing is within reach of a vehicle at `place`.
+    pub fn step_beyond(&mut self, place: Vec3) -> Option<Edge> {
+        self.step(Vec3::new(place.x, place.y, BEYOND))
+    }
+
+    /// Depth of the present surface, m.
+    pub fn level(&self) -> f32 {
+        self.level.unwrap_or(BEYOND)
+    }
+
+    /// Highest of the surface that was come onto last, m down.
+    pub fn top(&self) -> f32 {
+        self.top
+    }
+}

@@ -1,0 +1,159 @@
+//! Free flight onto the pipe, or off it, by itself.
+
+use super::behaviour::Behaviour;
+use super::by_itself::{TRIES, centred};
+use super::context::{Context, Step};
+use super::holding::{self, felt, fresh};
+use super::{Inputs, Reason, Setpoint};
+use crate::approach::{Approach as Law, Doubt, RANGE_AGE, View};
+use crate::arming::ArmingInhibits;
+use crate::position::Estimate;
+use crate::position_hold::{PositionHold, Wish};
+
+/// See [`super::Mode::Approach`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Approach {
+    pub law: PositionHold,
+    way: Law,
+    wanted: Setpoint,
+    /// Why no other try follows.
+    pub given_up: Option<Reason>,
+}
+
+/// The perch switch was turned on while the position is held.
+pub fn asked(step: &Step<'_>) -> bool {
+    let turned = step.context.perch_switch.seen_off;
+    let wanted = |s: crate::rc::Sticks| s.perch_switch && holding::kept(&s);
+    turned && step.inputs.sticks.is_some_and(wanted)
+}
+
+/// Why it cannot begin.
+pub fn obstacle(step: &Step<'_>) -> Option<Reason> {
+    let sticks = step.inputs.sticks.unwrap_or_default();
+    let ranged = |e: Estimate| e.foot.age <= RANGE_AGE;
+    if !centred(&sticks) {
+        Some(Reason::SticksNotCentred)
+    } else if !fresh(step.inputs) {
+        Some(Reason::NoPosition)
+    } else if !step.inputs.position.is_some_and(ranged) {
+        Some(Reason::NoRange)
+    } else {
+        None
+    }
+}
+
+impl Approach {
+    /// Searches from where `law` holds.
+    pub fn search(law: Option<PositionHold>, step: &mut Step<'_>) -> Self {
+        Self::begin(law, step, |step, view, e| {
+            Law::begin(&step.context.params, view, heading(step, e), e.jumps)
+        })
+    }
+
+    /// Climbs, for another search or to be `left` there.
+    pub fn climb(step: &mut Step<'_>, left: bool) -> Self {
+        Self::begin(None, step, |step, view, e| {
+            Law::again(&step.context.params, view, heading(step, e), e.jumps, left)
+        })
+    }
+
+    fn begin(
+        law: Option<PositionHold>,
+        step: &mut Step<'_>,
+        way: impl Fn(&Step<'_>, &View, &Estimate) -> Law,
+    ) -> Self {
+        let estimate = step.inputs.position.unwrap_or_default();
+        let law = law.unwrap_or_else(|| PositionHold::begin(&step.context.params, &estimate, &felt(step)));
+        let way = way(step, &view(&law, &estimate, step), &estimate);
+        let mut approach = Self {
+            law,
+            way,
+            wanted: Setpoint::Stop,
+            given_up: None,
+        };
+        approach.step(&estimate, step);
+        approach
+    }
+
+    /// It is on the way down to the pipe.
+    pub fn committed(&self) -> bool {
+        self.way.committed()
+    }
+
+    /// It has climbed off the pipe.
+    pub fn has_left(&self) -> bool {
+        self.way.has_left()
+    }
+
+    fn step(&mut self, estimate: &Estimate, step: &mut Step<'_>) {
+        let seen = view(&self.law, estimate, step);
+        let result = if self.way.jumped(estimate.jumps) {
+            Err(Doubt::NotCentred)
+        } else {
+            self.way.step(&seen, step.dt)
+        };
+        let wish = result.unwrap_or_else(|doubt| {
+            self.again(reason(doubt), &seen, estimate, step);
+            Wish::default()
+        });
+        self.wanted = self.law.step(estimate, &felt(step), &wish, true, step.dt);
+    }
+
+    /// Another try, or none.
+    fn again(&mut self, why: Reason, view: &View, e: &Estimate, step: &mut Step<'_>) {
+        step.context.note(Some(why));
+        let tries = &mut step.context.by_itself.tries;
+        let searched = matches!(why, Reason::NoPipe | Reason::RangeStale);
+        if *tries >= TRIES || searched {
+            self.given_up = Some(why);
+        } else {
+            *tries += 1;
+            let heading = heading(step, e);
+            self.way = self.way.retried(&step.context.params, view, heading, e.jumps);
+        }
+    }
+}
+
+fn view(law: &PositionHold, e: &Estimate, step: &Step<'_>) -> View {
+    let heading = step.inputs.motion.map_or(0.0, |m| m.q.to_euler().2);
+    View {
+        position: e.position,
+        velocity: e.velocity,
+        heading: heading + e.turn,
+        held: law.held(),
+        foot: e.foot,
+    }
+}
+
+/// Heading along the pipe in the estimate's axes, rad.
+fn heading(step: &Step<'_>, e: &Estimate) -> f32 {
+    step.context.by_itself.heading + e.turn
+}
+
+fn reason(doubt: Doubt) -> Reason {
+    match doubt {
+        Doubt::NoPipe => Reason::NoPipe,
+        Doubt::TooShort => Reason::PipeTooShort,
+        Doubt::PipeLost => Reason::PipeLost,
+        Doubt::NotCentred => Reason::NotCentred,
+        Doubt::NotTouched => Reason::NotTouched,
+        Doubt::RangeStale => Reason::RangeStale,
+    }
+}
+
+impl Behaviour for Approach {
+    fn advance(&mut self, step: &mut Step<'_>) {
+        // A silent inertial sensor stops the rotors within some steps; until then the last setpoint stands.
+        if let (Some(estimate), Some(_)) = (step.inputs.position, step.inputs.motion) {
+            self.step(&estimate, step);
+        }
+    }
+
+    fn rotors(&self, _: &Context, _: &Inputs) -> Setpoint {
+        self.wanted
+    }
+
+    fn reason(&self, context: &Context, inputs: &Inputs, _: ArmingInhibits) -> Option<Reason> {
+        context.reason(inputs, true)
+    }
+}

@@ -1,0 +1,352 @@
+//! Perching by itself: how it begins, how the pilot takes over from every part of it, tries, and the way back.
+
+use super::rig::Rig;
+use crate::grip::ArmState;
+use crate::mode::by_itself::TRIES;
+use crate::mode::clamping::STOP_TIME;
+use crate::mode::contact::CONTACT_TIME;
+use crate::mode::hold::SPOOL_DOWN_TIME;
+use crate::mode::*;
+use crate::position::{Estimate, Foot};
+
+/// Height of the crown over the ground in the rig's world, and where it is to the right, m.
+const CROWN: f32 = 1.5;
+const RIGHT: f32 = 0.2;
+
+/// The vehicle is where it holds: it follows the velocities that are asked for without a lag.
+struct World {
+    r: Rig,
+    at: Vec3,
+    held: Vec3,
+    count: u8,
+    pipe: bool,
+}
+
+impl World {
+    fn holding() -> Self {
+        let mut w = Self {
+            r: Rig::flying(),
+            at: Vec3::new(0.0, 0.0, -2.2),
+            held: Vec3::new(0.0, 0.0, -2.2),
+            count: 0,
+            pipe: true,
+        };
+        w.see();
+        w.r.sticks().hold_switch = true;
+        w.r.sticks().throttle = 0.5;
+        w.step();
+        assert_eq!(w.r.out.mode, Mode::Hold);
+        w
+    }
+
+    fn searching() -> Self {
+        let mut w = Self::holding();
+        w.r.sticks().perch_switch = true;
+        w.step();
+        assert_eq!(w.r.out.mode, Mode::Approach);
+        w
+    }
+
+    fn touched() -> Self {
+        let mut w = Self::searching();
+        for _ in 0..8000 {
+            w.step();
+            if w.r.out.mode == Mode::Contact {
+                return w;
+            }
+        }
+        panic!("no touch: {:?} {:?}", w.r.out, w.at);
+    }
+
+    fn clamping() -> Self {
+        let mut w = Self::touched();
+        w.r.grip(false, false, ArmState::Closing, 0.0);
+        w.expect(CONTACT_TIME + 0.3, Mode::Clamping);
+        w
+    }
+
+    fn perched() -> Self {
+        let mut w = Self::clamping();
+        w.expect(2.0, Mode::Clamping);
+        w.r.grip(true, false, ArmState::Holding, 950.0);
+        w.expect(SPOOL_DOWN_TIME + STOP_TIME + 0.1, Mode::Perched);
+        w
+    }
+
+    fn see(&mut self) {
+        let y = self.at.y - RIGHT;
+        let on = self.pipe && y.abs() < 0.15;
+        let flank = 0.15 - crate::math::sqrt((0.0225 - y * y).max(0.0));
+        let z = if on { flank - CROWN } else { 0.0 };
+        self.count = self.count.wrapping_add(1);
+        self.r.inputs.position = Some(Estimate {
+            position: self.at,
+            age: 0.02,
+            foot: Foot {
+                point: Some(Vec3::new(self.at.x, self.at.y, z)),
+                count: self.count,
+                age: 0.02,
+            },
+            ..Estimate::default()
+        });
+    }
+
+    fn step(&mut self) {
+        self.see();
+        self.r.step();
+        if let State::Approach(a) = &self.r.logic.state() {
+            let moved = a.law.held() - self.held;
+            self.held = a.law.held();
+            // The first step in a mode sets the point.
+            if moved.norm() < 0.05 {
+                self.at += moved;
+            } else {
+                self.held = self.at;
+            }
+            let carried = self.pipe && self.at.z > -CROWN - 0.05 && (self.at.y - RIGHT).abs() < 0.15;
+            if carried && !self.r.carried {
+                self.r.falling = 0.2;
+            }
+            self.r.carried = carried;
+        } else {
+            self.held = self.at;
+        }
+    }
+
+    fn run(&mut self, seconds: f32) {
+        for _ in 0..(seconds * 100.0 + 0.5) as u32 {
+            self.step();
+        }
+    }
+
+    fn expect(&mut self, seconds: f32, mode: Mode) {
+        self.run(seconds);
+        assert_eq!(self.r.out.mode, mode, "{:?} at {:?}", self.r.out.reason, self.at);
+    }
+}
+
+/// What a pilot may do to end it, and the mode in which he is then in free air.
+const HANDS: [(fn(&mut Sticks), Mode); 7] = [
+    (|s| s.roll = 0.2, Mode::Hold),
+    (|s| s.pitch = -0.2, Mode::Hold),
+    (|s| s.yaw = 0.2, Mode::Hold),
+    (|s| s.throttle = 0.7, Mode::Hold),
+    (|s| s.perch_switch = false, Mode::Hold),
+    (|s| s.hold_switch = false, Mode::Flight),
+    (|s| s.stick_mode = crate::rc::StickMode::Rate, Mode::Flight),
+];
+
+#[test]
+fn the_perch_switch_starts_it_in_a_hold_and_it_closes_on_the_crown() {
+    let mut w = World::perched();
+    assert!((w.at.y - RIGHT).abs() < 0.02, "{:?}", w.at);
+    // Sticks on the pipe start no rotor, whatever they do.
+    for (hands, _) in &HANDS[..4] {
+        let before = *w.r.sticks();
+        hands(w.r.sticks());
+        w.expect(1.0, Mode::Perched);
+        assert_eq!(w.r.out.rotors, Setpoint::Stop);
+        *w.r.sticks() = before;
+    }
+}
+
+#[test]
+fn it_does_not_begin_without_a_range_a_position_or_centred_sticks_and_says_so() {
+    let mut w = World::holding();
+    w.r.sticks().perch_switch = true;
+    w.r.sticks().roll = 0.3;
+    w.expect(0.5, Mode::Hold);
+    assert_eq!(w.r.out.reason, Some(Reason::SticksNotCentred));
+    w.r.sticks().roll = 0.0;
+    w.expect(0.02, Mode::Approach);
+
+    let mut w = World::holding();
+    w.r.sticks().perch_switch = true;
+    let seen = w.r.inputs.position.unwrap();
+    w.r.inputs.position = Some(Estimate {
+        foot: Foot::default(),
+        ..seen
+    });
+    w.r.expect(0.5, Mode::Hold);
+    assert_eq!(w.r.out.reason, Some(Reason::NoRange));
+    w.r.inputs.position = Some(Estimate { age: 0.5, ..seen });
+    w.r.expect(15.0, Mode::Hold);
+    assert_eq!(w.r.out.reason, Some(Reason::NoPosition));
+
+    // By hand the perch switch means what it ever did.
+    let mut r = Rig::flying();
+    r.sticks().perch_switch = true;
+    r.expect(1.0, Mode::Flight);
+}
+
+#[test]
+fn any_stick_or_switch_ends_it_within_a_step_and_a_new_turn_starts_it_again() {
+    for (i, (hands, mode)) in HANDS.iter().enumerate() {
+        for seconds in [0.0, 1.3, 6.0, 12.0] {
+            let mut w = World::searching();
+            w.expect(seconds, Mode::Approach);
+            hands(w.r.sticks());
+            w.step();
+            assert_eq!(w.r.out.mode, *mode, "{i} after {seconds} s");
+            if *mode == Mode::Hold {
+                assert_eq!(w.r.out.reason, Some(Reason::TakenOver));
+            }
+            // Centred again, with perch still on, it stays with the pilot.
+            let sticks = *w.r.sticks();
+            *w.r.sticks() = Sticks {
+                roll: 0.0,
+                pitch: 0.0,
+                yaw: 0.0,
+                throttle: 0.5,
+                ..sticks
+            };
+            w.expect(0.5, *mode);
+            if *mode == Mode::Hold {
+                w.r.sticks().perch_switch = false;
+                w.step();
+                w.r.sticks().perch_switch = true;
+                w.expect(0.01, Mode::Approach);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_throttle_beyond_the_zone_climbs_at_once() {
+    let mut w = World::searching();
+    w.run(1.0);
+    w.r.sticks().throttle = 0.8;
+    w.run(0.3);
+    let weight = w.r.params.mass * 9.806_65;
+    assert_eq!(w.r.out.mode, Mode::Hold);
+    assert!(w.r.out.rotors.thrust() > weight + 0.5, "{:?}", w.r.out.rotors);
+}
+
+#[test]
+fn hands_on_the_sticks_while_the_arms_close_leave_the_pipe_and_hold() {
+    for start in [World::touched as fn() -> World, World::clamping] {
+        for (hands, mode) in &HANDS[..6] {
+            let mut w = start();
+            hands(w.r.sticks());
+            w.step();
+            assert_eq!(w.r.out.mode, Mode::Escaping);
+            w.r.carried = false;
+            w.r.grip(false, true, ArmState::Free, 0.0);
+            w.run(1.6);
+            assert_eq!(w.r.out.mode, *mode);
+        }
+    }
+}
+
+#[test]
+fn after_a_slide_it_climbs_and_tries_again_a_bounded_number_of_times() {
+    let mut w = World::touched();
+    for i in 1..TRIES {
+        // Nothing carries it any more.
+        w.r.carried = false;
+        w.expect(0.5, Mode::Escaping);
+        assert_eq!(w.r.out.reason, Some(Reason::SlidesOff));
+        let height = w.at.z;
+        w.expect(1.0, Mode::Approach);
+        w.run(1.5);
+        assert!(w.at.z < height - 0.3, "try {i}: {:?}", w.at);
+        for _ in 0..8000 {
+            if w.r.out.mode != Mode::Approach {
+                break;
+            }
+            w.step();
+        }
+        assert_eq!(w.r.out.mode, Mode::Contact, "try {i}: {:?}", w.r.out.reason);
+    }
+    w.r.carried = false;
+    w.expect(0.5, Mode::Escaping);
+    w.expect(1.0, Mode::Hold);
+    assert_eq!(w.r.out.reason, Some(Reason::SlidesOff));
+    w.expect(2.0, Mode::Hold);
+}
+
+#[test]
+fn without_a_pipe_or_a_range_it_is_handed_back_with_a_reason() {
+    let mut w = World::searching();
+    w.pipe = false;
+    for _ in 0..6000 {
+        w.step();
+        if w.r.out.mode == Mode::Hold {
+            break;
+        }
+    }
+    assert_eq!(w.r.out.reason, Some(Reason::NoPipe));
+
+    let mut w = World::searching();
+    w.run(2.0);
+    let seen = w.r.inputs.position.unwrap();
+    for (stale, why) in [
+        (
+            Estimate {
+                foot: Foot {
+                    age: 0.4,
+                    ..seen.foot
+                },
+                ..seen
+            },
+            Reason::RangeStale,
+        ),
+        (Estimate { age: 1.4, ..seen }, Reason::PositionStale),
+    ] {
+        let mut r = w.r.clone();
+        r.inputs.position = Some(stale);
+        r.run(0.02);
+        assert_eq!((r.out.mode, r.out.reason), (Mode::Hold, Some(why)));
+    }
+}
+
+#[test]
+fn leaving_is_by_itself_too_with_the_sticks_centred() {
+    let mut w = World::perched();
+    w.r.sticks().perch_switch = false;
+    w.expect(0.05, Mode::Releasing);
+    w.run(2.0);
+    let full = 4.0 * w.r.params.thrust_max;
+    assert!(
+        (w.r.out.rotors.thrust() - 0.2 * full).abs() < 0.01,
+        "{:?}",
+        w.r.out.rotors
+    );
+    w.r.grip(false, true, ArmState::Free, 0.0);
+    w.expect(0.4, Mode::Escaping);
+    w.r.carried = false;
+    w.pipe = false;
+    w.expect(1.0, Mode::Approach);
+    let height = w.at.z;
+    w.expect(4.0, Mode::Hold);
+    assert!(
+        w.at.z < height - 0.4 && w.r.out.reason.is_none(),
+        "{:?} {:?}",
+        w.at,
+        w.r.out.reason
+    );
+
+    // With the throttle of a release by hand it is the pilot's.
+    let mut w = World::perched();
+    w.r.sticks().throttle = 0.3;
+    w.r.sticks().perch_switch = false;
+    w.expect(2.0, Mode::Releasing);
+    w.r.grip(false, true, ArmState::Free, 0.0);
+    w.expect(0.5, Mode::Flight);
+}
+
+#[test]
+fn what_ends_a_flight_ends_it_too() {
+    let mut w = World::searching();
+    w.r.inputs.sticks = None;
+    w.expect(0.02, Mode::Failsafe);
+    let mut w = World::searching();
+    w.r.inputs.battery = Some(10.0);
+    w.expect(3.0, Mode::Failsafe);
+    let mut w = World::searching();
+    w.r.sticks().arm_switch = false;
+    w.expect(0.01, Mode::Disarmed);
+    let mut w = World::searching();
+    w.r.inputs.motion = None;
+    w.expect(0.1, Mode::Disarmed);
+}

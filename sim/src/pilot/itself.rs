@@ -1,0 +1,119 @@
+//! Steps that the vehicle flies by itself: the pilot holds near the pipe, turns the perch switch, and keeps his hands off.
+
+use sophie_control::mode::Mode;
+
+use super::held::CENTRE;
+use super::mission::{Mission, Phase, Progress, View};
+use super::stick_dynamics::StickTarget;
+use crate::scenario::Step;
+
+/// Height over the pipe at which he holds, m.
+const OVER: f64 = 0.6;
+/// Distance, m, and speed, m/s, from which he leaves the rest of the way to the hold.
+const NEAR: f64 = 0.8;
+const NEAR_SPEED: f64 = 0.5;
+/// Time with centred sticks before he turns the perch switch, s.
+const STILL: f64 = 1.5;
+/// How far it has climbed when he takes the leaving as done, m.
+const LEFT: f64 = 0.4;
+
+impl Mission {
+    /// By hand to the pipe, and the last metre by the hold.
+    pub(super) fn fly_to_pipe_held(&mut self, v: &View<'_>, dt: f64) -> Progress {
+        let height = self.pipe_top + OVER;
+        if !self.hold_switch && self.phase == Phase::Start {
+            let off = (v.seen.position.truncate() - self.pipe)
+                .length()
+                .hypot(v.height() - height);
+            let near = off < NEAR && v.seen.velocity.length() < NEAR_SPEED;
+            if !self.held_for(near, 1.0, dt) {
+                return Progress::Going(self.go_to(v, self.pipe, height, dt));
+            }
+            self.spot = self.pipe;
+            self.height = height;
+        }
+        let progress = self.fly_to_held(v, self.pipe, height, dt);
+        if matches!(progress, Progress::Done(_)) {
+            self.hold_switch = true;
+        }
+        progress
+    }
+
+    /// Turns the perch switch and waits for what ends `step`.
+    pub(super) fn perch_by_itself(&mut self, step: &Step, v: &View<'_>, dt: f64) -> Progress {
+        let done = match step {
+            Step::Touch => matches!(v.mode, Some(Mode::Contact | Mode::Clamping | Mode::Perched)),
+            Step::Clamp { .. } => matches!(v.mode, Some(Mode::Clamping | Mode::Perched)),
+            _ => v.mode == Some(Mode::Perched),
+        };
+        if self.perch_switch && self.phase == Phase::Start {
+            self.enter(Phase::Commit);
+        }
+        match self.phase {
+            Phase::Descend if v.mode != Some(Mode::Hold) => self.enter(Phase::Fly),
+            Phase::Descend if self.phase_time >= STILL => {
+                self.perch_switch = true;
+                self.enter(Phase::Commit);
+            }
+            Phase::Descend => (),
+            Phase::Commit => {
+                // The display is a moment late.
+                let back = matches!(v.mode, Some(Mode::Hold | Mode::Flight | Mode::Failsafe));
+                if self.held_for(back, STILL, dt) {
+                    return Progress::Failed(format!("handed back, {}", v.shown()));
+                }
+            }
+            _ => match self.enter_hold(v, self.pipe, self.pipe_top + OVER, dt) {
+                Err(progress) => return progress,
+                Ok(()) => self.enter(Phase::Descend),
+            },
+        }
+        let wish = self.idle();
+        if done {
+            Progress::Done(wish)
+        } else {
+            Progress::Going(wish)
+        }
+    }
+
+    /// Turns the perch switch off and waits until the vehicle holds its place above the pipe.
+    pub(super) fn release_by_itself(&mut self, step: &Step, v: &View<'_>, dt: f64) -> Progress {
+        let wish = self.idle();
+        if self.phase == Phase::Start {
+            self.height = v.height();
+            self.enter(Phase::Throttle);
+        }
+        if self.phase == Phase::Throttle && self.phase_time >= STILL {
+            self.perch_switch = false;
+            self.enter(Phase::Wait);
+        }
+        let done = match step {
+            Step::Open => v.mode == Some(Mode::Releasing),
+            _ => v.mode == Some(Mode::Hold) && v.height() > self.height + LEFT,
+        };
+        if self.held_for(done, 0.5, dt) {
+            self.hold_switch &= matches!(step, Step::Open);
+            Progress::Done(wish)
+        } else {
+            Progress::Going(wish)
+        }
+    }
+
+    /// The same with hands off the sticks.
+    pub(super) fn hands_off(&mut self, progress: Progress) -> Progress {
+        match progress {
+            Progress::Going(_) => Progress::Going(self.idle()),
+            Progress::Done(_) => Progress::Done(self.idle()),
+            failed @ Progress::Failed(_) => failed,
+        }
+    }
+
+    /// Every stick centred.
+    fn idle(&mut self) -> StickTarget {
+        self.guidance.stand(CENTRE);
+        StickTarget {
+            throttle: CENTRE,
+            ..StickTarget::default()
+        }
+    }
+}

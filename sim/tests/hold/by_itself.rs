@@ -1,0 +1,92 @@
+//! Perching by itself, and leaving again.
+
+use super::*;
+
+/// Holds near the pipe, perches by itself and leaves, with `sensors`, in gusts and wind as [`held`] unless `calm`.
+fn mission(seed: u64, sensors: PositionSensor, calm: bool) -> Scenario {
+    let mut s = held(seed, 0.0);
+    s.steps = vec![
+        Step::Arm,
+        Step::TakeOff { height: 2.0 },
+        Step::FlyToPipe,
+        Step::Touch,
+        Step::Perch { throttle: 0.3 },
+        Step::Hold {
+            seconds: 5.0,
+            push: 1.5,
+        },
+        Step::Release,
+        Step::FlyTo {
+            north: 0.0,
+            east: 0.0,
+            height: 2.0,
+        },
+        Step::Land,
+        Step::Disarm,
+    ];
+    s.time_limit = 900.0;
+    s.sensors.position = sensors;
+    s.pilot.assist = Assist::Itself;
+    s.world.pipe_length = 3.6;
+    if calm {
+        (s.world.gust_force, s.world.gust_moment, s.world.steady_wind) = (0.0, 0.0, 0.0);
+    }
+    s
+}
+
+/// Offsets across the pipe of the touches, m.
+fn touches(record: &FlightRecord) -> Vec<f64> {
+    let east = record.scenario.world.pipe_position[1];
+    let pairs = record.samples.windows(2);
+    pairs
+        .filter(|w| w[0].mode == Mode::Approach && w[1].mode == Mode::Contact)
+        .map(|w| w[1].position[1] - east)
+        .collect()
+}
+
+/// Flies `seeds` in wind and gusts: missions begun, those accomplished, and the touches' offsets, m, sorted.
+fn flown(seeds: impl Iterator<Item = u64>, sensors: PositionSensor) -> (usize, usize, Vec<f64>) {
+    let (mut begun, mut done, mut offsets) = (0, 0, vec![]);
+    for seed in seeds {
+        let record = fly(&mission(seed, sensors, false), &mut Silent);
+        let touches = touches(&record);
+        println!("{seed}: {}, touches {touches:.3?} m", record.outcome.reason);
+        // By hand the pilot does not always come to the pipe in this wind.
+        if record.samples.iter().any(|s| s.mode == Mode::Approach) {
+            begun += 1;
+            done += usize::from(record.outcome.accomplished);
+        }
+        offsets.extend(touches.iter().map(|y| y.abs()));
+    }
+    offsets.sort_by(f64::total_cmp);
+    (begun, done, offsets)
+}
+
+#[test]
+fn in_still_air_it_perches_by_flow_and_leaves_again() {
+    let record = fly(&mission(1, PositionSensor::Flow, true), &mut Silent);
+    assert!(record.outcome.accomplished, "{}", record.outcome.reason);
+    let offsets = touches(&record);
+    assert!(offsets.len() == 1 && offsets[0].abs() < 0.045, "{offsets:?}");
+    // Only the switch was turned: no stick has moved from its centre since.
+    let alone = record.samples.iter().skip_while(|s| s.mode != Mode::Approach);
+    let mut alone = alone.take_while(|s| s.mode != Mode::Perched);
+    assert!(alone.all(|s| (s.throttle - 0.5).abs() < 1e-3));
+}
+
+#[test]
+fn in_wind_and_gusts_it_perches_by_flow() {
+    let (begun, done, offsets) = flown([2, 5].into_iter(), PositionSensor::Flow);
+    assert!(begun == 2 && done == 2, "{done} of {begun}");
+    assert!(offsets.iter().all(|y| *y < 0.05), "{offsets:?}");
+}
+
+#[test]
+#[ignore = "twenty missions by flow: .ci/campaign flies them"]
+fn in_wind_and_gusts_most_seeds_perch_by_flow() {
+    let (begun, done, offsets) = flown(1..=20, PositionSensor::Flow);
+    let most = offsets[(0.95 * offsets.len() as f64) as usize];
+    println!("{done} of {begun}, touches 95 % within {most:.3} m");
+    assert!(begun >= 17 && 10 * done >= 7 * begun, "{done} of {begun}");
+    assert!(most < 0.08, "{most:.3}");
+}
