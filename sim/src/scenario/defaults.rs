@@ -74,6 +74,7 @@ impl Default for Expect {
         Self {
             accomplished: true,
             reason: None,
+            says: None,
         }
     }
 }
