@@ -48,6 +48,11 @@ fn flown_as_expected(path: &Path) -> Result<(), Failed> {
 
 fn judge(expect: &Expect, record: &FlightRecord) -> Result<(), Failed> {
     let outcome = &record.outcome;
+    if let Some(words) = &expect.says
+        && !record.events.iter().any(|event| event.text.contains(words))
+    {
+        return Err(format!("the pilot did not read \"{words}\": {}", outcome.reason).into());
+    }
     if outcome.accomplished != expect.accomplished {
         let wanted = if expect.accomplished {
             "accomplished"

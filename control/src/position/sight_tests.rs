@@ -334,3 +334,42 @@ fn where_flow_cannot_be_used_is_named() {
     assert!(SightLimit::TooHigh.text().contains(&std::format!("{high} m")));
     assert!(SightLimit::ALL.iter().all(|limit| limit.text().len() <= 40));
 }
+
+use proptest::prelude::*;
+
+/// Numbers that a line can carry: small, huge and none.
+fn number() -> impl Strategy<Value = f32> {
+    prop_oneof![3 => -0.3f32..0.3, 2 => 0.0f32..3.0, 1 => prop::num::f32::ANY]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Whatever a module says: an estimate is of finite numbers, and near what the inertial sensor and the last sound
+    /// measurement allow.
+    #[test]
+    fn views_of_any_kind_give_only_estimates_of_finite_numbers(
+        views in prop::collection::vec(
+            (number(), number(), number(), number(), any::<u8>(), 0u64..40_000, (number(), number())), 1..80),
+    ) {
+        let mut rig = Rig::new();
+        rig.run(1.0);
+        for (x, y, seconds, distance, quality, late, reach) in views {
+            rig.now += STEP_US;
+            let at_us = rig.now - late;
+            let view = GroundView {
+                flow: Some(Flow { until_us: at_us, seconds, angle: [x, y], quality }),
+                range: Some(Range { at_us, distance: Some(distance), reach }),
+            };
+            let felt = Inertial {
+                at_us: rig.now,
+                q: Quat::IDENTITY,
+                accel: Vec3::new(0.0, 0.0, -GRAVITY),
+            };
+            if let Some(e) = rig.estimator.step(&felt, 0.0, None, Some(&view)) {
+                prop_assert!(e.is_finite(), "{e:?}");
+                prop_assert!(e.position.norm() < 20.0 && e.velocity.norm() < 20.0, "{e:?}");
+            }
+        }
+    }
+}

@@ -75,6 +75,7 @@ impl Default for Expect {
         Self {
             accomplished: true,
             reason: None,
+            says: None,
         }
     }
 }

@@ -468,6 +468,10 @@ pub const KEYS: &[Key] = &[
         name: "expect.reason",
         kind: Kind::Text(|s, v| s.expect.reason = Some(v.to_owned())),
     },
+    Key {
+        name: "expect.says",
+        kind: Kind::Text(|s, v| s.expect.says = Some(v.to_owned())),
+    },
 ];
 
 /// Tables of a file; `steps` is a list.

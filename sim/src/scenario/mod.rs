@@ -360,4 +360,6 @@ pub struct Expect {
     pub accomplished: bool,
     /// Words of the reason if not.
     pub reason: Option<String>,
+    /// Words that the pilot reads in flight.
+    pub says: Option<String>,
 }
