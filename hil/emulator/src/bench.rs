@@ -6,7 +6,7 @@ use sophie_control::fsr::FsrScale;
 use sophie_control::grip::{ArmGrip, ArmState, GripState};
 use sophie_control::mode::Mode;
 use sophie_control::motor_map::at_rotors;
-use sophie_control::params::{Params, RcProtocol};
+use sophie_control::params::{FlowPort, Params, RcProtocol};
 use sophie_control::rc::Sticks;
 use sophie_control::tendon::Reel;
 use sophie_control::thrust_curve::ThrustCurve;
@@ -20,6 +20,7 @@ use sophie_tasks::start::StartCause;
 use sophie_tasks::telemetry::parse_mode_text;
 use uf_crsf::{CrsfParser, Packet};
 
+use crate::below::Module;
 use crate::elf::Firmware;
 use crate::emulator::{Emulator, Settings};
 use crate::hands::Hands;
@@ -40,6 +41,7 @@ pub struct Bench<'a> {
     firmware: &'a Firmware,
     settings: Settings,
     sensors: Sensors,
+    below: Option<Module>,
     /// `None`: the vehicle is left to itself.
     hands: Option<Hands>,
     plan: Plan,
@@ -128,10 +130,15 @@ impl<'a> Bench<'a> {
         let Setup { speed, plan, sockets } = setup;
         let sensors = Sensors::new(scenario);
         let [accel_bias_x, accel_bias_y, accel_bias_z] = sensors.calibration;
+        let below = Module::of(scenario);
         let params = Params {
             accel_bias_x,
             accel_bias_y,
             accel_bias_z,
+            // The simulated board has its module's task without it.
+            flow_port: below
+                .as_ref()
+                .map_or(scenario.params.flow_port, |_| FlowPort::Msp),
             ..scenario.params
         };
         Self {
@@ -139,6 +146,7 @@ impl<'a> Bench<'a> {
             firmware,
             settings: Settings { speed, params },
             sensors,
+            below,
             hands: None,
             plan,
             wires: Wires::default(),
@@ -288,6 +296,10 @@ impl Aircraft for Bench<'_> {
         }
         self.sensors
             .step(plant, &actuators, held.as_ref(), &mut self.wires);
+        if let Some(below) = &mut self.below {
+            below.look(plant);
+            self.wires.ground = below.speaks(self.pins.ms * 1000);
+        }
         self.watched.tilt = plant.tilt();
         self.watched.voltage = plant.battery_voltage();
         let [roll, ..] = plant.euler();

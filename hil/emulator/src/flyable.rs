@@ -25,9 +25,9 @@ pub fn check(scenario: &Scenario) -> Result<(), String> {
             keys::configuration_word(Configuration::default())
         ));
     }
-    if scenario.sensors.position != PositionSensor::None {
+    if scenario.sensors.position == PositionSensor::Pose {
         return Err(format!(
-            "{name}: sensors.position {}: the bench has none",
+            "{name}: sensors.position {}: the bench has flow alone",
             keys::position_sensor_word(scenario.sensors.position)
         ));
     }
@@ -61,6 +61,8 @@ mod tests {
         assert_eq!(check(&scenario), Ok(()));
         scenario.sensors.position = PositionSensor::Pose;
         assert!(check(&scenario).unwrap_err().contains("position pose"));
+        scenario.sensors.position = PositionSensor::Flow;
+        assert_eq!(check(&scenario), Ok(()));
         scenario.sensors.position = PositionSensor::None;
         scenario.faults.tilt_offset[0] = 0.1;
         assert!(check(&scenario).unwrap_err().contains("faults"));

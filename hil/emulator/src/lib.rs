@@ -8,6 +8,7 @@
 //!
 //! The image and the simulation are connected only by registers and wires, pins, telemetry and log.
 
+pub mod below;
 pub mod bench;
 pub mod boards;
 pub mod chain;

@@ -22,6 +22,8 @@ pub struct Wires {
     pub console: Vec<u8>,
     /// Bytes from a MAVLink client.
     pub mavlink: Vec<u8>,
+    /// Bytes from the flow and range module.
+    pub ground: Vec<u8>,
     /// Faults and repairs in this millisecond.
     pub faults: Vec<BoardFault>,
 }

@@ -147,6 +147,11 @@ impl<C: Chip> Wired<C> {
         self.chip.line(self.pads.mavlink)
     }
 
+    /// The flow and range module's.
+    pub fn ground(&mut self) -> Option<&mut Line> {
+        self.chip.line(self.pads.ground)
+    }
+
     pub fn motor_edges(&mut self) -> Vec<Edge> {
         self.chip.motor_edges()
     }
@@ -177,14 +182,16 @@ impl<C: Chip> Wired<C> {
         self.pads.foreign
     }
 
-    /// Pins with a wrong function, a receiver's port that differs from `receiver`, MAVLink's from [`Setup::MAVLINK`].
-    pub fn miswired(&mut self, now: VirtualNanos, receiver: Setup) -> Vec<(String, String)> {
+    /// Pins with a wrong function, a receiver's port that differs from `receiver`, MAVLink's from [`Setup::MAVLINK`], and
+    /// with a module below that of [`Setup::GROUND`].
+    pub fn miswired(&mut self, now: VirtualNanos, receiver: Setup, below: bool) -> Vec<(String, String)> {
         let mut found = Vec::new();
         let lines = [
             ("receiver", self.pads.receiver, receiver),
             ("MAVLink", self.pads.mavlink, Setup::MAVLINK),
         ];
-        for (name, port, wired) in lines {
+        let module = below.then_some(("flow and range", self.pads.ground, Setup::GROUND));
+        for (name, port, wired) in lines.into_iter().chain(module) {
             let port = self.chip.serial_setup(port);
             if !wired.fits(&port) {
                 found.push((name.to_owned(), format!("is {port}, wired for {wired}")));
@@ -198,7 +205,7 @@ impl<C: Chip> Wired<C> {
                 found.push((format!("I2C{}", bus + 1), wrong));
             }
         }
-        for (pin, wanted) in self.pads.functions(!receiver.parity) {
+        for (pin, wanted) in self.pads.functions(!receiver.parity, below) {
             let function = self.chip.function(now, pin);
             if function != Some(wanted) {
                 let carried = function.map_or("none".to_owned(), |f| f.to_string());

@@ -109,7 +109,7 @@ macro_rules! same_on_this_part {
             for (bus, address) in pads.arms {
                 self.i2c(bus).attach(Bno055::new(address));
             }
-            for port in [pads.receiver, pads.console, pads.mavlink] {
+            for port in [pads.receiver, pads.console, pads.mavlink, pads.ground] {
                 self.inner.usart[port].attach(Line::default());
             }
         }

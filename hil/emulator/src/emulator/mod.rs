@@ -30,7 +30,7 @@ use rigless::image::Image;
 use rigless::session::Session;
 use rigless::soc::Width;
 use rigless::time::{NO_DEADLINE, VirtualNanos};
-use sophie_control::params::Params;
+use sophie_control::params::{FlowPort, Params};
 use sophie_control::wrench::PerArm;
 
 use self::board::Wired;
@@ -118,6 +118,7 @@ impl Emulator {
             rtt: Rtt::new(firmware.rtt),
             params: firmware.params,
             receiver,
+            below: settings.params.flow_port == FlowPort::Msp,
             erases: BTreeMap::new(),
             cached: 0,
             tasks: firmware.tasks.clone(),
@@ -213,8 +214,8 @@ fn run<C: Chip>(
     let mut gaps = gaps(&finished.session);
     let started = finished.session.resets().last().map_or(0, |reset| reset.at.0);
     let miswired = if at.0 - started.min(at.0) > START_UP {
-        let receiver = finished.driver.receiver;
-        finished.session.board_mut().miswired(at, receiver)
+        let (receiver, below) = (finished.driver.receiver, finished.driver.below);
+        finished.session.board_mut().miswired(at, receiver, below)
     } else {
         Vec::new()
     };
@@ -305,6 +306,8 @@ struct World {
     params: (u64, u64),
     /// Required set-up of the receiver's port.
     receiver: serial::Setup,
+    /// A flow and range module is wired.
+    below: bool,
     erases: BTreeMap<u64, u32>,
     cached: u32,
     tasks: BTreeMap<String, u64>,
@@ -543,6 +546,9 @@ impl World {
         }
         if let Some(line) = board.mavlink() {
             line.outgoing.extend(wires.mavlink.into_iter().map(u16::from));
+        }
+        if let Some(line) = board.ground() {
+            line.outgoing.extend(wires.ground.into_iter().map(u16::from));
         }
     }
 }

@@ -113,6 +113,10 @@ pub struct Pads {
     pub console: usize,
     /// Serial port of MAVLink.
     pub mavlink: usize,
+    /// Serial port of the flow and range module.
+    pub ground: usize,
+    /// Its input, with its alternate function; unused without a module.
+    pub ground_in: (At, u8),
     /// The motors.
     pub motors: TimerPins,
     /// 1 to 4.
@@ -134,8 +138,8 @@ impl Pads {
             .map(|(pad, volts)| (pad.channel, pad.millivolts(volts)))
     }
 
-    /// Pins with their alternate functions; `answers`: the receiver's output is used.
-    pub fn functions(&self, answers: bool) -> impl Iterator<Item = (At, u8)> {
+    /// Pins with their alternate functions; `answers`: the receiver's output is used; `below`: the module's line.
+    pub fn functions(&self, answers: bool, below: bool) -> impl Iterator<Item = (At, u8)> {
         let motors = self.motors.pins.map(|pin| (pin, self.motors.function));
         let servos = self.servos.map(|servo| (servo.pin, servo.function));
         motors
@@ -143,5 +147,6 @@ impl Pads {
             .chain(servos)
             .chain(self.buses.iter().copied())
             .chain(answers.then_some(self.receiver_out))
+            .chain(below.then_some(self.ground_in))
     }
 }

@@ -23,6 +23,8 @@ pub struct Setup {
 impl Setup {
     /// Required settings of the MAVLink line.
     pub const MAVLINK: Self = Self::plain(57_600.0);
+    /// Required settings of the line of the flow and range module, where there is one.
+    pub const GROUND: Self = Self::plain(115_200.0);
 
     /// 8N1 at `rate` baud.
     const fn plain(rate: f64) -> Self {

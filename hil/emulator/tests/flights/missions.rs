@@ -1,4 +1,6 @@
+use sophie_control::mode::Mode;
 use sophie_emulator::wires::BoardFault;
+use sophie_sim::record::FlightRecord;
 use sophie_sim::sensors::fsr::FsrBreak;
 use sophie_timing::live::{self, Contact, Line};
 
@@ -69,6 +71,35 @@ fn the_small_board_perches() {
     assert!(flight.board.overruns.is_empty(), "{:?}", flight.board.overruns);
     assert_eq!(flight.record.grip.len(), 4);
     answers_contact_in_time(&flight, 60);
+}
+
+/// Held by the module's bytes on the board's line: outcome and phases are the host's.
+fn holds_by_flow(flight: &Flight) {
+    accomplished(flight);
+    let host = sophie_sim::flight::fly(&scenario("hold-flow.toml"), &mut Silent);
+    assert!(host.outcome.accomplished, "{:?}", host.outcome);
+    let phases = |record: &FlightRecord| -> Vec<(String, bool)> {
+        record.phases.iter().map(|p| (p.name.clone(), p.done)).collect()
+    };
+    assert_eq!(phases(&flight.record), phases(&host));
+    let held = |record: &FlightRecord| record.samples.iter().filter(|s| s.mode == Mode::Hold).count();
+    let (board, host) = (held(&flight.record), held(&host));
+    println!("in HOLD for {board} samples, {host} on the host");
+    // The self-test shifts the pilot against the gusts, so that he is at the point sooner or later.
+    assert!(4 * board > 3 * host && 4 * host > 3 * board, "{board} {host}");
+    assert!(flight.board.overruns.is_empty(), "{:?}", flight.board.overruns);
+}
+
+#[test]
+#[ignore = "minutes of emulated flight: .ci/campaign flies it"]
+fn the_image_holds_by_flow() {
+    holds_by_flow(&fly(&scenario("hold-flow.toml"), 1.0, &[]));
+}
+
+#[test]
+#[ignore = "minutes of emulated flight: .ci/campaign flies it"]
+fn the_small_board_holds_by_flow() {
+    holds_by_flow(&fly_small(&scenario("hold-flow.toml"), &[]));
 }
 
 #[test]

@@ -98,6 +98,8 @@ pub static PADS: Pads = Pads {
     receiver_out: (At(0, 9), 7),
     console: 1,
     mavlink: 2,
+    ground: 7,
+    ground_in: (At(3, 2), 8),
     motors: TimerPins {
         pins: [At(2, 6), At(2, 7), At(2, 8), At(2, 9)],
         function: 3,
@@ -137,10 +139,9 @@ pub static PADS: Pads = Pads {
 
 /// Instances that no firmware of ours uses, or that the F405 lacks. Whoever reaches one all the same finds it listed as
 /// unimplemented, and the run failed.
-const UNUSED: [&str; 25] = [
-    "TIM1", "TIM2", "TIM3", "SPI2", "SPI3", "SPI4", "SPI5", "SPI6", "I2C3", "USART6", "UART4", "UART5",
-    "UART7", "UART8", "ADC2", "ADC3", "SDIO", "RTC", "GPIOE", "GPIOF", "GPIOG", "GPIOH", "GPIOI", "GPIOJ",
-    "GPIOK",
+const UNUSED: [&str; 24] = [
+    "TIM1", "TIM2", "TIM3", "SPI2", "SPI3", "SPI4", "SPI5", "SPI6", "I2C3", "USART6", "UART4", "UART7",
+    "UART8", "ADC2", "ADC3", "SDIO", "RTC", "GPIOE", "GPIOF", "GPIOG", "GPIOH", "GPIOI", "GPIOJ", "GPIOK",
 ];
 
 /// The requests that reach DMA2: the emulator's, and the motor timer's update (table 44).

@@ -91,6 +91,8 @@ pub static MATEK: Pads = Pads {
     receiver_out: (At(2, 6), 7),
     console: 6,
     mavlink: 0,
+    ground: 2,
+    ground_in: (At(3, 9), 7),
     motors: TimerPins {
         pins: [At(3, 12), At(3, 13), At(3, 14), At(3, 15)],
         function: 2,
