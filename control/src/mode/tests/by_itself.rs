@@ -125,8 +125,10 @@ impl World {
     }
 }
 
+type Hand = fn(&mut Sticks);
+
 /// What a pilot may do to end it, and the mode in which he is then in free air.
-const HANDS: [(fn(&mut Sticks), Mode); 7] = [
+const HANDS: [(Hand, Mode); 7] = [
     (|s| s.roll = 0.2, Mode::Hold),
     (|s| s.pitch = -0.2, Mode::Hold),
     (|s| s.yaw = 0.2, Mode::Hold),
