@@ -10,8 +10,6 @@ use super::summary::tidy;
 
 /// Rotor above the arm, m, drawn.
 const ROTOR_LIFT: f64 = 0.05;
-/// m, drawn.
-const PIPE_LENGTH: f64 = 2.0;
 /// As in the report.
 const COLOURS: [[f64; 3]; 4] = [
     [0.0, 0.45, 0.70],
@@ -47,7 +45,7 @@ pub fn fixed(record: &FlightRecord) -> Value {
             "position": point(north, -east, world.pipe_top - d / 2.0),
             "orientation": { "x": 0.0, "y": half, "z": 0.0, "w": half },
         },
-        "size": { "x": d, "y": d, "z": PIPE_LENGTH },
+        "size": { "x": d, "y": d, "z": world.pipe_length },
         "bottom_scale": 1.0,
         "top_scale": 1.0,
         "color": colour([0.62, 0.66, 0.72], 1.0),
