@@ -1,4 +1,4 @@
-//! The warnings on the pilot's page, each with what he is to do.
+//! The warnings on the page of what the display says, each with what he is to do.
 
 use std::fmt::Write;
 
@@ -37,13 +37,13 @@ fn to_do(warning: Warning) -> &'static str {
 }
 
 #[test]
-fn every_warning_is_on_the_pilots_page() {
+fn every_warning_is_on_the_page_of_the_display() {
     let mut table = String::from("| warning | what to do |\n|---|---|\n");
     for warning in Warning::ALL {
         let _ = writeln!(table, "| {} | {} |", warning.text(), to_do(warning));
     }
     let test = "--package sophie-tasks --test tasks pilot_page";
-    sophie_pages::hold("pilot", &[("warnings", table)], test);
+    sophie_pages::hold("display", &[("warnings", table)], test);
 }
 
 #[test]

@@ -1,4 +1,5 @@
-//! `docs/pilot.md`: every mode, reason and arming check with what the pilot is to do, the switches, the numbers.
+//! `docs/pilot.md`: the switches, the numbers. `docs/display.md`: every mode, reason and arming check with what the pilot is to
+//! do.
 //!
 //! A new text does not build before it is said here what to do about it.
 
@@ -244,7 +245,7 @@ fn numbers() -> [String; 14] {
 }
 
 #[test]
-fn the_pilots_page_has_every_text_and_what_to_do() {
+fn the_pilots_pages_have_every_switch_and_text_and_what_to_do() {
     let faults = [
         GripFault::Stale,
         GripFault::Sensor,
@@ -254,7 +255,6 @@ fn the_pilots_page_has_every_text_and_what_to_do() {
         GripFault::NotFinite,
     ];
     let parts = [
-        ("channels", channels()),
         (
             "modes",
             table("mode", Mode::ALL.map(|m| (format!("`{}`", m.name()), in_mode(m)))),
@@ -278,11 +278,9 @@ fn the_pilots_page_has_every_text_and_what_to_do() {
             ),
         ),
     ];
-    sophie_pages::hold(
-        "pilot",
-        &parts,
-        "--package sophie-control mode::tests::pilot_page",
-    );
+    let test = "--package sophie-control mode::tests::pilot_page";
+    sophie_pages::hold("pilot", &[("channels", channels())], test);
+    sophie_pages::hold("display", &parts, test);
 }
 
 #[test]
