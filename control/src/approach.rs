@@ -65,7 +65,8 @@ const GATE_TIME: f32 = 0.05;
 const PATIENCE: f32 = 10.0;
 /// Offset on the last bit beyond which it goes up again, m: what the pads hold (docs/results.md).
 const ASTRAY: f32 = 0.05;
-/// Longest of what is waited for, s: a way, the crown under it, the gate, the touch.
+/// Longest of what is waited for, s: all sweeps (8 m of way), a way, the crown under it, the gate, the touch.
+const SEARCH_TIME: f32 = 60.0;
 const WAY_TIME: f32 = 15.0;
 const CENTRE_TIME: f32 = 12.0;
 const GATE_WAIT: f32 = 15.0;
@@ -356,6 +357,7 @@ impl Approach {
     }
 
     fn search(&mut self, edge: Option<Edge>, held: Vec3) -> Result<Vec3, Doubt> {
+        self.late(SEARCH_TIME, Doubt::NoPipe)?;
         if let Some(middle) = self.crossed(edge) {
             self.crown = middle;
             self.along = held.x;

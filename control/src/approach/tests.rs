@@ -193,6 +193,12 @@ fn without_a_range_and_where_nothing_is_touched_it_gives_up() {
     view.position.y = 0.2;
     law.since = 0.0;
     assert_eq!(law.step(&view, DT), Err(Doubt::NotCentred));
+    // The wind keeps it from sweeping.
+    let mut law = begun(&WORLD);
+    view.foot.age = 0.0;
+    let steps = (0..10_000).take_while(|_| law.step(&view, DT).is_ok()).count();
+    assert!((steps as f32 * DT - SEARCH_TIME).abs() < 0.1, "{steps}");
+    assert_eq!(law.step(&view, DT), Err(Doubt::NoPipe));
 }
 
 #[test]
