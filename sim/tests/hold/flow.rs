@@ -148,7 +148,7 @@ fn a_module_that_fails_is_named_or_missed_and_the_vehicle_is_level_and_high() {
 /// With errors of the scale beside the calibrated one's, at heights up to the module's reach: the level speed in still
 /// air, where only the hold itself moves the vehicle.
 #[test]
-#[ignore = "forty flights, a table: docs/hold.md has it"]
+#[ignore = "forty flights: .ci/campaign flies them, docs/hold.md has the table"]
 fn where_an_error_of_the_scale_swings_the_hold() {
     println!(
         "| height | {} |",
