@@ -4,87 +4,19 @@
 //! Lengths are from where a try began: forward and right along its heading, down.
 
 mod edges;
+mod limits;
 #[cfg(test)]
 mod tests;
 
 use self::edges::{Edge, Edges};
+pub use self::limits::RANGE_AGE;
+use self::limits::*;
 use crate::math::{self, clamp, clamp_abs};
 use crate::params::Params;
 use crate::position::{Foot, about_down};
 use crate::position_hold::Wish;
 use crate::support::Held;
 use crate::vector::Vec3;
-
-/// Half the width of the first sweep, by how much each next one is wider, and the widest, m: the hold begins within a metre of
-/// the pipe.
-const SWEEP: f32 = 0.4;
-const SWEEP_MAX: f32 = 1.3;
-/// Speeds across and along the pipe, m/s: first sweep, and the slower rest.
-const SWEEP_SPEED: f32 = 0.35;
-const CROSS_SPEED: f32 = 0.25;
-/// Way beside the pipe at which a crossing turns back, m.
-const BESIDE: f32 = 0.13;
-/// Crossings that the crown is taken from, with the way out to the first.
-const LEGS: u8 = 3;
-/// Farthest that two crossings, or the last one and the edge on the way back, may differ, m; and the weight of the newer.
-const AGREE: f32 = 0.12;
-const NEWER: f32 = 0.7;
-/// Offset of the beam at which it falls off the pipe's side, not its end, m.
-const SIDE: f32 = 0.08;
-/// Widths of a crossing that are the pipe's, share of its diameter.
-const WIDTH: (f32, f32) = (0.7, 1.35);
-/// Heights over the crown, m: to which it climbs for another try, and of the crossings.
-const HIGH: f32 = 0.6;
-const LOW: f32 = 0.4;
-/// Climb where no crown is known, m.
-const RISE: f32 = 0.4;
-/// Fastest climb between tries, and fastest way down, m/s.
-const CLIMB_SPEED: f32 = 0.35;
-const DESCENT: f32 = 0.2;
-/// How far it looks along the pipe each way, and how near to an end it sits down, m: the arms reach 0.2 m.
-const LOOK: f32 = 0.3;
-const END: f32 = 0.3;
-/// Speed at which it follows a corrected crown, m/s.
-const CORRECT_SPEED: f32 = 0.05;
-/// Offset and speed across at which it is over the crown, m and m/s, and for how long, s.
-const SETTLED: f32 = 0.03;
-const SETTLED_SPEED: f32 = 0.06;
-const SETTLED_TIME: f32 = 0.3;
-/// Range below which it does not sink while it is this far off, m.
-const NEAR: f32 = 0.25;
-const NEAR_OFF: f32 = 0.06;
-/// Range at which it waits to be over the crown, m: the last at which flow is seen with some margin.
-const GATE: f32 = 0.12;
-/// Time from there to the touch, s.
-const LAST_TIME: f32 = 0.5;
-/// Offset that goes on from there, at once and after [`PATIENCE`], m, the speed across, m/s, and for how long, s.
-const STRICT: f32 = 0.015;
-const CONTENT: f32 = 0.03;
-const GATE_SPEED: f32 = 0.05;
-const GATE_TIME: f32 = 0.05;
-const PATIENCE: f32 = 10.0;
-/// Offset on the last bit beyond which it goes up again, m: what the pads hold (docs/results.md).
-const ASTRAY: f32 = 0.05;
-/// Longest of what is waited for, s: all sweeps (8 m of way), a way, the crown under it, the gate, the touch.
-const SEARCH_TIME: f32 = 60.0;
-const WAY_TIME: f32 = 15.0;
-const CENTRE_TIME: f32 = 12.0;
-const GATE_WAIT: f32 = 15.0;
-const TOUCH_WAIT: f32 = 2.5;
-/// Age of a range beyond which it is none, s.
-pub const RANGE_AGE: f32 = 0.3;
-/// Change of the level speed asked for, m/s²: the hold follows what turns faster with twice the speed.
-const SLEW: f32 = 0.3;
-/// Height error to vertical speed, 1/s.
-const HEIGHT_GAIN: f32 = 1.5;
-/// Distances at which a place is reached, m.
-const REACHED: f32 = 0.02;
-const OVER: f32 = 0.08;
-/// Least time that the way there is given, s: it is not just passed.
-const OVER_TIME: f32 = 0.5;
-/// Heading error to yaw rate, 1/s, and its limit, rad/s.
-const HEADING_GAIN: f32 = 1.0;
-const YAW_RATE_MAX: f32 = 0.3;
 
 /// Why a try ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

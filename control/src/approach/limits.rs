@@ -1,0 +1,72 @@
+//! Lengths, speeds and times of the way onto the pipe.
+
+/// Half the width of the first sweep, by how much each next one is wider, and the widest, m: the hold begins within a metre of
+/// the pipe.
+pub const SWEEP: f32 = 0.4;
+pub const SWEEP_MAX: f32 = 1.3;
+/// Speeds across and along the pipe, m/s: first sweep, and the slower rest.
+pub const SWEEP_SPEED: f32 = 0.35;
+pub const CROSS_SPEED: f32 = 0.25;
+/// Way beside the pipe at which a crossing turns back, m.
+pub const BESIDE: f32 = 0.13;
+/// Crossings that the crown is taken from, with the way out to the first.
+pub const LEGS: u8 = 3;
+/// Farthest that two crossings, or the last one and the edge on the way back, may differ, m; and the weight of the newer.
+pub const AGREE: f32 = 0.12;
+pub const NEWER: f32 = 0.7;
+/// Offset of the beam at which it falls off the pipe's side, not its end, m.
+pub const SIDE: f32 = 0.08;
+/// Widths of a crossing that are the pipe's, share of its diameter.
+pub const WIDTH: (f32, f32) = (0.7, 1.35);
+/// Heights over the crown, m: to which it climbs for another try, and of the crossings.
+pub const HIGH: f32 = 0.6;
+pub const LOW: f32 = 0.4;
+/// Climb where no crown is known, m.
+pub const RISE: f32 = 0.4;
+/// Fastest climb between tries, and fastest way down, m/s.
+pub const CLIMB_SPEED: f32 = 0.35;
+pub const DESCENT: f32 = 0.2;
+/// How far it looks along the pipe each way, and how near to an end it sits down, m: the arms reach 0.2 m.
+pub const LOOK: f32 = 0.3;
+pub const END: f32 = 0.3;
+/// Speed at which it follows a corrected crown, m/s.
+pub const CORRECT_SPEED: f32 = 0.05;
+/// Offset and speed across at which it is over the crown, m and m/s, and for how long, s.
+pub const SETTLED: f32 = 0.03;
+pub const SETTLED_SPEED: f32 = 0.06;
+pub const SETTLED_TIME: f32 = 0.3;
+/// Range below which it does not sink while it is this far off, m.
+pub const NEAR: f32 = 0.25;
+pub const NEAR_OFF: f32 = 0.06;
+/// Range at which it waits to be over the crown, m: the last at which flow is seen with some margin.
+pub const GATE: f32 = 0.12;
+/// Time from there to the touch, s.
+pub const LAST_TIME: f32 = 0.5;
+/// Offset that goes on from there, at once and after [`PATIENCE`], m, the speed across, m/s, and for how long, s.
+pub const STRICT: f32 = 0.015;
+pub const CONTENT: f32 = 0.03;
+pub const GATE_SPEED: f32 = 0.05;
+pub const GATE_TIME: f32 = 0.05;
+pub const PATIENCE: f32 = 10.0;
+/// Offset on the last bit beyond which it goes up again, m: what the pads hold (docs/results.md).
+pub const ASTRAY: f32 = 0.05;
+/// Longest of what is waited for, s: all sweeps (8 m of way), a way, the crown under it, the gate, the touch.
+pub const SEARCH_TIME: f32 = 60.0;
+pub const WAY_TIME: f32 = 15.0;
+pub const CENTRE_TIME: f32 = 12.0;
+pub const GATE_WAIT: f32 = 15.0;
+pub const TOUCH_WAIT: f32 = 2.5;
+/// Age of a range beyond which it is none, s.
+pub const RANGE_AGE: f32 = 0.3;
+/// Change of the level speed asked for, m/s²: the hold follows what turns faster with twice the speed.
+pub const SLEW: f32 = 0.3;
+/// Height error to vertical speed, 1/s.
+pub const HEIGHT_GAIN: f32 = 1.5;
+/// Distances at which a place is reached, m.
+pub const REACHED: f32 = 0.02;
+pub const OVER: f32 = 0.08;
+/// Least time that the way there is given, s: it is not just passed.
+pub const OVER_TIME: f32 = 0.5;
+/// Heading error to yaw rate, 1/s, and its limit, rad/s.
+pub const HEADING_GAIN: f32 = 1.0;
+pub const YAW_RATE_MAX: f32 = 0.3;
