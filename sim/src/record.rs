@@ -89,6 +89,12 @@ pub struct Sample {
     pub position_estimate: Option<[f64; 3]>,
     /// Position of the newest pose that the stack has, late as it is, in the true axes, m; `None` without one.
     pub pose: Option<[f64; 3]>,
+    /// True distance along the body's down axis to pipe or ground, m; NaN without.
+    pub range: f64,
+    /// The newest range that the stack has, m; `None` without a fresh one.
+    pub range_measured: Option<f64>,
+    /// The newest flow that the stack has, rad/s about the forward and the right axis; `None` without a fresh one.
+    pub flow: Option<[f64; 2]>,
 }
 
 /// A flown step of the mission.

@@ -393,9 +393,11 @@ impl Aircraft for Bench<'_> {
             tension_asked: self.tension(),
             pressure: self.pressure(),
             saturated: false,
-            // The emulated board has nothing that sends poses.
+            // Nothing of the position is in the frames that the bench reads.
             position: None,
             pose: None,
+            range: None,
+            flow: None,
         }
     }
 

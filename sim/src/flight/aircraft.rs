@@ -108,4 +108,8 @@ pub struct Belief {
     pub position: Option<[f64; 3]>,
     /// Position of the newest pose in the true axes, m; `None` without a fresh one.
     pub pose: Option<[f64; 3]>,
+    /// Newest range, m; `None` without a fresh one.
+    pub range: Option<f64>,
+    /// Newest flow, rad/s about the forward and the right axis; `None` without a fresh one.
+    pub flow: Option<[f64; 2]>,
 }

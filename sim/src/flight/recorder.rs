@@ -1,5 +1,6 @@
 //! Records samples, phases, events and grips, with a digest of them.
 
+use glam::DVec3;
 use sophie_control::mode::Mode;
 use sophie_control::wrench::PerArm;
 
@@ -287,6 +288,12 @@ fn sample(t: f64, plant: &Plant, stack: &impl Aircraft, throttle: f64) -> Sample
         saturated: belief.saturated,
         position_estimate: belief.position,
         pose: belief.pose,
+        range: plant
+            .pipe()
+            .or_ground_along(pose.position, pose.attitude * DVec3::Z)
+            .unwrap_or(f64::NAN),
+        range_measured: belief.range,
+        flow: belief.flow,
     }
 }
 
@@ -332,7 +339,9 @@ impl Digest {
         for value in values {
             self.word(value.to_bits());
         }
-        for value in s.position_estimate.iter().chain(&s.pose).flatten() {
+        let places = s.position_estimate.iter().chain(&s.pose).flatten();
+        let below = s.range_measured.iter().chain(s.flow.iter().flatten());
+        for value in places.chain(below) {
             self.word(value.to_bits());
         }
     }

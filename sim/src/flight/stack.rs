@@ -3,6 +3,7 @@
 use glam::DVec3;
 use rand::Rng;
 use rand_pcg::Pcg64Mcg;
+use sophie_control::ground::Flow;
 use sophie_control::math;
 use sophie_control::mode::Reason;
 use sophie_control::params::{FlowPort, Params};
@@ -11,7 +12,7 @@ use sophie_control::wrench::{Configuration, PerArm};
 use sophie_drivers::rc_decoder::Decoder;
 use sophie_mixers::{Mixer, Variant};
 use sophie_tasks::deadline::TaskId;
-use sophie_tasks::links::{GripState, Links, Newest, Status};
+use sophie_tasks::links::{GripState, Links, Newest, Stamped, Status};
 use sophie_tasks::start::{Start, StartCause};
 
 use super::aircraft::{Aircraft, Belief, Reset, Said};
@@ -142,6 +143,24 @@ impl Stack {
         }
     }
 
+    /// Range and flow of the module below, each unless it is older than the link allows.
+    fn seen_below(&self) -> (Option<f64>, Option<[f64; 2]>) {
+        let ground = &self.links.ground;
+        let Some(Stamped { at, value: seen }) = ground.latest() else {
+            return (None, None);
+        };
+        let oldest = at.as_micros().saturating_sub(ground.stale_after.as_micros());
+        let range = seen.range.filter(|range| range.at_us >= oldest);
+        let flow = seen
+            .flow
+            .filter(|flow| flow.until_us >= oldest && flow.quality > 0);
+        let rate = |flow: Flow| flow.angle.map(|angle| f64::from(angle / flow.seconds));
+        (
+            range.and_then(|range| range.distance).map(f64::from),
+            flow.and_then(Flow::checked).map(rate),
+        )
+    }
+
     /// A position in the axes of the companion computer as one in the true axes.
     fn in_world(&self, position: Vec3) -> Option<[f64; 3]> {
         let companion = self.companion.as_ref()?;
@@ -235,6 +254,7 @@ impl Aircraft for Stack {
             .tendons
             .latest()
             .map_or([0.0; 4], |order| order.value.forces().arms.map(|arm| arm.force));
+        let (range, flow) = self.seen_below();
         Belief {
             attitude: [estimate.0, estimate.1, estimate.2].map(f64::from),
             setpoint: target.filter(|_| mix.running).unwrap_or([f64::NAN; 3]),
@@ -249,6 +269,8 @@ impl Aircraft for Stack {
                 .external_pose
                 .fresh()
                 .and_then(|pose| self.in_world(pose.pose.position)),
+            range,
+            flow,
         }
     }
 

@@ -74,6 +74,32 @@ pub struct Pipe {
     pub friction: f64,
 }
 
+impl Pipe {
+    /// How many times `direction` it is from `from` to the pipe or the ground, in the world; `None` for a ray into the sky.
+    #[must_use]
+    pub fn or_ground_along(&self, from: DVec3, direction: DVec3) -> Option<f64> {
+        let ground = (direction.z > 1e-3).then(|| -from.z / direction.z);
+        [self.along(from, direction), ground]
+            .into_iter()
+            .flatten()
+            .filter(|way| *way > 0.0)
+            .min_by(f64::total_cmp)
+    }
+
+    fn along(&self, from: DVec3, direction: DVec3) -> Option<f64> {
+        let (y, z) = (from.y - self.east, from.z - self.down);
+        let (a, b, c) = (
+            direction.y * direction.y + direction.z * direction.z,
+            y * direction.y + z * direction.z,
+            y * y + z * z - self.radius * self.radius,
+        );
+        let root = b * b - a * c;
+        let way = (-b - root.max(0.0).sqrt()) / a;
+        let along = (from.x + direction.x * way - self.north).abs();
+        (root >= 0.0 && way > 0.0 && along <= self.half_length).then_some(way)
+    }
+}
+
 /// A contact surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Surface {

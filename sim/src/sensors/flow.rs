@@ -206,7 +206,7 @@ impl FlowModule {
                 let (u, w) = (side(i), side(j));
                 // Texture is where the light of the ray falls; a ray into the sky sees none.
                 let direction = to.1 * DVec3::new(u, w, 1.0);
-                let Some(way) = self.hit(to.0, direction) else {
+                let Some(way) = self.pipe.or_ground_along(to.0, direction) else {
                     continue;
                 };
                 if way < NEAREST {
@@ -232,35 +232,12 @@ impl FlowModule {
     fn distance(&self, (from, attitude): (DVec3, DQuat)) -> Option<f64> {
         let side = HALF_BEAM.tan();
         let mut found = [(0.0, 0.0), (side, 0.0), (-side, 0.0), (0.0, side), (0.0, -side)].map(|(u, w)| {
-            self.hit(from, attitude * DVec3::new(u, w, 1.0))
+            self.pipe
+                .or_ground_along(from, attitude * DVec3::new(u, w, 1.0))
                 .unwrap_or(f64::INFINITY)
         });
         found.sort_by(f64::total_cmp);
         Some(found[2]).filter(|d| d.is_finite())
-    }
-
-    /// How many times `direction` it is from `from` to the pipe or the ground.
-    fn hit(&self, from: DVec3, direction: DVec3) -> Option<f64> {
-        let ground = (direction.z > 1e-3).then(|| -from.z / direction.z);
-        [self.hit_pipe(from, direction), ground]
-            .into_iter()
-            .flatten()
-            .filter(|way| *way > 0.0)
-            .min_by(f64::total_cmp)
-    }
-
-    fn hit_pipe(&self, from: DVec3, direction: DVec3) -> Option<f64> {
-        let pipe = &self.pipe;
-        let (y, z) = (from.y - pipe.east, from.z - pipe.down);
-        let (a, b, c) = (
-            direction.y * direction.y + direction.z * direction.z,
-            y * direction.y + z * direction.z,
-            y * y + z * z - pipe.radius * pipe.radius,
-        );
-        let root = b * b - a * c;
-        let way = (-b - root.max(0.0).sqrt()) / a;
-        let along = (from.x + direction.x * way - pipe.north).abs();
-        (root >= 0.0 && way > 0.0 && along <= pipe.half_length).then_some(way)
     }
 }
 

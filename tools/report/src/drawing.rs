@@ -5,6 +5,7 @@ use sophie_sim::plant::propeller::RADIUS;
 use sophie_sim::record::{FlightRecord, Sample};
 
 use super::moments::KeyMoment;
+use super::rotation;
 use super::svg::{Rect, line, path, rect, short, text};
 
 /// Pixels.
@@ -69,9 +70,7 @@ impl<'a> View<'a> {
         } else {
             (sample.position[1], -sample.position[2])
         };
-        let [(sr, cr), (sp, cp), (sy, cy)] = sample.attitude.map(f64::sin_cos);
-        let east = [cp * sy, sr * sp * sy + cr * cy, cr * sp * sy - sr * cy];
-        let down = [-sp, sr * cp, cr * cp];
+        let [_, east, down] = rotation::rows(sample.attitude);
         Self {
             sample,
             centre,

@@ -4,6 +4,7 @@ use sophie_sim::record::{FlightRecord, Sample};
 
 use super::grip_figure::{closing, grip};
 use super::plot::{Panel, Trace, figure};
+use super::rotation::to_body;
 use super::time_axis::Span;
 use super::units::deg;
 
@@ -32,6 +33,7 @@ pub fn all(record: &FlightRecord) -> Vec<Figure> {
     let span = Span::all(record);
     let mut figures = vec![attitude(record, span), height(record, span)];
     figures.extend(position(record, span));
+    figures.extend(below(record, span));
     figures.extend([tilt(record, span), thrust(record, span)]);
     figures.push(grip(record, span, "Tendons and grip", String::new()));
     if let Some((span, note)) = closing(record) {
@@ -175,17 +177,81 @@ fn position(record: &FlightRecord, span: Span) -> Option<Figure> {
         }
     };
     let panels = [axis(0, "north"), axis(1, "east"), axis(2, "down")];
+    let mut kinds = legend(&[("true", "true"), ("estimate", "estimate")]);
+    if record.samples.iter().any(|s| s.pose.is_some()) {
+        kinds.push(("setpoint", "newest pose, late".into()));
+    }
     Some(Figure {
         title: "Position",
         note: "Pose and estimate are in axes of their sender; here they are turned into the true ones."
             .into(),
-        legend: legend(&[
-            ("true", "true"),
-            ("setpoint", "newest pose, late"),
-            ("estimate", "estimate"),
-        ]),
+        legend: kinds,
         svg: figure(record, span, "north, east and down over time", &panels),
     })
+}
+
+/// Range and flow of the module below the vehicle, where there was one.
+fn below(record: &FlightRecord, span: Span) -> Option<Figure> {
+    let seen = |s: &Sample| s.range_measured.is_some() || s.flow.is_some();
+    record.samples.iter().find(|s| seen(s))?;
+    let range = Panel {
+        axis: "range (m)".into(),
+        height: 120.0,
+        span: 0.5,
+        traces: vec![
+            Trace {
+                class: "estimate",
+                values: series(record, |s| s.range_measured.unwrap_or(f64::NAN)),
+            },
+            Trace {
+                class: "true",
+                values: series(record, |s| s.range),
+            },
+        ],
+        include: vec![0.0],
+        ..Panel::default()
+    };
+    let flow = |i: usize, name: &str| Panel {
+        axis: format!("{name} (rad/s)"),
+        height: 110.0,
+        span: 1.0,
+        traces: vec![
+            Trace {
+                class: "estimate",
+                values: series(record, |s| {
+                    s.flow.and_then(|f| f.get(i).copied()).unwrap_or(f64::NAN)
+                }),
+            },
+            Trace {
+                class: "true",
+                values: series(record, |s| {
+                    true_flow(s).and_then(|f| f.get(i).copied()).unwrap_or(f64::NAN)
+                }),
+            },
+        ],
+        ..Panel::default()
+    };
+    let panels = [range, flow(0, "roll flow"), flow(1, "pitch flow")];
+    Some(Figure {
+        title: "Range and flow",
+        note: "As they come, late. The true flow is that of the point on the body's down axis; over the pipe the lens sees \
+               ground beside it too."
+            .into(),
+        legend: legend(&[("true", "true"), ("estimate", "measured")]),
+        svg: figure(record, span, "range and optical flow over time", &panels),
+    })
+}
+
+/// Nearest distance of a flow that is shown, m: at none it has no bound.
+const NEAREST: f64 = 0.08;
+
+/// Flow of the point that the body's down axis meets, rad/s about the forward and the right axis.
+fn true_flow(s: &Sample) -> Option<[f64; 2]> {
+    if s.range.is_nan() || s.range < NEAREST {
+        return None;
+    }
+    let [forward, right, _] = to_body(s.attitude, s.velocity);
+    Some([s.rate[0] - right / s.range, s.rate[1] + forward / s.range])
 }
 
 fn tilt(record: &FlightRecord, span: Span) -> Figure {

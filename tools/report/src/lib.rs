@@ -1,5 +1,6 @@
 //! Output of a flight: page, log for plots, summary for programs, terminal.
 
+mod approach;
 mod attitude_error;
 mod bands;
 mod drawing;
@@ -9,6 +10,7 @@ pub mod log;
 mod moments;
 pub mod page;
 mod plot;
+mod rotation;
 pub mod scale;
 mod scene;
 mod schemas;

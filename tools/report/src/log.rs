@@ -35,7 +35,9 @@ fn write(record: &FlightRecord) -> mcap::McapResult<Vec<u8>> {
     };
     let truth = file.channel("/truth", "sophie.Truth", &schemas::own(schemas::TRUTH))?;
     let stack = file.channel("/stack", "sophie.Stack", &schemas::own(schemas::STACK))?;
-    let position = match record.samples.iter().find(|s| s.pose.is_some()) {
+    let sensed =
+        |s: &&Sample| s.pose.is_some() || s.range_measured.is_some() || s.position_estimate.is_some();
+    let position = match record.samples.iter().find(sensed) {
         Some(_) => Some(file.channel("/position", "sophie.Position", &schemas::own(schemas::POSITION))?),
         None => None,
     };
@@ -149,7 +151,13 @@ fn stack_message(s: &Sample) -> Value {
 
 fn position_message(s: &Sample) -> Value {
     let place = |place: Option<[f64; 3]>| tidied(&place.unwrap_or([f64::NAN; 3]), si);
-    json!({ "estimate": place(s.position_estimate), "pose": place(s.pose) })
+    json!({
+        "estimate": place(s.position_estimate),
+        "pose": place(s.pose),
+        "range_true": tidy(s.range),
+        "range": tidy(s.range_measured.unwrap_or(f64::NAN)),
+        "flow": tidied(&s.flow.unwrap_or([f64::NAN; 2]), si),
+    })
 }
 
 #[cfg(test)]
@@ -202,6 +210,7 @@ mod tests {
                 let value = &object[*name];
                 match field {
                     schemas::Field::Number => assert!(value.is_number(), "{name}"),
+                    schemas::Field::Two => assert_eq!(value.as_array().unwrap().len(), 2, "{name}"),
                     schemas::Field::Three => assert_eq!(value.as_array().unwrap().len(), 3, "{name}"),
                     schemas::Field::Arms => assert_eq!(value.as_array().unwrap().len(), 4, "{name}"),
                     schemas::Field::Word => assert!(value.is_string(), "{name}"),

@@ -4,6 +4,7 @@ use sophie_control::mode::Mode;
 use sophie_sim::record::FlightRecord;
 use sophie_sim::scenario::keys;
 
+use super::approach;
 use super::attitude_error::{Worst, attitude_errors};
 use super::drawing::draw;
 use super::figures::{self, Figure};
@@ -27,6 +28,7 @@ pub fn html(record: &FlightRecord) -> String {
     page += &headline(record);
     page += &key_figures(record);
     page += &scenes(record);
+    page += &approach(record);
     let note = "Attitude error: largest angle between true and aimed-at roll or pitch, with the lag behind what the step \
                 commands.";
     page += &section("Steps", note, &tables::phases(record));
@@ -136,6 +138,21 @@ fn scenes(record: &FlightRecord) -> String {
     let note = "Seen from behind, along the pipe. Rear arms 2 and 4 in front, front arms 1 and 3 pale behind them; \
                 grey arrows are thrust, dashed lines tendons under tension.";
     section("Key moments", note, &(out + "</div>"))
+}
+
+fn approach(record: &FlightRecord) -> String {
+    let Some((svg, caption)) = approach::draw(record) else {
+        return String::new();
+    };
+    let legend = "<ul class=\"legend\">\
+        <li><svg viewBox=\"0 0 30 12\"><path class=\"trace true\" d=\"M0 6L30 6\"/></svg>true way</li>\
+        <li><svg viewBox=\"0 0 30 12\"><path class=\"trace estimate\" d=\"M0 6L30 6\"/></svg>estimated way</li>\
+        <li><svg viewBox=\"0 0 30 12\"><circle class=\"foot\" cx=\"9\" cy=\"6\" r=\"2\"/>\
+        <circle class=\"foot\" cx=\"20\" cy=\"6\" r=\"2\"/></svg>where the range fell</li>\
+        <li><svg viewBox=\"0 0 30 12\"><circle class=\"begin\" cx=\"15\" cy=\"6\" r=\"4\"/></svg>begin</li>\
+        <li><svg viewBox=\"0 0 30 12\"><path class=\"touch\" d=\"M10 1L20 11M10 11L20 1\"/></svg>touch</li></ul>";
+    let content = format!("{legend}<div class=\"scroll\">{svg}</div>");
+    section("Approach by itself", &caption, &content)
 }
 
 fn caption(moment: &KeyMoment<'_>) -> String {
@@ -259,6 +276,14 @@ pub(super) mod tests {
             page.contains("&lt;&amp;&quot;&gt;"),
             "texts of events are escaped"
         );
+    }
+
+    #[test]
+    fn every_mode_has_its_colour() {
+        for mode in Mode::ALL {
+            let class = format!(".m-{} {{", mode.name().to_lowercase());
+            assert!(STYLE.contains(&class), "{class}");
+        }
     }
 
     #[test]

@@ -8,6 +8,8 @@ use serde_json::{Value, json};
 pub enum Field {
     /// One number.
     Number,
+    /// About the forward and the right axis.
+    Two,
     /// North, east, down or roll, pitch, yaw.
     Three,
     /// Per arm: 1 front left, 2 rear left, 3 front right, 4 rear right.
@@ -61,7 +63,7 @@ pub const STACK: &[(&str, Field, &str)] = &[
     ),
 ];
 
-/// Fields of `/position`, which only flights with poses have.
+/// Fields of `/position`, which only flights with poses, or with flow and range, have.
 pub const POSITION: &[(&str, Field, &str)] = &[
     (
         "estimate",
@@ -73,6 +75,17 @@ pub const POSITION: &[(&str, Field, &str)] = &[
         Field::Three,
         "newest pose, late, NED from the take-off point, m; null without one",
     ),
+    (
+        "range_true",
+        Field::Number,
+        "along the body's down axis to pipe or ground, m; null without",
+    ),
+    ("range", Field::Number, "newest range, late, m; null without one"),
+    (
+        "flow",
+        Field::Two,
+        "newest flow, late, rad/s about the forward and the right axis; null without one",
+    ),
 ];
 
 /// Schema of one of our channels.
@@ -83,6 +96,7 @@ pub fn own(fields: &[(&str, Field, &str)]) -> Value {
     for (name, field, doc) in fields {
         let mut schema = match field {
             Field::Number => number.clone(),
+            Field::Two => list(2),
             Field::Three => list(3),
             Field::Arms => list(4),
             Field::Word => json!({ "type": "string" }),

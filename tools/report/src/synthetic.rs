@@ -178,5 +178,8 @@ fn sample(t: f64, phases: &[Phase]) -> Sample {
         saturated: index == 3 && u < 0.03,
         position_estimate: None,
         pose: None,
+        range: height,
+        range_measured: None,
+        flow: None,
     }
 }
