@@ -13,7 +13,8 @@ const EMULATED: [&str; 2] = ["matek-h743", "f405"];
 const FIRST_BUILD: &str = "building the emulated board: minutes the first time, seconds from then on";
 
 /// Options of the emulator without a value, and with one.
-const ALONE: [&str; 2] = ["--json", "--factory"];
+const ALONE: [&str; 3] = [TRACE, "--json", "--factory"];
+const TRACE: &str = "--trace";
 const WITH_VALUE: [(&str, &str); 7] = [
     ("--seed", "N"),
     ("--out", "DIR"),
@@ -37,42 +38,15 @@ impl<'a> Bench<'a> {
     /// One line: what is wrong and what is allowed.
     pub fn parse(words: &[&'a str]) -> Result<Self, String> {
         let (board, rest) = emulated("bench", words)?;
-        let mut bench = Self {
-            board,
-            variant: Variant::Plain,
-            rest: Vec::new(),
+        let mut rest = passed_on("bench", rest, &WITH_VALUE, &ALONE)?;
+        let all = rest.len();
+        rest.retain(|word| *word != TRACE);
+        let variant = if rest.len() < all {
+            Variant::Trace
+        } else {
+            Variant::Plain
         };
-        let mut scenario = false;
-        let mut words = rest.iter().copied();
-        while let Some(word) = words.next() {
-            let option = word.split('=').next().unwrap_or(word);
-            if word == "--trace" {
-                bench.variant = Variant::Trace;
-                continue;
-            }
-            bench.rest.push(word);
-            if let Some((_, value)) = WITH_VALUE.iter().find(|(name, _)| *name == option) {
-                if option == word {
-                    let given = words.next().filter(|next| !next.starts_with("--"));
-                    bench
-                        .rest
-                        .push(given.ok_or_else(|| format!("bench: `{word}` lacks its {value}"))?);
-                }
-            } else if word.starts_with('-') && !ALONE.contains(&word) {
-                let values: Vec<String> = WITH_VALUE
-                    .iter()
-                    .map(|(name, value)| format!("{name} {value}"))
-                    .collect();
-                return Err(format!(
-                    "bench: `{word}` is not understood: allowed are a scenario, --trace, {}, {}",
-                    values.join(", "),
-                    ALONE.join(", ")
-                ));
-            } else if !word.starts_with('-') && std::mem::replace(&mut scenario, true) {
-                return Err(format!("bench: `{word}` is a second scenario: allowed is one"));
-            }
-        }
-        Ok(bench)
+        Ok(Self { board, variant, rest })
     }
 
     /// Builds and flies; returns the emulator's exit status.
@@ -83,6 +57,70 @@ impl<'a> Bench<'a> {
         let (elf, _) = crate::firmware(self.board, self.variant)?;
         emulator(
             "sophie-emulator",
+            [OsStr::new(self.board.name), "--elf".as_ref(), elf.as_os_str()],
+            &self.rest,
+        )
+    }
+}
+
+/// Words of `verb` that the emulator's binary takes: one scenario, options of `with_value` and those that stand `alone`.
+fn passed_on<'a>(
+    verb: &str,
+    words: &[&'a str],
+    with_value: &[(&str, &str)],
+    alone: &[&str],
+) -> Result<Vec<&'a str>, String> {
+    let mut taken = Vec::new();
+    let mut scenario = false;
+    let mut words = words.iter().copied();
+    while let Some(word) = words.next() {
+        let option = word.split('=').next().unwrap_or(word);
+        taken.push(word);
+        if let Some((_, value)) = with_value.iter().find(|(name, _)| *name == option) {
+            if option == word {
+                let given = words.next().filter(|next| !next.starts_with("--"));
+                taken.push(given.ok_or_else(|| format!("{verb}: `{word}` lacks its {value}"))?);
+            }
+        } else if word.starts_with('-') && !alone.contains(&word) {
+            let options = with_value.iter().map(|(name, value)| format!("{name} {value}"));
+            let allowed: Vec<String> = options.chain(alone.iter().map(ToString::to_string)).collect();
+            return Err(format!(
+                "{verb}: `{word}` is not understood: allowed are a scenario, {}",
+                allowed.join(", ")
+            ));
+        } else if !word.starts_with('-') && std::mem::replace(&mut scenario, true) {
+            return Err(format!("{verb}: `{word}` is a second scenario: allowed is one"));
+        }
+    }
+    Ok(taken)
+}
+
+/// Some seeds of a scenario, on the host and on the emulated board.
+pub struct Sample<'a> {
+    pub board: &'static Board,
+    rest: Vec<&'a str>,
+}
+
+impl<'a> Sample<'a> {
+    /// Parses `words` behind the verb; the emulator checks values.
+    ///
+    /// # Errors
+    /// One line: what is wrong and what is allowed.
+    pub fn parse(words: &[&'a str]) -> Result<Self, String> {
+        let (board, rest) = emulated("sample", words)?;
+        let options = [("--seeds", "FIRST-LAST"), ("--speed", "SHARE")];
+        let rest = passed_on("sample", rest, &options, &[])?;
+        Ok(Self { board, rest })
+    }
+
+    /// Builds, flies, compares; returns the emulator's exit status.
+    ///
+    /// # Errors
+    /// The firmware does not build.
+    pub fn fly(&self) -> Result<ExitCode, Error> {
+        let (elf, _) = crate::firmware(self.board, Variant::Plain)?;
+        emulator(
+            "sample",
             [OsStr::new(self.board.name), "--elf".as_ref(), elf.as_os_str()],
             &self.rest,
         )
@@ -219,6 +257,22 @@ mod tests {
             "bench: no board called `cuav-v5` is emulated: allowed is matek-h743, f405"
         );
     }
+    #[test]
+    fn a_sample_takes_a_scenario_and_its_seeds_alone() {
+        let words = ["f405", "a.toml", "--seeds", "1-10", "--speed=0.5"];
+        let sample = Sample::parse(&words).ok().unwrap();
+        assert_eq!(sample.rest, words[1..]);
+        for (words, complaint) in [
+            (&["f405", "--seeds"][..], "sample: `--seeds` lacks its FIRST-LAST"),
+            (
+                &["f405", "--json"],
+                "sample: `--json` is not understood: allowed are a scenario, --seeds FIRST-LAST, --speed SHARE",
+            ),
+        ] {
+            assert_eq!(Sample::parse(words).err().as_deref(), Some(complaint));
+        }
+    }
+
     #[test]
     fn steps_may_be_asked_for() {
         for (words, steps) in [(&["f405"][..], None), (&["f405", "7"], Some("7"))] {

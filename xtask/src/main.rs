@@ -64,6 +64,9 @@ usage: cargo xtask VERB
         [--telemetry PORT] [--mavlink PORT] [--factory] [--pilot none] [--json]
                      build and fly a mission on the emulated board (matek-h743, f405); exit status 1 when it fails, 2 for bad
                      input
+  sample BOARD [SCENARIO.toml] [--seeds FIRST-LAST] [--speed SHARE]
+                     build and fly a mission with some seeds (1-10) on the host and on the emulated board (matek-h743, f405);
+                     exit status 1 where outcome or phases differ
   chain BOARD [STEPS]
                      build, and count on the emulated board (matek-h743, f405) what steps (100) of the control path execute in
                      a hover, by part and by function (docs/cost.md)
@@ -92,6 +95,7 @@ enum Verb<'a> {
     Backup(backup::Backup<'a>),
     Restore(backup::Backup<'a>),
     Bench(bench::Bench<'a>),
+    Sample(bench::Sample<'a>),
     Chain(bench::Chain<'a>),
     Rig(rig::Rig<'a>),
     Sizes { tighten: bool },
@@ -102,12 +106,13 @@ enum Verb<'a> {
 }
 
 /// Every verb, in the order of [`USAGE`].
-const VERBS: [&str; 11] = [
+const VERBS: [&str; 12] = [
     "firmware",
     "flash",
     "backup",
     "restore",
     "bench",
+    "sample",
     "chain",
     "rig",
     "sizes",
@@ -139,6 +144,7 @@ impl<'a> Verb<'a> {
             "backup" => Self::Backup(backup::Backup::parse(verb, rest)?),
             "restore" => Self::Restore(backup::Backup::parse(verb, rest)?),
             "bench" => Self::Bench(bench::Bench::parse(rest)?),
+            "sample" => Self::Sample(bench::Sample::parse(rest)?),
             "chain" => Self::Chain(bench::Chain::parse(rest)?),
             "rig" => Self::Rig(rig::Rig::parse(rest)?),
             "sizes" => Self::Sizes {
@@ -219,6 +225,7 @@ fn main() -> ExitCode {
         Verb::Backup(backup) => backup.save(),
         Verb::Restore(backup) => backup.restore(),
         Verb::Bench(bench) => return ended(bench.board, bench.fly()),
+        Verb::Sample(sample) => return ended(sample.board, sample.fly()),
         Verb::Chain(chain) => return ended(chain.board, chain.count()),
         Verb::Rig(rig) => return ended(rig.board, rig.run()),
         Verb::Sizes { tighten } => all_sizes(tighten),
@@ -387,7 +394,7 @@ mod tests {
             ),
             (
                 &["fly"],
-                "`fly` is not understood: allowed are firmware, flash, backup, restore, bench, chain, rig, sizes, cost, own-board, conformance, help",
+                "`fly` is not understood: allowed are firmware, flash, backup, restore, bench, sample, chain, rig, sizes, cost, own-board, conformance, help",
             ),
         ] {
             assert_eq!(Verb::parse(words).err().as_deref(), Some(message), "{words:?}");

@@ -16,6 +16,16 @@ fn outcome(record: &FlightRecord) -> &'static str {
     }
 }
 
+/// The same outcome by the same steps, done or not.
+#[must_use]
+pub fn alike(host: &FlightRecord, chip: &FlightRecord) -> bool {
+    let steps = |record: &FlightRecord| -> Vec<(String, bool)> {
+        let phases = record.phases.iter();
+        phases.map(|p| (p.name.clone(), p.done)).collect()
+    };
+    host.outcome.accomplished == chip.outcome.accomplished && steps(host) == steps(chip)
+}
+
 /// Each line on the host, then on the chip.
 #[must_use]
 pub fn lines(host: &FlightRecord, chip: &FlightRecord) -> Vec<String> {
@@ -127,7 +137,11 @@ mod tests {
         let scenario = Scenario::parse(text, "hop.toml", &Overrides::default()).unwrap();
         let host = fly(&scenario, &mut Silent);
         let mut chip = host.clone();
+        assert!(alike(&host, &chip));
+        chip.phases[1].done ^= true;
+        assert!(!alike(&host, &chip), "a step that was not done");
         chip.phases.pop();
+        assert!(!alike(&host, &chip), "a step less");
         chip.outcome.accomplished = false;
         let text = lines(&host, &chip).join("\n");
         assert!(

@@ -8,6 +8,10 @@
 //!
 //! The image and the simulation are connected only by registers and wires, pins, telemetry and log.
 
+/// Permitted instructions per clock cycle.
+pub const SPEEDS: std::ops::RangeInclusive<f64> = 0.25..=1.0;
+
+pub mod arguments;
 pub mod below;
 pub mod bench;
 pub mod boards;

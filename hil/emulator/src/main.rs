@@ -10,12 +10,10 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use clap::error::ErrorKind;
 use clap::{Parser, ValueEnum};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 use sophie_emulator::bench::Setup;
-use sophie_emulator::boards;
 use sophie_emulator::compare;
 use sophie_emulator::elf::Firmware;
 use sophie_emulator::flight::{self, Flight};
@@ -25,6 +23,7 @@ use sophie_emulator::plan::{Plan, Trouble};
 use sophie_emulator::silicon;
 use sophie_emulator::terminal::{Sockets, Terminal};
 use sophie_emulator::wires::{BoardFault, Gap};
+use sophie_emulator::{SPEEDS, arguments, boards};
 use sophie_report::terminal::console::{self, Console};
 use sophie_report::terminal::live::Lines;
 use sophie_report::terminal::output::OutDir;
@@ -37,8 +36,6 @@ const PROGRAM: &str = "bench";
 const LOG_FILES: [&str; 2] = ["log.txt", "log.bin"];
 /// Prefixes of log lines too frequent for a terminal.
 const EACH_SECOND: [&str; 2] = ["timing ", "trace "];
-/// Permitted instructions per clock cycle.
-const SPEEDS: std::ops::RangeInclusive<f64> = 0.25..=1.0;
 /// Exit status after a second Ctrl-C, as a shell gives it.
 const INTERRUPTED: i32 = 130;
 
@@ -95,23 +92,9 @@ struct Args {
 }
 
 fn main() -> ExitCode {
-    let args = match Args::try_parse() {
+    let args = match arguments::parse(PROGRAM) {
         Ok(args) => args,
-        Err(error) if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) => {
-            let _ = error.print();
-            return ExitCode::SUCCESS;
-        }
-        Err(error) => {
-            let text = error.render().to_string();
-            // The error precedes the first empty line.
-            let lines: Vec<&str> = text
-                .lines()
-                .map(str::trim)
-                .take_while(|l| !l.is_empty())
-                .collect();
-            complain(PROGRAM, lines.join(" ").trim_start_matches("error: "));
-            return ExitCode::from(2);
-        }
+        Err(status) => return status,
     };
     match run(&args) {
         Ok(true) => ExitCode::SUCCESS,
