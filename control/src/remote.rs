@@ -69,6 +69,10 @@ remote_refusals! {
     LeansTooFar = "leaning too far to let go";
     /// The rotors could not carry, or would tear at the arms.
     Throttle = "throttle not set for a release";
+    /// Perching by itself waits for hands off the sticks.
+    SticksNotCentred = "centre the sticks first";
+    /// It cannot be done by itself without both.
+    NoWay = "no position or no range to perch by";
 }
 
 /// The answer to the order with this number.

@@ -68,7 +68,8 @@ impl ModeLogic {
                 if self.state.mode() != before {
                     self.context.since = 0.0;
                     self.context.by_itself.enters(self.state.mode());
-                    let dropped = self.context.remote.enters(self.state.mode());
+                    let by_itself = self.context.by_itself.active;
+                    let dropped = self.context.remote.enters(self.state.mode(), by_itself);
                     self.context.perch_switch.forget(dropped);
                     let time = self.state.behaviour().hand_over_time();
                     self.context.collective.hand_over(time);

@@ -3,9 +3,10 @@
 //! The perch switch by order holds until the pilot moves his own, until a mode begins in which there is no grip, and
 //! before it has had an effect for [`GRAB_WAIT`]. Where it ends without him, where his switch stands is no wish.
 
+use super::by_itself::centred;
 use super::context::Step;
 use super::perched::Perched;
-use super::{Inputs, Mode, State};
+use super::{Inputs, Mode, Reason, State, holding, nearing};
 use crate::arming::Gesture;
 use crate::remote::{RemoteAnswer, RemoteOrder, RemoteRefusal, RemoteRequest};
 
@@ -78,12 +79,14 @@ impl Remote {
         }
     }
 
-    /// `mode` begins. True where the order ends with it.
-    pub fn enters(&mut self, mode: Mode) -> bool {
-        let grips = matches!(
-            mode,
-            Mode::Flight | Mode::Contact | Mode::Clamping | Mode::Perched | Mode::Releasing
-        );
+    /// `mode` begins, which the vehicle has come to `by_itself` or not. True where the order ends with it.
+    pub fn enters(&mut self, mode: Mode, by_itself: bool) -> bool {
+        let grips = match mode {
+            Mode::Flight | Mode::Contact | Mode::Clamping | Mode::Perched | Mode::Releasing => true,
+            // The way to the next try, and off the pipe.
+            Mode::Approach | Mode::Escaping => by_itself,
+            _ => false,
+        };
         !grips && self.perch.take().is_some()
     }
 
@@ -109,14 +112,16 @@ pub fn refusal(order: RemoteOrder, state: &State, step: &Step<'_>) -> Option<Rem
         _ if step.inputs.sticks.is_none() => Some(RemoteRefusal::RadioLost),
         RemoteOrder::Grab => match mode {
             Mode::Contact | Mode::Clamping | Mode::Perched => None,
-            Mode::Flight | Mode::Releasing if !step.context.perch_switch.seen_off => {
+            Mode::Approach if !step.context.by_itself.leaving => None,
+            Mode::Flight | Mode::Releasing | Mode::Hold if !step.context.perch_switch.seen_off => {
                 Some(RemoteRefusal::SwitchNotOff)
             }
             Mode::Flight | Mode::Releasing => None,
+            Mode::Hold => not_approached(step),
             _ => at_rest_closed(state).err(),
         },
         RemoteOrder::Release => match mode {
-            Mode::Flight | Mode::Contact | Mode::Clamping | Mode::Releasing => None,
+            Mode::Flight | Mode::Contact | Mode::Clamping | Mode::Releasing | Mode::Approach => None,
             Mode::Perched => not_released(step),
             _ => match at_rest_closed(state) {
                 Ok(()) if step.context.perch_switch.seen_on => None,
@@ -135,10 +140,19 @@ fn at_rest_closed(state: &State) -> Result<(), RemoteRefusal> {
     }
 }
 
+/// Why the perch switch turned on would not begin the perching by itself.
+fn not_approached(step: &Step<'_>) -> Option<RemoteRefusal> {
+    nearing::obstacle(step).map(|why| match why {
+        Reason::SticksNotCentred => RemoteRefusal::SticksNotCentred,
+        _ => RemoteRefusal::NoWay,
+    })
+}
+
 /// Why the perch switch turned off would not let go now: an order leaves no wish behind that acts later.
 fn not_released(step: &Step<'_>) -> Option<RemoteRefusal> {
     let sticks = step.inputs.sticks?;
     let context = &step.context;
+    let by_itself = context.by_itself.active && holding::kept(&sticks) && centred(&sticks);
     if !context.perch_switch.seen_on {
         Some(RemoteRefusal::SwitchNotOn)
     } else if !sticks.arm_switch {
@@ -147,7 +161,7 @@ fn not_released(step: &Step<'_>) -> Option<RemoteRefusal> {
         Some(RemoteRefusal::MustStay)
     } else if context.lean.too_far_to_release() {
         Some(RemoteRefusal::LeansTooFar)
-    } else if !Perched::throttle_set(&sticks, &context.params) {
+    } else if !(by_itself || Perched::throttle_set(&sticks, &context.params)) {
         Some(RemoteRefusal::Throttle)
     } else {
         None

@@ -8,6 +8,8 @@ use crate::mode::contact::CONTACT_TIME;
 use crate::mode::hold::SPOOL_DOWN_TIME;
 use crate::mode::*;
 use crate::position::{Estimate, Foot};
+use crate::remote::RemoteOrder::{Grab, Release};
+use crate::remote::RemoteRefusal;
 
 /// Height of the crown over the ground in the rig's world, and where it is to the right, m.
 const CROWN: f32 = 1.5;
@@ -335,6 +337,63 @@ fn leaving_is_by_itself_too_with_the_sticks_centred() {
     w.expect(2.0, Mode::Releasing);
     w.r.grip(false, true, ArmState::Free, 0.0);
     w.expect(0.5, Mode::Flight);
+}
+
+#[test]
+fn a_grab_and_a_release_by_order_do_it_with_the_pilots_switch_left_alone() {
+    let mut w = World::holding();
+    w.r.sticks().roll = 0.3;
+    assert_eq!(w.r.remote(Grab), Some(RemoteRefusal::SticksNotCentred));
+    w.r.sticks().roll = 0.0;
+    let seen = w.r.inputs.position;
+    w.r.inputs.position = seen.map(|e| Estimate {
+        foot: Foot::default(),
+        ..e
+    });
+    assert_eq!(w.r.remote(Grab), Some(RemoteRefusal::NoWay));
+    w.r.inputs.position = seen;
+    assert_eq!((w.r.remote(Grab), w.r.out.mode), (None, Mode::Approach));
+    // A second one changes nothing, and a release takes it back; where the switch stands then is no wish.
+    assert_eq!((w.r.remote(Grab), w.r.out.mode), (None, Mode::Approach));
+    assert_eq!((w.r.remote(Release), w.r.out.mode), (None, Mode::Hold));
+    w.expect(1.0, Mode::Hold);
+    assert!(!w.r.sticks().perch_switch);
+    assert_eq!((w.r.remote(Grab), w.r.out.mode), (None, Mode::Approach));
+    while w.r.out.mode == Mode::Approach {
+        w.step();
+    }
+    assert_eq!(w.r.out.mode, Mode::Contact);
+    // A slide: the order lasts over the next try.
+    w.r.inputs.motion = w.r.inputs.motion.map(|m| Motion {
+        q: crate::vector::Quat::from_euler(0.5, 0.0, 0.0),
+        ..m
+    });
+    w.run(0.1);
+    assert_eq!(w.r.out.mode, Mode::Escaping);
+    w.r.inputs.motion = w.r.inputs.motion.map(|m| Motion {
+        q: crate::vector::Quat::IDENTITY,
+        ..m
+    });
+    w.r.grip(false, true, ArmState::Free, 0.0);
+    w.r.carried = false;
+    w.pipe = false;
+    w.expect(1.0, Mode::Approach);
+}
+
+#[test]
+fn a_release_by_order_leaves_by_itself_and_the_pilots_switch_that_stayed_on_is_no_wish() {
+    let mut w = World::perched();
+    assert_eq!((w.r.remote(Release), w.r.out.mode), (None, Mode::Releasing));
+    w.run(2.0);
+    w.r.grip(false, true, ArmState::Free, 0.0);
+    w.expect(0.4, Mode::Escaping);
+    w.r.carried = false;
+    w.pipe = false;
+    w.expect(1.0, Mode::Approach);
+    assert_eq!(w.r.remote(Grab), Some(RemoteRefusal::NotHere));
+    w.expect(6.0, Mode::Hold);
+    assert!(w.r.sticks().perch_switch);
+    assert_eq!(w.r.remote(Grab), Some(RemoteRefusal::SwitchNotOff));
 }
 
 #[test]

@@ -12,7 +12,7 @@ use crate::remote::{RemoteOrder, RemoteRefusal};
 
 impl Rig {
     /// Gives `order` under a new number, renewed for some steps; what it was answered with after the first.
-    fn remote(&mut self, order: RemoteOrder) -> Option<RemoteRefusal> {
+    pub fn remote(&mut self, order: RemoteOrder) -> Option<RemoteRefusal> {
         let number = self.out.remote.number + 1;
         self.inputs.remote = Some(RemoteRequest { number, order });
         self.step();
