@@ -8,13 +8,12 @@ use sophie_control::position::SightLimit;
 use sophie_control::tendon::ForceLimit;
 
 use crate::deadline::{FixedRate, Level, TaskId};
+use crate::flow_limit::FlowLimit;
 use crate::links::{Links, Status};
 use crate::warning::Warning;
 
 /// Smallest infill flown in the paper, %.
 const INFILL_FLOWN: f32 = 6.0;
-/// Age of a position, s, beyond which the pilot reads what limits the flow: with it a hold may not begin.
-const PLACED_AGE: f32 = 0.2;
 const LATE_WINDOW: Duration = Duration::from_secs(1);
 /// Allowed misses of the flight level in that window: 1 % of one task's runs.
 const LATE_MAX: u32 = 10;
@@ -26,6 +25,7 @@ pub async fn run(links: &Links) -> ! {
         None => ModeLogic::new(&links.params),
     };
     let mut late = Lateness::new();
+    let mut flow_limit = FlowLimit::default();
     let mut rate = FixedRate::of(links, TaskId::Commander);
     loop {
         let tick = rate.next().await;
@@ -45,7 +45,8 @@ pub async fn run(links: &Links) -> ! {
         links.grip_memory.send(tick.started, grip_memory);
         links.bench_answer.send(tick.started, bench);
         links.remote_answer.send(tick.started, remote);
-        let warning = warning(links, mode);
+        let limit = flow_limit.step(links, mode, tick.started);
+        let warning = warning(links, mode, limit);
         links.status.send(
             tick.started,
             Status {
@@ -59,7 +60,7 @@ pub async fn run(links: &Links) -> ! {
 }
 
 /// Warning that does not affect the modes.
-fn warning(links: &Links, mode: Mode) -> &'static str {
+fn warning(links: &Links, mode: Mode, limit: Option<SightLimit>) -> &'static str {
     let started = Warning::Restarted(links.start.cause);
     if links.mix.fresh().is_some_and(|m| m.running && m.tilt_fault) {
         Warning::ArmTilt.text()
@@ -67,7 +68,7 @@ fn warning(links: &Links, mode: Mode) -> &'static str {
         started.text()
     } else if let Some(fault) = links.position.fresh_to(Instant::now(), |e| e.fault).flatten() {
         Warning::Sight(fault).text()
-    } else if let Some(limit) = flow_limit(links, mode) {
+    } else if let Some(limit) = limit {
         Warning::Limit(limit).text()
     } else if mode == Mode::Disarmed && ForceLimit::from_params(&links.params).capped_by_servo {
         Warning::ServoWeak.text()
@@ -76,14 +77,6 @@ fn warning(links: &Links, mode: Mode) -> &'static str {
     } else {
         ""
     }
-}
-
-/// What limits the flow of a vehicle in the air that has no fresher position.
-fn flow_limit(links: &Links, mode: Mode) -> Option<SightLimit> {
-    let flies = matches!(mode, Mode::Flight | Mode::Hold);
-    let placed = links.position.fresh_to(Instant::now(), |e| e.age <= PLACED_AGE);
-    let view = links.ground.fresh().filter(|_| flies && placed != Some(true))?;
-    SightLimit::of(&view)
 }
 
 fn collect(links: &Links, late: bool) -> Inputs {

@@ -26,6 +26,7 @@ pub mod console;
 pub mod control;
 pub mod deadline;
 pub mod estimator;
+mod flow_limit;
 pub mod ground;
 pub mod histogram;
 pub mod image_id;
