@@ -65,8 +65,8 @@ fn warning(links: &Links, mode: Mode) -> &'static str {
         Warning::ArmTilt.text()
     } else if mode.rotors_stand() && !started.text().is_empty() {
         started.text()
-    } else if let Some(fault) = links.position.fresh_to(Instant::now(), |e| e.fault).flatten() {
-        Warning::Sight(fault).text()
+    } else if let Some(fault) = links.position_fault.fresh() {
+        Warning::Position(fault).text()
     } else if let Some(limit) = flow_limit(links, mode) {
         Warning::Limit(limit).text()
     } else if mode == Mode::Disarmed && ForceLimit::from_params(&links.params).capped_by_servo {

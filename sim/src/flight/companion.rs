@@ -38,8 +38,11 @@ impl Companion {
     pub fn new(scenario: &Scenario, live: Option<&Live>) -> Self {
         let sensors = &scenario.sensors;
         Self {
-            source: PoseSource::new(scenario.streams())
-                .failing(sensors.pose_fails_at, sensors.pose_fails_for),
+            source: PoseSource::new(scenario.streams()).failing(
+                sensors.pose_fault,
+                sensors.pose_fails_at,
+                sensors.pose_fails_for,
+            ),
             line: live.map_or_else(|| &*Box::leak(Box::new(Line::new())), Live::line),
             shared: live.is_some(),
             sequence: 0,

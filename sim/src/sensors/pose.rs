@@ -9,6 +9,7 @@ use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 
 use crate::plant::contact::Pose;
+use crate::scenario::PoseFault;
 use crate::streams::Streams;
 
 /// Time between two measurements, ms: 50 a second.
@@ -26,6 +27,11 @@ const TURN_RATE: f64 = PI / 180.0 / 60.0;
 /// Without a measurement, s, and time between two such gaps, s.
 const GAP: (f64, f64) = (0.3, 1.0);
 const BETWEEN: (f64, f64) = (10.0, 40.0);
+
+/// How a source that fails errs: ways so many times as long, a jump, m, and the time between two, ms.
+const SCALED: f64 = 2.5;
+const JUMP: f64 = 0.6;
+const JUMP_MS: u64 = 300;
 
 /// A measurement in the source's axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,6 +59,9 @@ pub struct PoseSource {
     /// Begin and end of the next gap, and of the failure, ms.
     gap: (u64, u64),
     failure: (u64, u64),
+    fault: PoseFault,
+    /// What it stands still at.
+    held: Option<(DVec3, DQuat)>,
     sent: VecDeque<Measured>,
 }
 
@@ -73,15 +82,21 @@ impl PoseSource {
             turn_rate: streams.within("pose.turn_rate", -TURN_RATE, TURN_RATE),
             gap,
             failure: (0, 0),
+            fault: PoseFault::Silent,
+            held: None,
             sent: VecDeque::new(),
         }
     }
 
-    /// The same, failing at `at` s after power-up for `seconds`.
+    /// The same, with `fault` from `at` s after power-up for `seconds`.
     #[must_use]
-    pub fn failing(self, at: f64, seconds: f64) -> Self {
+    pub fn failing(self, fault: PoseFault, at: f64, seconds: f64) -> Self {
         let failure = ((at * 1e3) as u64, ((at + seconds) * 1e3) as u64);
-        Self { failure, ..self }
+        Self {
+            fault,
+            failure,
+            ..self
+        }
     }
 
     /// A millisecond later the vehicle is at `pose`.
@@ -90,23 +105,37 @@ impl PoseSource {
         self.turn += self.turn_rate * 1e-3;
         let axes = DQuat::from_rotation_z(self.turn);
         let before = self.before.replace(pose.position).unwrap_or_default();
-        self.gone += axes * (pose.position - before);
+        let (fails, recovers) = self.failure;
+        let fault = (fails..recovers).contains(&self.ms).then_some(self.fault);
+        let way = axes * (pose.position - before);
+        self.gone += match fault {
+            Some(PoseFault::Mirrored) => way * DVec3::new(1.0, -1.0, 1.0),
+            Some(PoseFault::Scaled) => way * SCALED,
+            _ => way,
+        };
         let (begins, ends) = self.gap;
         if self.ms >= ends {
             self.gap = gap(&mut self.rng, self.ms);
         }
-        let silent = [(begins, ends), self.failure]
-            .iter()
-            .any(|(begins, ends)| (*begins..*ends).contains(&self.ms));
+        let silent = (begins..ends).contains(&self.ms) || fault == Some(PoseFault::Silent);
         if silent || !self.ms.is_multiple_of(PERIOD_MS) {
             return;
         }
-        let position = self.gone + self.constant + normal(&mut self.rng) * NOISE;
+        let mut position = self.gone + self.constant + normal(&mut self.rng) * NOISE;
         let error = DQuat::from_scaled_axis(normal(&mut self.rng) * ANGLE_NOISE);
+        let mut attitude = (axes * pose.attitude * error).normalize();
+        match fault {
+            Some(PoseFault::Frozen) => {
+                (position, attitude) = *self.held.get_or_insert((position, attitude));
+            }
+            Some(PoseFault::Jumps) if (self.ms / JUMP_MS).is_multiple_of(2) => position.x += JUMP,
+            Some(PoseFault::Turned) => attitude = DQuat::from_rotation_z(PI / 4.0) * attitude,
+            _ => self.held = None,
+        }
         self.sent.push_back(Measured {
             at_us: self.ms * 1000,
             position,
-            attitude: (axes * pose.attitude * error).normalize(),
+            attitude,
         });
     }
 
