@@ -108,6 +108,7 @@ fn collect(links: &Links, late: bool) -> Inputs {
         bench: links.bench.fresh(),
         remote: links.remote.fresh(),
         position: links.position.fresh(),
+        target: links.pipe_target.fresh(),
     }
 }
 

@@ -103,7 +103,17 @@ pub const FLOW_FAULTS: &[&str] = &[
     "range-jumps",
 ];
 /// Words for how a source of poses fails.
-pub const POSE_FAULTS: &[&str] = &["silent", "frozen", "jumps", "mirrored", "scaled", "turned"];
+pub const POSE_FAULTS: &[&str] = &[
+    "silent",
+    "frozen",
+    "jumps",
+    "mirrored",
+    "scaled",
+    "turned",
+    "target-silent",
+    "target-jumps",
+    "target-far",
+];
 /// Words for what the pilot leaves to the vehicle.
 pub const ASSISTS: &[&str] = &["none", "hold", "self"];
 
@@ -198,6 +208,9 @@ pub fn pose_fault(word: &str) -> PoseFault {
         "mirrored" => PoseFault::Mirrored,
         "scaled" => PoseFault::Scaled,
         "turned" => PoseFault::Turned,
+        "target-silent" => PoseFault::TargetSilent,
+        "target-jumps" => PoseFault::TargetJumps,
+        "target-far" => PoseFault::TargetFar,
         _ => PoseFault::Silent,
     }
 }

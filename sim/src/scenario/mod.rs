@@ -254,6 +254,12 @@ pub enum PoseFault {
     Scaled,
     /// Its heading is off by half a right angle.
     Turned,
+    /// It no longer says where the pipe is.
+    TargetSilent,
+    /// The pipe's place jumps by 0.6 m, back and forth.
+    TargetJumps,
+    /// The pipe's place is 50 m away.
+    TargetFar,
 }
 
 /// How a module of flow and range fails.

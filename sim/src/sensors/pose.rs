@@ -21,6 +21,11 @@ const NOISE: f64 = 3e-3;
 const ANGLE_NOISE: f64 = 3e-3;
 /// Constant error along each axis, m RMS.
 const CONSTANT: f64 = 5e-3;
+/// Poses for each place of the pipe, 10 a second, and the constant error of that place along each axis, m RMS.
+const TARGET_EACH: u64 = 5;
+const TARGET_CONSTANT: f64 = 5e-3;
+/// How far off a place of the pipe is that cannot be, m.
+const TARGET_FAR: f64 = 50.0;
 /// Largest turn of its axes at the start, rad, and how fast they turn, rad/s: 1° a minute.
 const TURN: f64 = PI;
 const TURN_RATE: f64 = PI / 180.0 / 60.0;
@@ -42,6 +47,8 @@ pub struct Measured {
     pub position: DVec3,
     /// Body to its axes.
     pub attitude: DQuat,
+    /// Where it sees the pipe's crown, m, and along which heading, rad, with every fifth pose.
+    pub target: Option<(DVec3, f64)>,
 }
 
 /// The source.
@@ -54,6 +61,8 @@ pub struct PoseSource {
     before: Option<DVec3>,
     gone: DVec3,
     constant: DVec3,
+    /// The pipe's crown in the world, with what it is off by, m; `None` where it looks for none.
+    pipe: Option<DVec3>,
     turn: f64,
     turn_rate: f64,
     /// Begin and end of the next gap, and of the failure, ms.
@@ -78,6 +87,7 @@ impl PoseSource {
             before: None,
             gone: DVec3::ZERO,
             constant,
+            pipe: None,
             turn: streams.within("pose.turn", -TURN, TURN),
             turn_rate: streams.within("pose.turn_rate", -TURN_RATE, TURN_RATE),
             gap,
@@ -85,6 +95,16 @@ impl PoseSource {
             fault: PoseFault::Silent,
             held: None,
             sent: VecDeque::new(),
+        }
+    }
+
+    /// The same, with an eye for the pipe whose crown is taken to be at `crown` in the world, m: with that much of it known.
+    #[must_use]
+    pub fn seeing(self, crown: DVec3, streams: Streams) -> Self {
+        let off = normal(&mut streams.of("pose.target")) * TARGET_CONSTANT;
+        Self {
+            pipe: Some(crown + off),
+            ..self
         }
     }
 
@@ -132,11 +152,30 @@ impl PoseSource {
             Some(PoseFault::Turned) => attitude = DQuat::from_rotation_z(PI / 4.0) * attitude,
             _ => self.held = None,
         }
+        let target = self.target(pose, axes, fault);
         self.sent.push_back(Measured {
             at_us: self.ms * 1000,
             position,
             attitude,
+            target,
         });
+    }
+
+    /// Where it sees the pipe; the pipe runs along the world's first axis.
+    fn target(&mut self, pose: &Pose, axes: DQuat, fault: Option<PoseFault>) -> Option<(DVec3, f64)> {
+        let due = self.ms.is_multiple_of(TARGET_EACH * PERIOD_MS);
+        let pipe = self
+            .pipe
+            .filter(|_| due && fault != Some(PoseFault::TargetSilent))?;
+        // Its axes move against the world by what its ways are off.
+        let mut seen = self.gone + self.constant + axes * (pipe - pose.position);
+        seen += normal(&mut self.rng) * NOISE;
+        match fault {
+            Some(PoseFault::TargetJumps) if (self.ms / JUMP_MS).is_multiple_of(2) => seen.y += JUMP,
+            Some(PoseFault::TargetFar) => seen.x += TARGET_FAR,
+            _ => (),
+        }
+        Some((seen, self.turn))
     }
 
     /// Where `position` in the source's axes is in the world, by where it takes the vehicle to be now.
