@@ -5,6 +5,7 @@
 
 mod edges;
 mod limits;
+mod target;
 #[cfg(test)]
 mod tests;
 
@@ -16,6 +17,7 @@ use crate::params::Params;
 use crate::position::{Foot, about_down};
 use crate::position_hold::Wish;
 use crate::support::Held;
+use crate::target::PipeTarget;
 use crate::vector::Vec3;
 
 /// Why a try ends.
@@ -33,6 +35,12 @@ pub enum Doubt {
     NotTouched,
     /// No range.
     RangeStale,
+    /// The place of the pipe is not known any more.
+    TargetStale,
+    /// That place is none that the vehicle can reach.
+    TargetFar,
+    /// That place jumps.
+    TargetJumps,
 }
 
 /// What the law sees, in the estimate's axes.
@@ -48,6 +56,8 @@ pub struct View {
     pub held: Vec3,
     /// Where the range sees something.
     pub foot: Foot,
+    /// Where the pipe is said to be; with it no range is asked.
+    pub target: Option<PipeTarget>,
 }
 
 /// Part of the way.
@@ -108,6 +118,8 @@ pub struct Approach {
     looked: bool,
     settled: Held,
     left: bool,
+    /// The pipe is where it is said to be: nothing is searched.
+    given: bool,
     /// Asked for, m/s.
     speed: Vec3,
 }
@@ -115,7 +127,7 @@ pub struct Approach {
 impl Approach {
     /// Begins where the vehicle is, over or beside a pipe along `heading`, rad.
     pub fn begin(p: &Params, v: &View, heading: f32, jumps: u8) -> Self {
-        Self {
+        let law = Self {
             diameter: p.pipe_diameter,
             origin: v.position,
             heading,
@@ -140,7 +152,12 @@ impl Approach {
             looked: false,
             settled: Held::default(),
             left: false,
+            given: false,
             speed: Vec3::ZERO,
+        };
+        match &v.target {
+            Some(target) => law.to(target),
+            None => law,
         }
     }
 
@@ -160,6 +177,7 @@ impl Approach {
         let known = !matches!(self.phase, Phase::Climb | Phase::Search);
         let over = self.origin.z + self.top - HIGH - v.position.z;
         Self {
+            given: self.given,
             up: if known {
                 clamp(over, -2.0 * HIGH, 0.0)
             } else {
@@ -190,17 +208,20 @@ impl Approach {
     /// Why the try ends.
     pub fn step(&mut self, v: &View, dt: f32) -> Result<Wish, Doubt> {
         self.since += dt;
-        if v.foot.age > RANGE_AGE && !self.leaves && self.phase != Phase::Commit {
+        let asks = !self.leaves && self.phase != Phase::Commit;
+        if asks && self.given {
+            self.follow(v, dt)?;
+        } else if asks && v.foot.age > RANGE_AGE {
             return Err(Doubt::RangeStale);
         }
-        let edge = self.look(v);
+        let edge = self.look(v).filter(|_| !self.given);
         let at = self.local(v.position);
         let held = self.local(v.held);
         let velocity = about_down(v.velocity, -self.heading);
         let wanted = match self.phase {
             Phase::Climb => self.climb(at, held),
             Phase::Search => self.search(edge, held)?,
-            Phase::Over => self.over(at, held)?,
+            Phase::Over => self.over(at, held, math::wrap_pi(self.heading - v.heading))?,
             Phase::Fore | Phase::Aft => self.look_along(edge, held)?,
             Phase::Cross => self.cross(edge, held)?,
             Phase::Centre => self.centre(edge, at, velocity, held, dt)?,
@@ -262,7 +283,7 @@ impl Approach {
         let target = Vec3::new(0.0, 0.0, self.up);
         if (at.z - self.up).abs() < OVER || self.since > WAY_TIME {
             self.left = self.leaves;
-            self.enter(Phase::Search);
+            self.enter(if self.given { Phase::Over } else { Phase::Search });
         }
         Self::way(held, target, CROSS_SPEED, CLIMB_SPEED)
     }
@@ -311,12 +332,16 @@ impl Approach {
         Vec3::new(self.along, self.crown, self.top - height)
     }
 
-    fn over(&mut self, at: Vec3, held: Vec3) -> Result<Vec3, Doubt> {
+    fn over(&mut self, at: Vec3, held: Vec3, askew: f32) -> Result<Vec3, Doubt> {
         self.late(WAY_TIME, Doubt::NotCentred)?;
         let target = self.spot(LOW);
         let off = target - at;
         if off.y.abs() < OVER && off.z.abs() < OVER && self.since > OVER_TIME {
-            if self.crossed {
+            if self.given {
+                if off.x.abs() < OVER && askew.abs() < ALONG {
+                    self.enter(Phase::Centre);
+                }
+            } else if self.crossed {
                 self.ends = [None; 2];
                 self.enter(Phase::Fore);
             } else {
@@ -334,7 +359,7 @@ impl Approach {
 
     /// The range sees the pipe's back.
     fn sees_pipe(&self) -> bool {
-        (self.edges.level() - self.top).abs() < 0.5 * self.diameter
+        self.given || (self.edges.level() - self.top).abs() < 0.5 * self.diameter
     }
 
     fn look_along(&mut self, edge: Option<Edge>, held: Vec3) -> Result<Vec3, Doubt> {
@@ -442,7 +467,7 @@ impl Approach {
             return Err(Doubt::PipeLost);
         }
         let off = at.y - self.crown;
-        let range = self.edges.level() - at.z;
+        let range = self.clearance(at);
         let share = clamp(self.since / PATIENCE, 0.0, 1.0);
         let within = STRICT + (CONTENT - STRICT) * share;
         let ahead = off + LAST_TIME * velocity.y;

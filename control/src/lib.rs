@@ -50,6 +50,7 @@ pub mod remote;
 pub mod seat;
 pub mod setpoint;
 pub mod support;
+pub mod target;
 pub mod tendon;
 pub mod thrust_curve;
 pub mod tilt;

@@ -53,6 +53,7 @@ use crate::position;
 use crate::rc::Sticks;
 use crate::remote::{RemoteAnswer, RemoteRequest};
 use crate::setpoint::{ClampCommand, Setpoint};
+use crate::target::PipeTarget;
 use crate::vector::{Quat, Vec3};
 use crate::wrench::PerArm;
 
@@ -191,6 +192,8 @@ pub struct Inputs {
     pub remote: Option<RemoteRequest>,
     /// Where the vehicle is; its own age says since when that is only by the inertial sensor.
     pub position: Option<position::Estimate>,
+    /// Where the pipe is, in the axes of the poses.
+    pub target: Option<PipeTarget>,
 }
 
 impl Inputs {
@@ -214,6 +217,7 @@ impl Inputs {
             motion: self.motion.filter(sane),
             battery: self.battery.filter(|v| v.is_finite()),
             position: self.position.filter(position::Estimate::is_finite),
+            target: self.target.filter(PipeTarget::is_finite),
             ..self
         }
     }

@@ -16,12 +16,17 @@ mod sight;
 mod sight_tests;
 #[cfg(test)]
 mod tests;
+mod trust;
+#[cfg(test)]
+mod trust_tests;
 
 use self::axis::{Axis, Change};
 pub use self::fit::{FlowFit, FlowTurns, Round, flow_fit};
 use self::past::{Moment, Past};
 pub use self::sight::{FLOW_HEIGHT, SightFault, SightLimit};
 use self::sight::{Sight, beam};
+pub use self::trust::PoseFault;
+use self::trust::Trust;
 use crate::ground::{Flow, GroundView};
 use crate::math::{self, GRAVITY};
 use crate::params::Params;
@@ -36,11 +41,15 @@ const READY_FIXES: u32 = 25;
 const READY_SPEED: f32 = 0.1;
 /// Farthest from the origin along an axis, m: beyond it a float has steps of a millimetre.
 const POSITION_MAX: f32 = 10_000.0;
+/// Largest heading, rad: a turn. Of a huge one sine and cosine are no numbers.
+const HEADING_MAX: f32 = 2.0 * math::PI;
 /// Deviation of a fix whose sender does not say it, m, and the bounds of one that does.
 pub const FIX_DEVIATION: f32 = 0.01;
 const DEVIATION_BOUNDS: (f32, f32) = (0.003, 0.5);
-/// Fixes refused in a row after which the next is accepted, half a second at 50 Hz: the sender has found another origin.
-const REFUSED_MAX: u32 = 25;
+/// Silence of the poses after which one that is off is no jump, s: what was estimated since may be as far off.
+const UNKNOWN_AGE: f32 = 1.0;
+/// Share of the weight from which on the rotors carry the vehicle.
+const FLIES: f32 = 0.5;
 /// Age of the newest pose from which on flow and range are taken, s.
 const POSE_FRESH: f32 = 0.2;
 /// Flows refused in a row after which the next is taken, a second at 50 Hz; one that is wrong for good is found out by
@@ -85,7 +94,7 @@ impl Fix {
     fn is_sane(&self) -> bool {
         let far = |x: f32| x.abs() > POSITION_MAX;
         let p = self.position;
-        p.is_finite() && self.heading.is_finite() && !(far(p.x) || far(p.y) || far(p.z))
+        p.is_finite() && self.heading.abs() <= HEADING_MAX && !(far(p.x) || far(p.y) || far(p.z))
     }
 
     fn variance(&self) -> Vec3 {
@@ -112,8 +121,6 @@ pub struct Estimate {
     pub age: f32,
     /// Counts where the position has jumped with the sender's origin.
     pub jumps: u8,
-    /// What is wrong with flow or range, which are left out then.
-    pub fault: Option<SightFault>,
     /// Where the beam of the range falls.
     pub foot: Foot,
 }
@@ -149,6 +156,25 @@ impl Estimate {
     }
 }
 
+/// What is measured and left out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fault {
+    /// The poses.
+    Pose(PoseFault),
+    /// Flow or range.
+    Sight(SightFault),
+}
+
+impl Fault {
+    /// For the pilot's display: at most 40 ASCII characters.
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::Pose(fault) => fault.text(),
+            Self::Sight(fault) => fault.text(),
+        }
+    }
+}
+
 /// The estimator.
 #[derive(Clone, Debug)]
 pub struct PositionEstimator {
@@ -158,6 +184,7 @@ pub struct PositionEstimator {
     /// `None` before the first fix and after the last one has aged.
     track: Option<Track>,
     sight: Sight,
+    trust: Trust,
     /// When the newest fix and the newest flow that were looked at were measured, µs: each is taken once.
     seen_us: u64,
     flow_us: u64,
@@ -172,9 +199,16 @@ impl PositionEstimator {
             past: Past::default(),
             track: None,
             sight: Sight::default(),
+            trust: Trust::default(),
             seen_us: 0,
             flow_us: 0,
         }
+    }
+
+    /// What is left out at present, with an estimate or without one.
+    pub fn fault(&self) -> Option<Fault> {
+        let pose = self.trust.fault().map(Fault::Pose);
+        pose.or_else(|| self.sight.fault().map(Fault::Sight))
     }
 
     /// One step with the inertial sensor, the thrust demanded along -z, N, the newest fix and the newest flow and range.
@@ -199,6 +233,19 @@ impl PositionEstimator {
         if !(felt.q.is_finite() && felt.accel.is_finite() && lift.is_finite()) {
             return None;
         }
+        let swing = self.trust.feel(felt);
+        if let Some(fix) = new {
+            let flies = lift > FLIES * GRAVITY * self.mass;
+            self.trust.look(fix, self.past.at(fix.at_us).as_ref(), flies);
+        }
+        let left_out = self.trust.fault().is_some();
+        let new = new.filter(|_| !left_out);
+        let here = Moment {
+            at_us,
+            q: felt.q,
+            swing,
+            ..Moment::default()
+        };
         let track = match (&mut self.track, new) {
             (Some(track), _) if track.follows(at_us) => track,
             (track, Some(fix)) => {
@@ -213,17 +260,18 @@ impl PositionEstimator {
                     self.past.clear();
                     Track::above(at_us, height)
                 });
+                self.past.push(here);
                 return None;
             }
         };
         track.predict(felt, (lift / self.mass, self.motor_tau));
         self.past.push(Moment {
-            at_us,
             position: track.position(),
-            q: felt.q,
+            ..here
         });
+        track.left_out |= left_out;
         if let Some(fix) = new {
-            track.take(&mut self.past, fix);
+            track.take(&mut self.past, &mut self.trust, fix);
         }
         if let Some(at) = looked {
             track.step_on(&self.past, at, range.map(|(_, distance)| distance));
@@ -235,7 +283,7 @@ impl PositionEstimator {
         if let Some(flow) = flow {
             track.take_flow(&mut self.past, &mut self.sight, &flow, posed);
         }
-        track.estimate(self.sight.fault())
+        track.estimate()
     }
 }
 
@@ -252,7 +300,8 @@ struct Track {
     at_us: u64,
     fixed_us: u64,
     fixes: u32,
-    refused: u32,
+    /// Poses were left out since the last one that was taken.
+    left_out: bool,
     /// There was a pose, the newest one that was taken at this time, µs: the axes are its sender's.
     posed: bool,
     pose_us: u64,
@@ -277,7 +326,7 @@ impl Track {
             at_us,
             fixed_us: fix.at_us,
             fixes: 1,
-            refused: 0,
+            left_out: false,
             posed: true,
             pose_us: fix.at_us,
             flows_refused: 0,
@@ -330,7 +379,7 @@ impl Track {
     }
 
     /// Compares `fix` with where the vehicle was taken to be when it was measured.
-    fn take(&mut self, past: &mut Past, fix: &Fix) {
+    fn take(&mut self, past: &mut Past, trust: &mut Trust, fix: &Fix) {
         let Some(then) = past.at(fix.at_us) else {
             return;
         };
@@ -340,10 +389,12 @@ impl Track {
         let close = |((axis, y), r): ((&Axis, f32), f32)| axis.accepts(y, r);
         let pairs = self.axes.iter().zip(innovation.to_array());
         let accepted = pairs.zip(variance.to_array()).all(close);
-        if !self.posed || fix.resets != self.resets || self.refused >= REFUSED_MAX {
+        let unknown = self.left_out || seconds(self.pose_us, fix.at_us) > UNKNOWN_AGE;
+        if !self.posed || fix.resets != self.resets || (unknown && !accepted) {
             past.clear();
             self.jump(yaw, fix);
         } else if accepted {
+            trust.gate(fix.at_us, false);
             let lag = seconds(fix.at_us, self.at_us);
             let mut changes = [Change::default(); 3];
             let inputs = innovation.to_array().into_iter().zip(variance.to_array());
@@ -356,10 +407,10 @@ impl Track {
             self.turn = math::wrap_pi(self.turn + gain * off);
             self.count();
         } else {
-            self.refused += 1;
+            trust.gate(fix.at_us, true);
             return;
         }
-        self.refused = 0;
+        self.left_out = false;
         self.fixed_us = fix.at_us;
         (self.posed, self.pose_us) = (true, fix.at_us);
     }
@@ -473,7 +524,7 @@ impl Track {
         self.of(Axis::bias)
     }
 
-    fn estimate(&self, fault: Option<SightFault>) -> Option<Estimate> {
+    fn estimate(&self) -> Option<Estimate> {
         let estimate = Estimate {
             position: self.position(),
             velocity: self.velocity(),
@@ -481,7 +532,6 @@ impl Track {
             turn: self.turn,
             age: seconds(self.fixed_us, self.at_us),
             jumps: self.jumps,
-            fault,
             foot: match self.foot_us {
                 0 => Foot::default(),
                 at => Foot {

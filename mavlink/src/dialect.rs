@@ -2015,6 +2015,137 @@ impl MessageData for HEARTBEAT_DATA {
         }
     }
 }
+#[doc = "ID: 149"]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "arbitrary", derive(Arbitrary))]
+#[cfg_attr(feature = "ts-rs", derive(TS))]
+#[cfg_attr(feature = "ts-rs", ts(export))]
+pub struct LANDING_TARGET_DATA {
+    pub time_usec: u64,
+    pub angle_x: f32,
+    pub angle_y: f32,
+    pub distance: f32,
+    pub size_x: f32,
+    pub size_y: f32,
+    pub target_num: u8,
+    pub frame: u8,
+    #[cfg_attr(feature = "serde", serde(default = "crate::utils::RustDefault::rust_default"))]
+    pub x: f32,
+    #[cfg_attr(feature = "serde", serde(default = "crate::utils::RustDefault::rust_default"))]
+    pub y: f32,
+    #[cfg_attr(feature = "serde", serde(default = "crate::utils::RustDefault::rust_default"))]
+    pub z: f32,
+    #[cfg_attr(feature = "serde", serde(default = "crate::utils::RustDefault::rust_default"))]
+    #[cfg_attr(feature = "serde", serde(with = "serde_arrays"))]
+    #[cfg_attr(feature = "ts-rs", ts(type = "Array<number>"))]
+    pub q: [f32; 4],
+    #[cfg_attr(feature = "serde", serde(default = "crate::utils::RustDefault::rust_default"))]
+    pub mavtype: u8,
+    #[cfg_attr(feature = "serde", serde(default = "crate::utils::RustDefault::rust_default"))]
+    pub position_valid: u8,
+}
+impl LANDING_TARGET_DATA {
+    pub const ENCODED_LEN: usize = 60usize;
+    pub const DEFAULT: Self = Self {
+        time_usec: 0_u64,
+        angle_x: 0.0_f32,
+        angle_y: 0.0_f32,
+        distance: 0.0_f32,
+        size_x: 0.0_f32,
+        size_y: 0.0_f32,
+        target_num: 0_u8,
+        frame: 0_u8,
+        x: 0.0_f32,
+        y: 0.0_f32,
+        z: 0.0_f32,
+        q: [0.0_f32; 4usize],
+        mavtype: 0_u8,
+        position_valid: 0_u8,
+    };
+    #[cfg(feature = "arbitrary")]
+    pub fn random<R: rand::Rng>(rng: &mut R) -> Self {
+        use arbitrary::{Arbitrary, Unstructured};
+        let mut buf = [0u8; 1024];
+        rng.fill_bytes(&mut buf);
+        let mut unstructured = Unstructured::new(&buf);
+        Self::arbitrary(&mut unstructured).unwrap_or_default()
+    }
+}
+impl Default for LANDING_TARGET_DATA {
+    fn default() -> Self {
+        Self::DEFAULT.clone()
+    }
+}
+impl MessageData for LANDING_TARGET_DATA {
+    type Message = MavMessage;
+    const ID: u32 = 149u32;
+    const NAME: &'static str = "LANDING_TARGET";
+    const EXTRA_CRC: u8 = 200u8;
+    const ENCODED_LEN: usize = 60usize;
+    fn deser(_version: MavlinkVersion, __input: &[u8]) -> Result<Self, ::mavlink_core::error::ParserError> {
+        let avail_len = __input.len();
+        let mut payload_buf;
+        let mut buf = if avail_len < Self::ENCODED_LEN {
+            payload_buf = [0; Self::ENCODED_LEN];
+            payload_buf[0..avail_len].copy_from_slice(__input);
+            Bytes::new(&payload_buf)
+        } else {
+            Bytes::new(__input)
+        };
+        let mut __struct = Self::default();
+        __struct.time_usec = buf.get_u64_le()?;
+        __struct.angle_x = buf.get_f32_le()?;
+        __struct.angle_y = buf.get_f32_le()?;
+        __struct.distance = buf.get_f32_le()?;
+        __struct.size_x = buf.get_f32_le()?;
+        __struct.size_y = buf.get_f32_le()?;
+        __struct.target_num = buf.get_u8()?;
+        __struct.frame = buf.get_u8()?;
+        __struct.x = buf.get_f32_le()?;
+        __struct.y = buf.get_f32_le()?;
+        __struct.z = buf.get_f32_le()?;
+        for v in &mut __struct.q {
+            let val = buf.get_f32_le()?;
+            *v = val;
+        }
+        __struct.mavtype = buf.get_u8()?;
+        __struct.position_valid = buf.get_u8()?;
+        Ok(__struct)
+    }
+    fn ser(&self, version: MavlinkVersion, bytes: &mut [u8]) -> usize {
+        let mut __tmp = BytesMut::new(bytes);
+        if __tmp.remaining() < Self::ENCODED_LEN {
+            panic!(
+                "buffer is too small (need {} bytes, but got {})",
+                Self::ENCODED_LEN,
+                __tmp.remaining(),
+            )
+        }
+        __tmp.put_u64_le(self.time_usec);
+        __tmp.put_f32_le(self.angle_x);
+        __tmp.put_f32_le(self.angle_y);
+        __tmp.put_f32_le(self.distance);
+        __tmp.put_f32_le(self.size_x);
+        __tmp.put_f32_le(self.size_y);
+        __tmp.put_u8(self.target_num);
+        __tmp.put_u8(self.frame);
+        if matches!(version, MavlinkVersion::V2) {
+            __tmp.put_f32_le(self.x);
+            __tmp.put_f32_le(self.y);
+            __tmp.put_f32_le(self.z);
+            for val in &self.q {
+                __tmp.put_f32_le(*val);
+            }
+            __tmp.put_u8(self.mavtype);
+            __tmp.put_u8(self.position_valid);
+            let len = __tmp.len();
+            ::mavlink_core::utils::remove_trailing_zeroes(&bytes[..len])
+        } else {
+            __tmp.len()
+        }
+    }
+}
 #[doc = "ID: 244"]
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
@@ -4122,6 +4253,8 @@ pub enum MavMessage {
     FILE_TRANSFER_PROTOCOL(FILE_TRANSFER_PROTOCOL_DATA),
     #[doc = "ID: 0"]
     HEARTBEAT(HEARTBEAT_DATA),
+    #[doc = "ID: 149"]
+    LANDING_TARGET(LANDING_TARGET_DATA),
     #[doc = "ID: 244"]
     MESSAGE_INTERVAL(MESSAGE_INTERVAL_DATA),
     #[doc = "ID: 251"]
@@ -4169,8 +4302,8 @@ impl MavMessage {
     pub const fn all_ids() -> &'static [u32] {
         &[
             0u32, 1u32, 4u32, 20u32, 21u32, 22u32, 23u32, 26u32, 30u32, 31u32, 36u32, 65u32, 75u32, 76u32,
-            77u32, 82u32, 102u32, 106u32, 110u32, 111u32, 126u32, 132u32, 138u32, 147u32, 148u32, 244u32,
-            245u32, 251u32, 253u32, 256u32, 331u32, 397u32, 435u32, 436u32, 437u32, 53000u32,
+            77u32, 82u32, 102u32, 106u32, 110u32, 111u32, 126u32, 132u32, 138u32, 147u32, 148u32, 149u32,
+            244u32, 245u32, 251u32, 253u32, 256u32, 331u32, 397u32, 435u32, 436u32, 437u32, 53000u32,
         ]
     }
     pub const fn all_messages() -> &'static [(&'static str, u32)] {
@@ -4203,6 +4336,7 @@ impl MavMessage {
             (ATT_POS_MOCAP_DATA::NAME, ATT_POS_MOCAP_DATA::ID),
             (BATTERY_STATUS_DATA::NAME, BATTERY_STATUS_DATA::ID),
             (AUTOPILOT_VERSION_DATA::NAME, AUTOPILOT_VERSION_DATA::ID),
+            (LANDING_TARGET_DATA::NAME, LANDING_TARGET_DATA::ID),
             (MESSAGE_INTERVAL_DATA::NAME, MESSAGE_INTERVAL_DATA::ID),
             (EXTENDED_SYS_STATE_DATA::NAME, EXTENDED_SYS_STATE_DATA::ID),
             (NAMED_VALUE_FLOAT_DATA::NAME, NAMED_VALUE_FLOAT_DATA::ID),
@@ -4259,6 +4393,7 @@ impl Message for MavMessage {
                 FILE_TRANSFER_PROTOCOL_DATA::deser(version, payload).map(Self::FILE_TRANSFER_PROTOCOL)
             }
             HEARTBEAT_DATA::ID => HEARTBEAT_DATA::deser(version, payload).map(Self::HEARTBEAT),
+            LANDING_TARGET_DATA::ID => LANDING_TARGET_DATA::deser(version, payload).map(Self::LANDING_TARGET),
             MESSAGE_INTERVAL_DATA::ID => {
                 MESSAGE_INTERVAL_DATA::deser(version, payload).map(Self::MESSAGE_INTERVAL)
             }
@@ -4316,6 +4451,7 @@ impl Message for MavMessage {
             Self::EXTENDED_SYS_STATE(..) => EXTENDED_SYS_STATE_DATA::NAME,
             Self::FILE_TRANSFER_PROTOCOL(..) => FILE_TRANSFER_PROTOCOL_DATA::NAME,
             Self::HEARTBEAT(..) => HEARTBEAT_DATA::NAME,
+            Self::LANDING_TARGET(..) => LANDING_TARGET_DATA::NAME,
             Self::MESSAGE_INTERVAL(..) => MESSAGE_INTERVAL_DATA::NAME,
             Self::NAMED_VALUE_FLOAT(..) => NAMED_VALUE_FLOAT_DATA::NAME,
             Self::ODOMETRY(..) => ODOMETRY_DATA::NAME,
@@ -4356,6 +4492,7 @@ impl Message for MavMessage {
             Self::EXTENDED_SYS_STATE(..) => EXTENDED_SYS_STATE_DATA::ID,
             Self::FILE_TRANSFER_PROTOCOL(..) => FILE_TRANSFER_PROTOCOL_DATA::ID,
             Self::HEARTBEAT(..) => HEARTBEAT_DATA::ID,
+            Self::LANDING_TARGET(..) => LANDING_TARGET_DATA::ID,
             Self::MESSAGE_INTERVAL(..) => MESSAGE_INTERVAL_DATA::ID,
             Self::NAMED_VALUE_FLOAT(..) => NAMED_VALUE_FLOAT_DATA::ID,
             Self::ODOMETRY(..) => ODOMETRY_DATA::ID,
@@ -4396,6 +4533,7 @@ impl Message for MavMessage {
             EXTENDED_SYS_STATE_DATA::NAME => Some(EXTENDED_SYS_STATE_DATA::ID),
             FILE_TRANSFER_PROTOCOL_DATA::NAME => Some(FILE_TRANSFER_PROTOCOL_DATA::ID),
             HEARTBEAT_DATA::NAME => Some(HEARTBEAT_DATA::ID),
+            LANDING_TARGET_DATA::NAME => Some(LANDING_TARGET_DATA::ID),
             MESSAGE_INTERVAL_DATA::NAME => Some(MESSAGE_INTERVAL_DATA::ID),
             NAMED_VALUE_FLOAT_DATA::NAME => Some(NAMED_VALUE_FLOAT_DATA::ID),
             ODOMETRY_DATA::NAME => Some(ODOMETRY_DATA::ID),
@@ -4443,6 +4581,7 @@ impl Message for MavMessage {
                 FILE_TRANSFER_PROTOCOL_DATA::default(),
             )),
             HEARTBEAT_DATA::ID => Some(Self::HEARTBEAT(HEARTBEAT_DATA::default())),
+            LANDING_TARGET_DATA::ID => Some(Self::LANDING_TARGET(LANDING_TARGET_DATA::default())),
             MESSAGE_INTERVAL_DATA::ID => Some(Self::MESSAGE_INTERVAL(MESSAGE_INTERVAL_DATA::default())),
             NAMED_VALUE_FLOAT_DATA::ID => Some(Self::NAMED_VALUE_FLOAT(NAMED_VALUE_FLOAT_DATA::default())),
             ODOMETRY_DATA::ID => Some(Self::ODOMETRY(ODOMETRY_DATA::default())),
@@ -4499,6 +4638,7 @@ impl Message for MavMessage {
                 FILE_TRANSFER_PROTOCOL_DATA::random(rng),
             )),
             HEARTBEAT_DATA::ID => Some(Self::HEARTBEAT(HEARTBEAT_DATA::random(rng))),
+            LANDING_TARGET_DATA::ID => Some(Self::LANDING_TARGET(LANDING_TARGET_DATA::random(rng))),
             MESSAGE_INTERVAL_DATA::ID => Some(Self::MESSAGE_INTERVAL(MESSAGE_INTERVAL_DATA::random(rng))),
             NAMED_VALUE_FLOAT_DATA::ID => Some(Self::NAMED_VALUE_FLOAT(NAMED_VALUE_FLOAT_DATA::random(rng))),
             ODOMETRY_DATA::ID => Some(Self::ODOMETRY(ODOMETRY_DATA::random(rng))),
@@ -4548,6 +4688,7 @@ impl Message for MavMessage {
             Self::EXTENDED_SYS_STATE(body) => body.ser(version, bytes),
             Self::FILE_TRANSFER_PROTOCOL(body) => body.ser(version, bytes),
             Self::HEARTBEAT(body) => body.ser(version, bytes),
+            Self::LANDING_TARGET(body) => body.ser(version, bytes),
             Self::MESSAGE_INTERVAL(body) => body.ser(version, bytes),
             Self::NAMED_VALUE_FLOAT(body) => body.ser(version, bytes),
             Self::ODOMETRY(body) => body.ser(version, bytes),
@@ -4588,6 +4729,7 @@ impl Message for MavMessage {
             EXTENDED_SYS_STATE_DATA::ID => EXTENDED_SYS_STATE_DATA::EXTRA_CRC,
             FILE_TRANSFER_PROTOCOL_DATA::ID => FILE_TRANSFER_PROTOCOL_DATA::EXTRA_CRC,
             HEARTBEAT_DATA::ID => HEARTBEAT_DATA::EXTRA_CRC,
+            LANDING_TARGET_DATA::ID => LANDING_TARGET_DATA::EXTRA_CRC,
             MESSAGE_INTERVAL_DATA::ID => MESSAGE_INTERVAL_DATA::EXTRA_CRC,
             NAMED_VALUE_FLOAT_DATA::ID => NAMED_VALUE_FLOAT_DATA::EXTRA_CRC,
             ODOMETRY_DATA::ID => ODOMETRY_DATA::EXTRA_CRC,

@@ -5,13 +5,15 @@ pub mod attitude;
 pub mod clock;
 pub mod ground;
 pub mod pose;
+pub mod target;
 
 use self::attitude::OffboardAttitude;
 use self::clock::Clock;
 use self::pose::{ExternalPose, Pose};
-use crate::dialect::{DISTANCE_SENSOR_DATA, OPTICAL_FLOW_RAD_DATA};
+use crate::dialect::{DISTANCE_SENSOR_DATA, LANDING_TARGET_DATA, OPTICAL_FLOW_RAD_DATA};
 use crate::requests::Peer;
 use sophie_control::ground::GroundView;
+use sophie_control::target::PipeTarget;
 use sophie_control::vector::{Quat, Vec3};
 
 /// Squared length of a quaternion may be off by this much: senders round, and do not always normalise.
@@ -35,6 +37,8 @@ pub struct Counts {
     pub poses: u32,
     /// Flows and ranges taken.
     pub views: u32,
+    /// Places of the pipe taken.
+    pub targets: u32,
     /// Attitudes taken.
     pub attitudes: u32,
     /// Refused for their axes.
@@ -52,6 +56,7 @@ impl core::ops::Add for Counts {
         Self {
             poses: self.poses.saturating_add(more.poses),
             views: self.views.saturating_add(more.views),
+            targets: self.targets.saturating_add(more.targets),
             attitudes: self.attitudes.saturating_add(more.attitudes),
             frame: self.frame.saturating_add(more.frame),
             value: self.value.saturating_add(more.value),
@@ -67,6 +72,9 @@ pub struct Inputs {
     pub(crate) clock: Clock,
     pose: Option<ExternalPose>,
     attitude: Option<OffboardAttitude>,
+    target: Option<PipeTarget>,
+    /// When the place of the pipe before was measured, µs.
+    target_at: u64,
     ground: GroundView,
     /// Something of it has come since it was taken.
     seen: bool,
@@ -82,6 +90,8 @@ impl Inputs {
             clock: Clock::new(),
             pose: None,
             attitude: None,
+            target: None,
+            target_at: 0,
             ground: GroundView {
                 flow: None,
                 range: None,
@@ -91,6 +101,7 @@ impl Inputs {
             counts: Counts {
                 poses: 0,
                 views: 0,
+                targets: 0,
                 attitudes: 0,
                 frame: 0,
                 value: 0,
@@ -165,6 +176,30 @@ impl Inputs {
             Err(refusal) => self.refuse(refusal),
         }
         self.clock.due(from, now)
+    }
+
+    /// Takes the place of the pipe, as [`Self::pose`] takes a pose.
+    pub(crate) fn target(&mut self, m: &LANDING_TARGET_DATA, from: Peer, now: u64) -> bool {
+        let taken = self.clock.time(m.time_usec, from, now).and_then(|time| {
+            let target = target::target(m, time.at)?;
+            (target.at_us > self.target_at)
+                .then_some(target)
+                .ok_or(Refusal::Late)
+        });
+        match taken {
+            Ok(target) => {
+                count(&mut self.counts.targets);
+                self.target_at = target.at_us;
+                self.target = Some(target);
+            }
+            Err(refusal) => self.refuse(refusal),
+        }
+        self.clock.due(from, now)
+    }
+
+    /// The place of the pipe that has come since the last call.
+    pub const fn take_target(&mut self) -> Option<PipeTarget> {
+        self.target.take()
     }
 
     const fn saw(&mut self) {

@@ -54,6 +54,8 @@ pub enum Request {
     Flow(OPTICAL_FLOW_RAD_DATA),
     /// A range.
     Range(DISTANCE_SENSOR_DATA),
+    /// Where the pipe is.
+    Target(LANDING_TARGET_DATA),
     /// An attitude that is wished for.
     Attitude(SET_ATTITUDE_TARGET_DATA),
     /// A key for signing, which is left unread.
@@ -83,6 +85,7 @@ pub const fn crc_extra(id: u32) -> Option<u8> {
         ATT_POS_MOCAP_DATA::ID => ATT_POS_MOCAP_DATA::EXTRA_CRC,
         OPTICAL_FLOW_RAD_DATA::ID => OPTICAL_FLOW_RAD_DATA::EXTRA_CRC,
         DISTANCE_SENSOR_DATA::ID => DISTANCE_SENSOR_DATA::EXTRA_CRC,
+        LANDING_TARGET_DATA::ID => LANDING_TARGET_DATA::EXTRA_CRC,
         SET_ATTITUDE_TARGET_DATA::ID => SET_ATTITUDE_TARGET_DATA::EXTRA_CRC,
         _ => return None,
     })
@@ -152,6 +155,7 @@ pub fn request(frame: &Frame<'_>) -> Option<Request> {
         ATT_POS_MOCAP_DATA::ID => (0, 0, Request::Mocap(message(frame)?)),
         OPTICAL_FLOW_RAD_DATA::ID => (0, 0, Request::Flow(message(frame)?)),
         DISTANCE_SENSOR_DATA::ID => (0, 0, Request::Range(message(frame)?)),
+        LANDING_TARGET_DATA::ID => (0, 0, Request::Target(message(frame)?)),
         SET_ATTITUDE_TARGET_DATA::ID => {
             let m: SET_ATTITUDE_TARGET_DATA = message(frame)?;
             (m.target_system, m.target_component, Request::Attitude(m))

@@ -242,6 +242,11 @@ impl Server {
                     self.answer(Answer::AskTime);
                 }
             }
+            Request::Target(m) => {
+                if self.inputs.target(m, from, now) {
+                    self.answer(Answer::AskTime);
+                }
+            }
             Request::Attitude(m) => self.inputs.attitude(OffboardAttitude::of(m)),
             Request::Command(command) => {
                 if let Some(reply) = self.command(command, from, now, vehicle) {

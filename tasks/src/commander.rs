@@ -66,8 +66,8 @@ fn warning(links: &Links, mode: Mode, limit: Option<SightLimit>) -> &'static str
         Warning::ArmTilt.text()
     } else if mode.rotors_stand() && !started.text().is_empty() {
         started.text()
-    } else if let Some(fault) = links.position.fresh_to(Instant::now(), |e| e.fault).flatten() {
-        Warning::Sight(fault).text()
+    } else if let Some(fault) = links.position_fault.fresh() {
+        Warning::Position(fault).text()
     } else if let Some(limit) = limit {
         Warning::Limit(limit).text()
     } else if mode == Mode::Disarmed && ForceLimit::from_params(&links.params).capped_by_servo {
@@ -101,6 +101,7 @@ fn collect(links: &Links, late: bool) -> Inputs {
         bench: links.bench.fresh(),
         remote: links.remote.fresh(),
         position: links.position.fresh(),
+        target: links.pipe_target.fresh(),
     }
 }
 

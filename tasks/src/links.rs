@@ -30,10 +30,11 @@ use sophie_control::grip_memory::GripMemory;
 pub use sophie_control::ground::GroundView;
 use sophie_control::mode::{Mode, Reason};
 use sophie_control::params::Params;
-pub use sophie_control::position::Estimate;
+pub use sophie_control::position::{Estimate, Fault};
 use sophie_control::rc::Sticks;
 pub use sophie_control::remote::{RemoteAnswer, RemoteRequest};
 pub use sophie_control::setpoint::{ClampCommand, Setpoint};
+pub use sophie_control::target::PipeTarget;
 use sophie_control::wrench::PerArm;
 use sophie_mavlink::inputs::Counts;
 pub use sophie_mavlink::inputs::attitude::OffboardAttitude;
@@ -420,6 +421,10 @@ links! {
     ground: GroundView, Ground to "position, console", stale after 200 ms;
     /// Where the vehicle is; the message says since when only the inertial sensor says it. Without it nothing is held.
     position: Estimate, Position to "commander, console, log", stale after 50 ms;
+    /// Where another computer sees the pipe, as it sends it; without it, and without a range, there is no perching by itself.
+    pipe_target: PipeTarget, Mavlink to "commander", stale after 1500 ms;
+    /// What of pose, flow and range is wrong and left out, as long as it is.
+    position_fault: Fault, Position to "commander, console", stale after 50 ms;
     /// The attitude that another computer wishes, as it sends it; nothing flies by it.
     offboard: OffboardAttitude, Mavlink to "console", stale after 500 ms;
     /// What the MAVLink line is like.

@@ -315,6 +315,9 @@ fn publish(links: &Links, inputs: &mut Inputs, now: u64) {
             .external_pose
             .send(Instant::from_micros(pose.measured_at), pose);
     }
+    if let Some(target) = inputs.take_target() {
+        links.pipe_target.send(Instant::from_micros(target.at_us), target);
+    }
     if let Some(view) = inputs.take_ground() {
         links.ground.send(Instant::from_micros(now), view);
     }

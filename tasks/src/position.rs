@@ -41,6 +41,9 @@ pub async fn run(links: &Links) -> ! {
         {
             links.position.send(at, estimate);
         }
+        if let Some(fault) = estimator.fault() {
+            links.position_fault.send(at, fault);
+        }
     }
 }
 

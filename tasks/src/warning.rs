@@ -1,6 +1,6 @@
 //! Warnings to the pilot that do not affect the modes.
 
-use sophie_control::position::{SightFault, SightLimit};
+use sophie_control::position::{Fault, PoseFault, SightFault, SightLimit};
 
 use crate::start::StartCause;
 
@@ -11,8 +11,8 @@ pub enum Warning {
     ArmTilt,
     /// Cause of an unusual start of the board.
     Restarted(StartCause),
-    /// Flow or range is left out as faulty.
-    Sight(SightFault),
+    /// Pose, flow or range is left out as faulty.
+    Position(Fault),
     /// Flow cannot be used where the vehicle is.
     Limit(SightLimit),
     /// The servo cannot give the force limit of the parameters.
@@ -23,15 +23,18 @@ pub enum Warning {
 
 impl Warning {
     /// Every warning.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 17] = [
         Self::ArmTilt,
         Self::Restarted(StartCause::BrownOut),
         Self::Restarted(StartCause::Watchdog),
         Self::Restarted(StartCause::Fault),
-        Self::Sight(SightFault::FlowFrozen),
-        Self::Sight(SightFault::FlowDisagrees),
-        Self::Sight(SightFault::RangeFrozen),
-        Self::Sight(SightFault::RangeJumps),
+        Self::Position(Fault::Pose(PoseFault::Frozen)),
+        Self::Position(Fault::Pose(PoseFault::Jumps)),
+        Self::Position(Fault::Pose(PoseFault::Disagrees)),
+        Self::Position(Fault::Sight(SightFault::FlowFrozen)),
+        Self::Position(Fault::Sight(SightFault::FlowDisagrees)),
+        Self::Position(Fault::Sight(SightFault::RangeFrozen)),
+        Self::Position(Fault::Sight(SightFault::RangeJumps)),
         Self::Limit(SightLimit::TooLow),
         Self::Limit(SightLimit::TooHigh),
         Self::Limit(SightLimit::NoRange),
@@ -45,7 +48,7 @@ impl Warning {
         match self {
             Self::ArmTilt => "arm tilt beyond its model",
             Self::Restarted(cause) => cause.warning(),
-            Self::Sight(fault) => fault.text(),
+            Self::Position(fault) => fault.text(),
             Self::Limit(limit) => limit.text(),
             Self::ServoWeak => "servo weaker than the force limit",
             Self::InfillLow => "infill below what was flown",

@@ -70,3 +70,15 @@ pub const OVER_TIME: f32 = 0.5;
 /// Heading error to yaw rate, 1/s, and its limit, rad/s.
 pub const HEADING_GAIN: f32 = 1.0;
 pub const YAW_RATE_MAX: f32 = 0.3;
+/// Farthest that a place of the pipe may be level, and below the vehicle, m: the hold begins within a metre of it.
+pub const TARGET_REACH: f32 = 1.5;
+pub const TARGET_BELOW: (f32, f32) = (0.0, 1.5);
+/// Change of that place that is a jump, m, and the time over which its noise is smoothed, s.
+pub const TARGET_STEP: f32 = 0.12;
+pub const TARGET_TIME: f32 = 0.3;
+/// From the vehicle's centre down to where a range would be measured, m, and by how much lower than with one it waits to be
+/// over the crown: poses are good to the touch, 4 cm further down.
+pub const UNDER: f32 = 0.02;
+pub const LOWER: f32 = 0.05;
+/// Heading error at which it is along the pipe, rad.
+pub const ALONG: f32 = 0.09;

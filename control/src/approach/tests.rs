@@ -61,6 +61,7 @@ fn flown(world: World, law: Approach) -> (Result<(), Doubt>, Vec3, Approach, f32
             heading: world.heading,
             held,
             foot,
+            target: None,
         };
         match law.step(&view, DT) {
             Ok(wish) => {
@@ -91,6 +92,7 @@ fn begun(world: &World) -> Approach {
         heading: world.heading,
         held: Vec3::ZERO,
         foot: Foot::default(),
+        target: None,
     };
     Approach::begin(&Params::default(), &view, world.heading, 0)
 }
@@ -128,6 +130,7 @@ fn it_sinks_no_faster_than_it_may_and_only_over_the_crown() {
                 count: (i % 256) as u8,
                 age: 0.0,
             },
+            target: None,
         };
         let wish = law.step(&view, DT).unwrap();
         let v = wish.velocity;
@@ -183,6 +186,7 @@ fn without_a_range_and_where_nothing_is_touched_it_gives_up() {
             age: RANGE_AGE - 0.01,
             ..Foot::default()
         },
+        target: None,
     };
     assert!(law.step(&view, DT).is_ok());
     view.foot.age = RANGE_AGE + 0.01;
@@ -210,6 +214,7 @@ fn another_try_climbs_before_it_searches_and_leaving_only_climbs() {
         heading: world.heading,
         held: Vec3::new(0.0, 0.0, 0.5),
         foot: Foot::default(),
+        target: None,
     };
     let law = Approach::again(&Params::default(), &view, world.heading, 0, true);
     let (end, at, ..) = flown(world, law);

@@ -17,6 +17,7 @@ use super::perched::Perched;
 use super::releasing::{Releasing, release_thrust};
 use super::{Reason, State};
 use crate::grip_memory::GripMemory;
+use crate::math;
 use crate::rc::ArmChoice;
 
 /// Calibration has ended; the grip stays as it is.
@@ -76,7 +77,14 @@ pub fn handed_back(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> hold
 /// The search for the pipe begins.
 pub fn approach(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Approach {
     step.context.perch_switch.seen_off = false;
-    let heading = present_heading(step);
+    let nose = present_heading(step);
+    // The pipe's, where it is known; else the nose lies along it.
+    let turn = step.inputs.position.map_or(0.0, |e| e.turn);
+    let pipe = step
+        .inputs
+        .target
+        .and_then(|target| target.heading_near(nose + turn));
+    let heading = pipe.map_or(nose, |pipe| math::wrap_pi(pipe - turn));
     step.context.by_itself.begin(heading);
     let law = match from {
         State::Hold(h) => Some(h.law),

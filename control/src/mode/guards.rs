@@ -70,7 +70,7 @@ guards! {
     POSITION_ADRIFT = "position stale", |_, s| holding::adrift(s.inputs);
 
     ASKED_TO_PERCH = "perch switch turned on", |_, s| nearing::asked(s);
-    MAY_APPROACH = "position and range known, sticks centred", |_, s| nearing::obstacle(s).is_none();
+    MAY_APPROACH = "position and range or pipe known, sticks centred", |_, s| nearing::obstacle(s).is_none();
     TAKEN_OVER = "a stick moved, or perch or hold switch turned", |_, s| s.context.by_itself.taken;
     BY_ITSELF = "perching or leaving by itself", |_, s| s.context.by_itself.active;
     BY_HAND = "flown by hand", |_, s| !s.context.by_itself.acts();

@@ -35,6 +35,8 @@ pub fn obstacle(step: &Step<'_>) -> Option<Reason> {
         Some(Reason::SticksNotCentred)
     } else if !fresh(step.inputs) {
         Some(Reason::NoPosition)
+    } else if let (Some(target), Some(e)) = (step.inputs.target, step.inputs.position) {
+        (!Law::reaches(&target, &e)).then_some(Reason::TargetFar)
     } else if !step.inputs.position.is_some_and(ranged) {
         Some(Reason::NoRange)
     } else {
@@ -103,7 +105,10 @@ impl Approach {
     fn again(&mut self, why: Reason, view: &View, e: &Estimate, step: &mut Step<'_>) {
         step.context.note(Some(why));
         let tries = &mut step.context.by_itself.tries;
-        let searched = matches!(why, Reason::NoPipe | Reason::RangeStale);
+        let searched = matches!(
+            why,
+            Reason::NoPipe | Reason::RangeStale | Reason::TargetStale | Reason::TargetFar
+        );
         if *tries >= TRIES || searched {
             self.given_up = Some(why);
         } else {
@@ -122,6 +127,7 @@ fn view(law: &PositionHold, e: &Estimate, step: &Step<'_>) -> View {
         heading: heading + e.turn,
         held: law.held(),
         foot: e.foot,
+        target: step.inputs.target,
     }
 }
 
@@ -138,6 +144,9 @@ fn reason(doubt: Doubt) -> Reason {
         Doubt::NotCentred => Reason::NotCentred,
         Doubt::NotTouched => Reason::NotTouched,
         Doubt::RangeStale => Reason::RangeStale,
+        Doubt::TargetStale => Reason::TargetStale,
+        Doubt::TargetFar => Reason::TargetFar,
+        Doubt::TargetJumps => Reason::TargetJumps,
     }
 }
 

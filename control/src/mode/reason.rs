@@ -58,7 +58,7 @@ reasons! {
     PositionLost = "position lost: throttle to hover",
     /// Perching by itself takes centred sticks, so that their motion can end it.
     SticksNotCentred = "centre the sticks to perch",
-    /// Perching by itself takes a fresh range.
+    /// Perching by itself takes a fresh range, or a place of the pipe.
     NoRange = "no range to perch by",
     /// The pilot has ended the perching by itself.
     TakenOver = "perching ended by the pilot",
@@ -74,6 +74,12 @@ reasons! {
     NotTouched = "nothing touched at the crown",
     /// Perching by itself: the range is missing.
     RangeStale = "range stale",
+    /// Perching by itself: another computer no longer says where the pipe is.
+    TargetStale = "pipe target stale",
+    /// Perching by itself: where the pipe is said to be it cannot be.
+    TargetFar = "pipe target not near and below",
+    /// Perching by itself: the pipe is said to be elsewhere.
+    TargetJumps = "pipe target jumps",
     /// The vehicle leaves the pipe by itself.
     SlidesOff = "sliding off the pipe",
     /// After an escape the throttle has not been moved.

@@ -17,6 +17,8 @@ pub struct Moment {
     pub position: Vec3,
     /// Body to world.
     pub q: Quat,
+    /// Its way by the inertial sensor alone, as [`super::trust`] compares it, m.
+    pub swing: Vec3,
 }
 
 impl Moment {
@@ -69,6 +71,7 @@ impl Past {
             at_us,
             position: before.position + (after.position - before.position) * share,
             q: between(before.q, after.q, share),
+            swing: before.swing + (after.swing - before.swing) * share,
         })
     }
 

@@ -103,7 +103,10 @@ impl Rig {
     }
 
     fn fault(&self) -> Option<SightFault> {
-        self.out.and_then(|e| e.fault)
+        match self.estimator.fault() {
+            Some(Fault::Sight(fault)) => Some(fault),
+            _ => None,
+        }
     }
 }
 

@@ -10,23 +10,25 @@ const STEP_US: u64 = 5_000;
 const FIX_US: u64 = 20_000;
 
 /// A level vehicle that moves along the sender's axes, seen late.
-struct Rig {
-    estimator: PositionEstimator,
-    now: u64,
-    yaw: f32,
+pub(super) struct Rig {
+    pub(super) estimator: PositionEstimator,
+    pub(super) now: u64,
+    pub(super) yaw: f32,
     /// Heading of the sender's axes.
-    turn: f32,
+    pub(super) turn: f32,
     /// Bias of the accelerometer, m/s², body.
-    bias: Vec3,
-    lag_us: u64,
-    silent: bool,
-    origin: Vec3,
-    resets: u8,
-    out: Option<Estimate>,
+    pub(super) bias: Vec3,
+    pub(super) lag_us: u64,
+    pub(super) silent: bool,
+    pub(super) origin: Vec3,
+    pub(super) resets: u8,
+    /// What the source makes of a sound fix.
+    pub(super) spoil: fn(Fix) -> Fix,
+    pub(super) out: Option<Estimate>,
 }
 
 impl Rig {
-    fn new() -> Self {
+    pub(super) fn new() -> Self {
         Self {
             estimator: PositionEstimator::new(&Params::default()),
             now: 1_000_000,
@@ -37,12 +39,13 @@ impl Rig {
             silent: false,
             origin: Vec3::ZERO,
             resets: 0,
+            spoil: |fix| fix,
             out: None,
         }
     }
 
     /// A swing of 0.3 m at 2 rad/s along the sender's first two axes and down: position, velocity, acceleration.
-    fn truth(us: u64) -> [Vec3; 3] {
+    pub(super) fn truth(us: u64) -> [Vec3; 3] {
         let (t, w) = (us as f64 * 1e-6, 2.0);
         let (sin, cos) = ((w * t).sin() as f32, (w * t).cos() as f32);
         let swing = |x: f32, y: f32| Vec3::new(0.3 * x, 0.3 * y, 0.1 * x);
@@ -64,25 +67,27 @@ impl Rig {
         }
     }
 
-    fn fix(&self) -> Option<Fix> {
+    pub(super) fn fix(&self) -> Option<Fix> {
         // The newest that has arrived.
         let at_us = (self.now - self.lag_us) / FIX_US * FIX_US;
-        (!self.silent).then(|| Fix {
-            at_us,
-            position: Self::truth(at_us)[0] + self.origin,
-            heading: math::wrap_pi(self.yaw + self.turn),
-            variance: None,
-            resets: self.resets,
+        (!self.silent).then(|| {
+            (self.spoil)(Fix {
+                at_us,
+                position: Self::truth(at_us)[0] + self.origin,
+                heading: math::wrap_pi(self.yaw + self.turn),
+                variance: None,
+                resets: self.resets,
+            })
         })
     }
 
-    fn step(&mut self, fix: Option<Fix>) {
+    pub(super) fn step(&mut self, fix: Option<Fix>) {
         self.now += STEP_US;
         let weight = 9.806_65 * Params::default().mass;
         self.out = self.estimator.step(&self.felt(), weight, fix.as_ref(), None);
     }
 
-    fn run(&mut self, seconds: f32) {
+    pub(super) fn run(&mut self, seconds: f32) {
         for _ in 0..(seconds * 1e6) as u64 / STEP_US {
             let fix = self.fix();
             self.step(fix);
@@ -90,7 +95,7 @@ impl Rig {
     }
 
     /// Errors of position and velocity, m and m/s.
-    fn errors(&self) -> [f32; 2] {
+    pub(super) fn errors(&self) -> [f32; 2] {
         let [position, velocity, _] = Self::truth(self.now);
         let e = self.out.expect("an estimate");
         [
@@ -164,7 +169,7 @@ fn nothing_comes_out_without_a_fix_or_before_it_is_sure() {
 }
 
 #[test]
-fn an_outlier_is_refused_and_a_new_origin_accepted_after_half_a_second() {
+fn an_outlier_is_refused_and_named_by_no_one() {
     let mut r = Rig::new();
     r.run(10.0);
     let mut wild = r.fix().unwrap();
@@ -173,13 +178,7 @@ fn an_outlier_is_refused_and_a_new_origin_accepted_after_half_a_second() {
     r.now += 3 * STEP_US;
     r.step(Some(wild));
     r.run(0.1);
-    assert!(r.errors()[0] < 0.01);
-    r.origin = Vec3::new(3.0, -2.0, 0.5);
-    r.run(0.3);
-    assert_eq!(r.out.unwrap().jumps, 0);
-    r.run(1.0);
-    let [p, v] = r.errors();
-    assert!(r.out.unwrap().jumps == 1 && p < 0.03 && v < 0.1, "{p} {v}");
+    assert!(r.errors()[0] < 0.01 && r.estimator.fault().is_none());
 }
 
 #[test]
@@ -252,11 +251,13 @@ fn a_thrust_that_is_less_than_asked_is_a_disturbance_down() {
     for i in 1..1000_u64 {
         let fix = Fix {
             at_us: (i / 4) * 4 * STEP_US,
+            // No source says twice the same of a vehicle in the air.
+            position: Vec3::new(0.0, 0.0, 1e-5 * (i / 4 % 2) as f32),
             ..Fix::default()
         };
         felt.at_us = i * STEP_US;
         out = estimator.step(&felt, 1.1 * weight, Some(&fix), None);
     }
     let d = out.unwrap().disturbance;
-    assert!((d.z - 0.1 * GRAVITY).abs() < 0.02 && d.x == 0.0, "{d:?}");
+    assert!((d.z - 0.1 * GRAVITY).abs() < 0.02 && d.x.abs() < 1e-3, "{d:?}");
 }

@@ -7,7 +7,7 @@ use super::{Refusal, bounded, rotation};
 use crate::dialect::{ATT_POS_MOCAP_DATA, ODOMETRY_DATA, VISION_POSITION_ESTIMATE_DATA};
 
 /// Farthest from the origin along an axis, m: beyond it a float has steps of a millimetre.
-const POSITION_MAX: f32 = 10_000.0;
+pub(super) const POSITION_MAX: f32 = 10_000.0;
 /// Fastest along an axis, m/s.
 const SPEED_MAX: f32 = 100.0;
 /// Largest angle, rad: a turn.
@@ -18,7 +18,7 @@ const VARIANCE_MAX: f32 = 1e6;
 const FAILED: i8 = -1;
 
 /// MAV_FRAME: what coordinates mean.
-const LOCAL_NED: u8 = 1;
+pub(super) const LOCAL_NED: u8 = 1;
 const LOCAL_ENU: u8 = 4;
 const BODY_NED: u8 = 8;
 const BODY_FRD: u8 = 12;

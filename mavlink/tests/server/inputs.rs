@@ -2,6 +2,7 @@
 
 use mavlink_core::MessageData;
 use sophie_control::ground::GroundView;
+use sophie_control::target::PipeTarget;
 use sophie_control::vector::{Quat, Vec3};
 use sophie_mavlink::dialect::*;
 use sophie_mavlink::inputs::Counts;
@@ -597,4 +598,88 @@ fn nothing_within_reach_is_no_distance() {
     };
     let view = seen(&alone).0.unwrap();
     assert!(view.flow.is_some() && view.range.is_none());
+}
+
+/// A pipe that runs north-east, its crown 2 m north of the poses' origin and 1.5 m up.
+fn pipe() -> LANDING_TARGET_DATA {
+    let half = 0.125 * core::f32::consts::PI;
+    LANDING_TARGET_DATA {
+        time_usec: 4_990_000,
+        frame: 1,
+        x: 2.0,
+        y: 0.0,
+        z: -1.5,
+        q: [half.cos(), 0.0, 0.0, half.sin()],
+        position_valid: 1,
+        ..LANDING_TARGET_DATA::DEFAULT
+    }
+}
+
+/// The place of the pipe after `message`, and the counts of frame, value, late and taken.
+fn placed(message: &LANDING_TARGET_DATA) -> (Option<PipeTarget>, [u32; 4]) {
+    let mut station = Station::new();
+    station.now = 5_000_000;
+    station.say(&frame(message));
+    let inputs = station.server.inputs();
+    let counts = inputs.counts();
+    let target = inputs.take_target();
+    assert!(inputs.take_target().is_none(), "taken once");
+    (target, [counts.frame, counts.value, counts.late, counts.targets])
+}
+
+#[test]
+fn the_place_of_the_pipe_is_taken_with_its_time_and_direction() {
+    let (target, counts) = placed(&pipe());
+    let target = target.unwrap();
+    assert_eq!(
+        (target.at_us, target.crown.to_array()),
+        (4_990_000, [2.0, 0.0, -1.5])
+    );
+    assert!((target.heading.unwrap() - 0.25 * core::f32::consts::PI).abs() < 1e-3);
+    assert_eq!(counts, [0, 0, 0, 1]);
+    // Without a direction: zeros, or NaN.
+    for q in [[0.0; 4], [f32::NAN, 0.0, 0.0, 0.0]] {
+        let (target, _) = placed(&LANDING_TARGET_DATA { q, ..pipe() });
+        assert_eq!(target.unwrap().heading, None);
+    }
+}
+
+#[test]
+fn a_place_of_the_pipe_that_cannot_be_is_refused_and_counted() {
+    let body = LANDING_TARGET_DATA { frame: 12, ..pipe() };
+    assert_eq!(placed(&body), (None, [1, 0, 0, 0]));
+    let steep = [0.5_f32.cos(), 0.0, 0.5_f32.sin(), 0.0];
+    let wrong = [
+        LANDING_TARGET_DATA {
+            position_valid: 0,
+            ..pipe()
+        },
+        LANDING_TARGET_DATA {
+            x: f32::NAN,
+            ..pipe()
+        },
+        LANDING_TARGET_DATA {
+            y: f32::INFINITY,
+            ..pipe()
+        },
+        LANDING_TARGET_DATA {
+            z: -20_000.0,
+            ..pipe()
+        },
+        LANDING_TARGET_DATA {
+            q: [2.0, 0.0, 0.0, 0.0],
+            ..pipe()
+        },
+        LANDING_TARGET_DATA { q: steep, ..pipe() },
+    ];
+    for m in wrong {
+        assert_eq!(placed(&m), (None, [0, 1, 0, 0]), "{m:?}");
+    }
+    // One that is said again, with the time that it had, is late.
+    let mut station = Station::new();
+    station.now = 5_000_000;
+    station.say(&frame(&pipe()));
+    station.say(&frame(&pipe()));
+    let counts = station.server.inputs().counts();
+    assert_eq!((counts.targets, counts.late), (1, 1));
 }

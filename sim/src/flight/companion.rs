@@ -1,10 +1,10 @@
-//! A computer beside the flight stack that sends poses over MAVLink, and the line between them.
+//! A computer beside the flight stack that sends poses and the place of the pipe over MAVLink, and the line between them.
 
 use std::cell::Cell;
 
-use glam::DVec3;
-use mavlink_core::{MAVLinkV2MessageRaw, MavHeader};
-use sophie_mavlink::dialect::ATT_POS_MOCAP_DATA;
+use glam::{DQuat, DVec3};
+use mavlink_core::{MAVLinkV2MessageRaw, MavHeader, MessageData};
+use sophie_mavlink::dialect::{ATT_POS_MOCAP_DATA, LANDING_TARGET_DATA};
 use sophie_tasks::links::Links;
 use sophie_tasks::mavlink;
 use sophie_tasks::mavlink::signing::Stored;
@@ -23,6 +23,8 @@ const BYTES_PER_SECOND: u32 = 4_608;
 /// MAVLink's number of the computer: the vehicle's system, MAV_COMP_ID_VISUAL_INERTIAL_ODOMETRY.
 const SYSTEM: u8 = 1;
 const COMPONENT: u8 = 197;
+/// MAV_FRAME of what it sends.
+const LOCAL_NED: u8 = 1;
 
 /// The computer and its line. It knows the vehicle's clock, as after TIMESYNC.
 pub struct Companion {
@@ -37,9 +39,14 @@ impl Companion {
     /// The computer of `scenario`, whose seed gives its errors. With `live` it shares the line of the clients.
     pub fn new(scenario: &Scenario, live: Option<&Live>) -> Self {
         let sensors = &scenario.sensors;
+        // It knows of the pipe what the pilot does.
+        let pipe = scenario.pilot.believes.pipe(&scenario.world);
+        let [north, east] = pipe.position;
+        let streams = scenario.streams();
         Self {
-            source: PoseSource::new(scenario.streams())
-                .failing(sensors.pose_fails_at, sensors.pose_fails_for),
+            source: PoseSource::new(streams)
+                .seeing(DVec3::new(north, east, -pipe.top), streams)
+                .failing(sensors.pose_fault, sensors.pose_fails_at, sensors.pose_fails_for),
             line: live.map_or_else(|| &*Box::leak(Box::new(Line::new())), Live::line),
             shared: live.is_some(),
             sequence: 0,
@@ -79,8 +86,12 @@ impl Companion {
     pub fn speak(&mut self, us: u64, start: u64) {
         while let Some(measured) = self.source.take(us) {
             if let Some(at) = measured.at_us.checked_sub(start) {
-                let frame = self.frame(&measured, at);
-                self.line.receive(&frame);
+                let pose = self.pose(&measured, at);
+                self.line.receive(&pose);
+                if let Some((crown, heading)) = measured.target {
+                    let target = self.target(crown, heading, at);
+                    self.line.receive(&target);
+                }
             }
         }
         // No one reads what the board says on a line of its own.
@@ -97,20 +108,38 @@ impl Companion {
         self.source.in_world(position)
     }
 
-    fn frame(&mut self, measured: &Measured, at_us: u64) -> Vec<u8> {
+    fn pose(&mut self, measured: &Measured, at_us: u64) -> Vec<u8> {
         let [x, y, z] = measured.position.as_vec3().to_array();
         let q = measured.attitude.as_quat();
         // Not known; the zeros behind the first are not sent.
         let mut covariance = [0.0; 21];
         covariance[0] = f32::NAN;
-        let message = ATT_POS_MOCAP_DATA {
+        self.frame(&ATT_POS_MOCAP_DATA {
             time_usec: at_us,
             q: [q.w, q.x, q.y, q.z],
             x,
             y,
             z,
             covariance,
-        };
+        })
+    }
+
+    fn target(&mut self, crown: DVec3, heading: f64, at_us: u64) -> Vec<u8> {
+        let [x, y, z] = crown.as_vec3().to_array();
+        let q = DQuat::from_rotation_z(heading).as_quat();
+        self.frame(&LANDING_TARGET_DATA {
+            time_usec: at_us,
+            frame: LOCAL_NED,
+            x,
+            y,
+            z,
+            q: [q.w, q.x, q.y, q.z],
+            position_valid: 1,
+            ..LANDING_TARGET_DATA::DEFAULT
+        })
+    }
+
+    fn frame(&mut self, message: &impl MessageData) -> Vec<u8> {
         self.sequence = self.sequence.wrapping_add(1);
         let mut raw = MAVLinkV2MessageRaw::new();
         let header = MavHeader {
@@ -118,7 +147,7 @@ impl Companion {
             component_id: COMPONENT,
             sequence: self.sequence,
         };
-        raw.serialize_message_data(header, &message);
+        raw.serialize_message_data(header, message);
         raw.raw_bytes().to_vec()
     }
 }

@@ -7,7 +7,7 @@ use sophie_control::wrench::{Configuration, PerArm};
 use sophie_mixers::Variant;
 
 use super::faults;
-use super::{Assist, FlowFault, PositionSensor, Scenario, ServoProfile};
+use super::{Assist, FlowFault, PoseFault, PositionSensor, Scenario, ServoProfile};
 
 /// One key.
 pub struct Key {
@@ -102,6 +102,18 @@ pub const FLOW_FAULTS: &[&str] = &[
     "range-frozen",
     "range-jumps",
 ];
+/// Words for how a source of poses fails.
+pub const POSE_FAULTS: &[&str] = &[
+    "silent",
+    "frozen",
+    "jumps",
+    "mirrored",
+    "scaled",
+    "turned",
+    "target-silent",
+    "target-jumps",
+    "target-far",
+];
 /// Words for what the pilot leaves to the vehicle.
 pub const ASSISTS: &[&str] = &["none", "hold", "self"];
 
@@ -185,6 +197,21 @@ pub fn flow_fault(word: &str) -> FlowFault {
         "range-frozen" => FlowFault::RangeFrozen,
         "range-jumps" => FlowFault::RangeJumps,
         _ => FlowFault::Silent,
+    }
+}
+
+/// A word from [`POSE_FAULTS`].
+pub fn pose_fault(word: &str) -> PoseFault {
+    match word {
+        "frozen" => PoseFault::Frozen,
+        "jumps" => PoseFault::Jumps,
+        "mirrored" => PoseFault::Mirrored,
+        "scaled" => PoseFault::Scaled,
+        "turned" => PoseFault::Turned,
+        "target-silent" => PoseFault::TargetSilent,
+        "target-jumps" => PoseFault::TargetJumps,
+        "target-far" => PoseFault::TargetFar,
+        _ => PoseFault::Silent,
     }
 }
 
@@ -414,6 +441,10 @@ pub const KEYS: &[Key] = &[
     Key {
         name: "sensors.flow_fault",
         kind: Kind::Choice(FLOW_FAULTS, |s, v| s.sensors.flow_fault = flow_fault(v)),
+    },
+    Key {
+        name: "sensors.pose_fault",
+        kind: Kind::Choice(POSE_FAULTS, |s, v| s.sensors.pose_fault = pose_fault(v)),
     },
     number!("pilot.delay_s", Range::new(0.0, 1.0, "s"), pilot.delay),
     number!("pilot.bandwidth_hz", Range::new(0.2, 20.0, "Hz"), pilot.bandwidth),

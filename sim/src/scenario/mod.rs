@@ -232,8 +232,34 @@ pub struct Sensors {
     pub pose_fails_at: f64,
     /// For how long, s.
     pub pose_fails_for: f64,
-    /// How flow and range fail then; poses fall silent.
+    /// How flow and range fail then.
     pub flow_fault: FlowFault,
+    /// How poses fail then.
+    pub pose_fault: PoseFault,
+}
+
+/// How a source of poses fails.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PoseFault {
+    /// It says nothing.
+    #[default]
+    Silent,
+    /// It says the same all the time.
+    Frozen,
+    /// Its position jumps by 0.6 m, back and forth.
+    Jumps,
+    /// Its ways along its second axis are turned round.
+    Mirrored,
+    /// Its ways are 2.5 times as long.
+    Scaled,
+    /// Its heading is off by half a right angle.
+    Turned,
+    /// It no longer says where the pipe is.
+    TargetSilent,
+    /// The pipe's place jumps by 0.6 m, back and forth.
+    TargetJumps,
+    /// The pipe's place is 50 m away.
+    TargetFar,
 }
 
 /// How a module of flow and range fails.

@@ -9,6 +9,7 @@ use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 
 use crate::plant::contact::Pose;
+use crate::scenario::PoseFault;
 use crate::streams::Streams;
 
 /// Time between two measurements, ms: 50 a second.
@@ -20,12 +21,22 @@ const NOISE: f64 = 3e-3;
 const ANGLE_NOISE: f64 = 3e-3;
 /// Constant error along each axis, m RMS.
 const CONSTANT: f64 = 5e-3;
+/// Poses for each place of the pipe, 10 a second, and the constant error of that place along each axis, m RMS.
+const TARGET_EACH: u64 = 5;
+const TARGET_CONSTANT: f64 = 5e-3;
+/// How far off a place of the pipe is that cannot be, m.
+const TARGET_FAR: f64 = 50.0;
 /// Largest turn of its axes at the start, rad, and how fast they turn, rad/s: 1° a minute.
 const TURN: f64 = PI;
 const TURN_RATE: f64 = PI / 180.0 / 60.0;
 /// Without a measurement, s, and time between two such gaps, s.
 const GAP: (f64, f64) = (0.3, 1.0);
 const BETWEEN: (f64, f64) = (10.0, 40.0);
+
+/// How a source that fails errs: ways so many times as long, a jump, m, and the time between two, ms.
+const SCALED: f64 = 2.5;
+const JUMP: f64 = 0.6;
+const JUMP_MS: u64 = 300;
 
 /// A measurement in the source's axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,6 +47,8 @@ pub struct Measured {
     pub position: DVec3,
     /// Body to its axes.
     pub attitude: DQuat,
+    /// Where it sees the pipe's crown, m, and along which heading, rad, with every fifth pose.
+    pub target: Option<(DVec3, f64)>,
 }
 
 /// The source.
@@ -48,11 +61,16 @@ pub struct PoseSource {
     before: Option<DVec3>,
     gone: DVec3,
     constant: DVec3,
+    /// The pipe's crown in the world, with what it is off by, m; `None` where it looks for none.
+    pipe: Option<DVec3>,
     turn: f64,
     turn_rate: f64,
     /// Begin and end of the next gap, and of the failure, ms.
     gap: (u64, u64),
     failure: (u64, u64),
+    fault: PoseFault,
+    /// What it stands still at.
+    held: Option<(DVec3, DQuat)>,
     sent: VecDeque<Measured>,
 }
 
@@ -69,19 +87,36 @@ impl PoseSource {
             before: None,
             gone: DVec3::ZERO,
             constant,
+            pipe: None,
             turn: streams.within("pose.turn", -TURN, TURN),
             turn_rate: streams.within("pose.turn_rate", -TURN_RATE, TURN_RATE),
             gap,
             failure: (0, 0),
+            fault: PoseFault::Silent,
+            held: None,
             sent: VecDeque::new(),
         }
     }
 
-    /// The same, failing at `at` s after power-up for `seconds`.
+    /// The same, with an eye for the pipe whose crown is taken to be at `crown` in the world, m: with that much of it known.
     #[must_use]
-    pub fn failing(self, at: f64, seconds: f64) -> Self {
+    pub fn seeing(self, crown: DVec3, streams: Streams) -> Self {
+        let off = normal(&mut streams.of("pose.target")) * TARGET_CONSTANT;
+        Self {
+            pipe: Some(crown + off),
+            ..self
+        }
+    }
+
+    /// The same, with `fault` from `at` s after power-up for `seconds`.
+    #[must_use]
+    pub fn failing(self, fault: PoseFault, at: f64, seconds: f64) -> Self {
         let failure = ((at * 1e3) as u64, ((at + seconds) * 1e3) as u64);
-        Self { failure, ..self }
+        Self {
+            fault,
+            failure,
+            ..self
+        }
     }
 
     /// A millisecond later the vehicle is at `pose`.
@@ -90,24 +125,57 @@ impl PoseSource {
         self.turn += self.turn_rate * 1e-3;
         let axes = DQuat::from_rotation_z(self.turn);
         let before = self.before.replace(pose.position).unwrap_or_default();
-        self.gone += axes * (pose.position - before);
+        let (fails, recovers) = self.failure;
+        let fault = (fails..recovers).contains(&self.ms).then_some(self.fault);
+        let way = axes * (pose.position - before);
+        self.gone += match fault {
+            Some(PoseFault::Mirrored) => way * DVec3::new(1.0, -1.0, 1.0),
+            Some(PoseFault::Scaled) => way * SCALED,
+            _ => way,
+        };
         let (begins, ends) = self.gap;
         if self.ms >= ends {
             self.gap = gap(&mut self.rng, self.ms);
         }
-        let silent = [(begins, ends), self.failure]
-            .iter()
-            .any(|(begins, ends)| (*begins..*ends).contains(&self.ms));
+        let silent = (begins..ends).contains(&self.ms) || fault == Some(PoseFault::Silent);
         if silent || !self.ms.is_multiple_of(PERIOD_MS) {
             return;
         }
-        let position = self.gone + self.constant + normal(&mut self.rng) * NOISE;
+        let mut position = self.gone + self.constant + normal(&mut self.rng) * NOISE;
         let error = DQuat::from_scaled_axis(normal(&mut self.rng) * ANGLE_NOISE);
+        let mut attitude = (axes * pose.attitude * error).normalize();
+        match fault {
+            Some(PoseFault::Frozen) => {
+                (position, attitude) = *self.held.get_or_insert((position, attitude));
+            }
+            Some(PoseFault::Jumps) if (self.ms / JUMP_MS).is_multiple_of(2) => position.x += JUMP,
+            Some(PoseFault::Turned) => attitude = DQuat::from_rotation_z(PI / 4.0) * attitude,
+            _ => self.held = None,
+        }
+        let target = self.target(pose, axes, fault);
         self.sent.push_back(Measured {
             at_us: self.ms * 1000,
             position,
-            attitude: (axes * pose.attitude * error).normalize(),
+            attitude,
+            target,
         });
+    }
+
+    /// Where it sees the pipe; the pipe runs along the world's first axis.
+    fn target(&mut self, pose: &Pose, axes: DQuat, fault: Option<PoseFault>) -> Option<(DVec3, f64)> {
+        let due = self.ms.is_multiple_of(TARGET_EACH * PERIOD_MS);
+        let pipe = self
+            .pipe
+            .filter(|_| due && fault != Some(PoseFault::TargetSilent))?;
+        // Its axes move against the world by what its ways are off.
+        let mut seen = self.gone + self.constant + axes * (pipe - pose.position);
+        seen += normal(&mut self.rng) * NOISE;
+        match fault {
+            Some(PoseFault::TargetJumps) if (self.ms / JUMP_MS).is_multiple_of(2) => seen.y += JUMP,
+            Some(PoseFault::TargetFar) => seen.x += TARGET_FAR,
+            _ => (),
+        }
+        Some((seen, self.turn))
     }
 
     /// Where `position` in the source's axes is in the world, by where it takes the vehicle to be now.

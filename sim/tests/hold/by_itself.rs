@@ -1,5 +1,8 @@
 //! Perching by itself, and leaving again.
 
+use sophie_control::position::PoseFault as Called;
+use sophie_sim::scenario::PoseFault;
+
 use super::*;
 
 /// Holds near the pipe, perches by itself and leaves, with `sensors`, in gusts and wind as [`held`] unless `calm`.
@@ -89,4 +92,60 @@ fn in_wind_and_gusts_most_seeds_perch_by_flow() {
     println!("{done} of {begun}, touches 95 % within {most:.3} m");
     assert!(begun >= 17 && 10 * done >= 7 * begun, "{done} of {begun}");
     assert!(most < 0.08, "{most:.3}");
+}
+
+#[test]
+fn in_wind_and_gusts_it_perches_by_pose_and_a_place_of_the_pipe() {
+    let (begun, done, offsets) = flown([1, 2].into_iter(), PositionSensor::Pose);
+    assert!(begun == 2 && done == 2, "{done} of {begun}");
+    assert!(offsets.iter().all(|y| *y < 0.03), "{offsets:?}");
+}
+
+#[test]
+#[ignore = "a hundred missions by pose: .ci/campaign flies them"]
+fn in_wind_and_gusts_nearly_all_seeds_perch_by_pose() {
+    let (begun, done, offsets) = flown(1..=100, PositionSensor::Pose);
+    let most = offsets[(0.95 * offsets.len() as f64) as usize];
+    println!("{done} of {begun}, touches 95 % within {most:.3} m");
+    assert!(begun >= 90 && 20 * done >= 19 * begun, "{done} of {begun}");
+    assert!(most < 0.035, "{most:.3}");
+}
+
+#[test]
+fn a_pose_or_a_place_of_the_pipe_that_fails_on_the_way_ends_it_by_its_name() {
+    let cases = [
+        (PoseFault::TargetSilent, Reason::TargetStale.text()),
+        (PoseFault::TargetJumps, Reason::TargetJumps.text()),
+        (PoseFault::TargetFar, Reason::TargetFar.text()),
+        (PoseFault::Silent, Reason::PositionStale.text()),
+        (PoseFault::Frozen, Called::Frozen.text()),
+        (PoseFault::Jumps, Called::Jumps.text()),
+        (PoseFault::Mirrored, Called::Disagrees.text()),
+        (PoseFault::Scaled, Called::Disagrees.text()),
+    ];
+    let mut s = mission(1, PositionSensor::Pose, false);
+    let sound = fly(&s, &mut Silent);
+    let begun = sound.samples.iter().find(|s| s.mode == Mode::Approach);
+    // From a second after the approach began.
+    s.sensors.pose_fails_at = begun.expect("an approach").t + 1.0;
+    s.sensors.pose_fails_for = 8.0;
+    let mut wrong = vec![];
+    for (fault, text) in cases {
+        s.sensors.pose_fault = fault;
+        let record = fly(&s, &mut Silent);
+        let why = &record.outcome.reason;
+        let said = record.events.iter().any(|e| e.text.ends_with(text));
+        let from = record.scenario.sensors.pose_fails_at;
+        let low = record
+            .samples
+            .iter()
+            .filter(|s| (from..from + 8.0).contains(&s.t));
+        let low = low.map(|s| -s.position[2]).fold(f64::INFINITY, f64::min);
+        println!("{fault:?}: {why}, lowest {low:.2} m");
+        // It is handed back in the air, or has perched before it was found.
+        if !said || !(why.contains("handed back") || record.outcome.accomplished) {
+            wrong.push(format!("{fault:?} {why} {low:.2}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:?}");
 }

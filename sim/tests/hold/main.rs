@@ -2,6 +2,7 @@
 
 mod by_itself;
 mod flow;
+mod pose;
 
 use std::f64::consts::TAU;
 
@@ -244,4 +245,20 @@ fn poses_that_nothing_is_held_by_change_nothing() {
     assert!(
         with.samples.len() == without.samples.len() && both.into_iter().all(|(a, b)| flown(a) == flown(b))
     );
+}
+
+/// What fails at 22 s is named by `text`, and leaves the vehicle level, slow and high in the `samples` that follow. It is held
+/// then; not to have found back into the hold in time ends the mission, and harms nothing.
+fn harmless(name: &str, text: &str, record: &FlightRecord, samples: &[Sample]) -> bool {
+    let ends_well = record.outcome.accomplished || record.outcome.reason.contains("no hold");
+    let first = samples.first().map(|s| s.mode);
+    assert_eq!(first, Some(Mode::Hold), "{name}: {}", record.outcome.reason);
+    let said = record.events.iter().find(|e| e.text.ends_with(text));
+    let at = said.map_or(f64::NAN, |e| e.t - 22.0);
+    let most = |of: fn(&Sample) -> f64| samples.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
+    let lean = most(|s| s.attitude[0].hypot(s.attitude[1])).to_degrees();
+    let speed = most(|s| DVec3::from_array(s.velocity).length());
+    let low = -most(|s| s.position[2]);
+    println!("{name}: named after {at:.2} s, lean {lean:.1} deg, {speed:.2} m/s, lowest {low:.2} m");
+    ends_well && at < 5.0 && lean < 20.0 && speed < 1.5 && low > 0.4
 }

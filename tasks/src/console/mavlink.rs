@@ -38,6 +38,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         let Counts {
             poses,
             views,
+            targets,
             attitudes,
             frame,
             value,
@@ -45,7 +46,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         } = inputs;
         self.out
             .line(format_args!(
-                "inputs: {poses} poses, {views} of flow and range, {attitudes} attitudes; refused {frame} frame, {value} value, {late} late"
+                "inputs: {poses} poses, {views} of flow and range, {targets} of the pipe, {attitudes} attitudes; refused {frame} frame, {value} value, {late} late"
             ))
             .await;
     }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use sophie_control::position::{SightFault, SightLimit};
+use sophie_control::position::{Fault, PoseFault, SightFault, SightLimit};
 use sophie_tasks::start::StartCause;
 use sophie_tasks::warning::Warning;
 
@@ -19,11 +19,22 @@ fn to_do(warning: Warning) -> &'static str {
         Warning::Restarted(StartCause::Fault) => {
             "Do not fly before the log's `the run before ended with` is understood."
         }
-        Warning::Sight(SightFault::FlowDisagrees) => {
+        Warning::Position(Fault::Pose(PoseFault::Frozen)) => "Steer it, land; start the pose's sender again.",
+        Warning::Position(Fault::Pose(PoseFault::Jumps)) => {
+            "Steer it; it holds again once the pose is sound. Land where that comes back."
+        }
+        Warning::Position(Fault::Pose(PoseFault::Disagrees)) => {
+            "Steer it, land; the sender's axes, heading and scale ([holding](hold.md#what-a-pose-must-be-like))."
+        }
+        Warning::Position(Fault::Sight(SightFault::FlowDisagrees)) => {
             "Steer it, land; `flow_mounting`, `flow_scale`, the module's place ([holding](hold.md#by-flow-and-range))."
         }
-        Warning::Sight(SightFault::FlowFrozen | SightFault::RangeFrozen) => "Steer it, land: a new module.",
-        Warning::Sight(SightFault::RangeJumps) => "Steer it away from what is rough below; look at the lens.",
+        Warning::Position(Fault::Sight(SightFault::FlowFrozen | SightFault::RangeFrozen)) => {
+            "Steer it, land: a new module."
+        }
+        Warning::Position(Fault::Sight(SightFault::RangeJumps)) => {
+            "Steer it away from what is rough below; look at the lens."
+        }
         Warning::Limit(SightLimit::TooLow | SightLimit::TooHigh) => {
             "Fly within 8 cm to 2.5 m of what is below, or by hand."
         }

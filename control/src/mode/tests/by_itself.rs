@@ -22,6 +22,8 @@ struct World {
     held: Vec3,
     count: u8,
     pipe: bool,
+    /// There is a range.
+    ranged: bool,
 }
 
 impl World {
@@ -32,6 +34,7 @@ impl World {
             held: Vec3::new(0.0, 0.0, -2.2),
             count: 0,
             pipe: true,
+            ranged: true,
         };
         w.see();
         w.r.sticks().hold_switch = true;
@@ -81,14 +84,15 @@ impl World {
         let flank = 0.15 - crate::math::sqrt((0.0225 - y * y).max(0.0));
         let z = if on { flank - CROWN } else { 0.0 };
         self.count = self.count.wrapping_add(1);
+        let foot = Foot {
+            point: Some(Vec3::new(self.at.x, self.at.y, z)),
+            count: self.count,
+            age: 0.02,
+        };
         self.r.inputs.position = Some(Estimate {
             position: self.at,
             age: 0.02,
-            foot: Foot {
-                point: Some(Vec3::new(self.at.x, self.at.y, z)),
-                count: self.count,
-                age: 0.02,
-            },
+            foot: if self.ranged { foot } else { Foot::default() },
             ..Estimate::default()
         });
     }
@@ -125,6 +129,85 @@ impl World {
         self.run(seconds);
         assert_eq!(self.r.out.mode, mode, "{:?} at {:?}", self.r.out.reason, self.at);
     }
+}
+
+/// The pipe's crown as a companion says it, `off` m.
+fn said(off: Vec3) -> Option<PipeTarget> {
+    Some(PipeTarget {
+        at_us: 1,
+        crown: Vec3::new(0.0, RIGHT, -CROWN) + off,
+        heading: Some(crate::math::PI),
+    })
+}
+
+/// A vehicle on its way to where a companion says that the pipe is, without any range.
+fn told() -> World {
+    let mut w = World::holding();
+    w.ranged = false;
+    w.r.inputs.target = said(Vec3::ZERO);
+    w.r.sticks().perch_switch = true;
+    w.step();
+    assert_eq!(w.r.out.mode, Mode::Approach);
+    w
+}
+
+#[test]
+fn where_a_companion_says_the_pipe_is_it_comes_down_without_a_range() {
+    let mut w = told();
+    for _ in 0..2000 {
+        w.step();
+        if w.r.out.mode == Mode::Contact {
+            break;
+        }
+    }
+    assert_eq!(w.r.out.mode, Mode::Contact, "{:?}", w.r.out.reason);
+    assert!((w.at.y - RIGHT).abs() < 0.02, "{:?}", w.at);
+    // The way there is short: nothing was searched.
+    assert!(w.r.out.reason.is_none());
+}
+
+#[test]
+fn a_place_of_the_pipe_that_is_stale_far_or_jumps_ends_it_by_its_name() {
+    for (target, reason) in [
+        (None, Reason::TargetStale),
+        (said(Vec3::new(50.0, 0.0, 0.0)), Reason::TargetFar),
+        (said(Vec3::new(0.0, 0.0, -1.5)), Reason::TargetFar),
+        (
+            Some(PipeTarget {
+                crown: Vec3::new(f32::NAN, 0.0, 0.0),
+                ..said(Vec3::ZERO).unwrap_or_default()
+            }),
+            Reason::TargetStale,
+        ),
+    ] {
+        let mut w = told();
+        w.expect(1.0, Mode::Approach);
+        w.r.inputs.target = target;
+        w.expect(0.03, Mode::Hold);
+        assert_eq!(w.r.out.reason, Some(reason));
+        // Nor does it begin with one: a new turn of the switch says why.
+        w.r.sticks().perch_switch = false;
+        w.expect(11.0, Mode::Hold);
+        w.r.sticks().perch_switch = true;
+        w.expect(0.5, Mode::Hold);
+        let why = match reason {
+            Reason::TargetStale => Reason::NoRange,
+            far => far,
+        };
+        assert_eq!(w.r.out.reason, Some(why));
+    }
+    // A jump is another try from above, and the last one ends it.
+    let mut w = told();
+    w.expect(1.0, Mode::Approach);
+    for i in 0..2 * TRIES {
+        w.r.inputs.target = said(Vec3::new(0.0, if i % 2 == 0 { 0.3 } else { 0.0 }, 0.0));
+        w.step();
+    }
+    w.step();
+    assert_eq!(
+        (w.r.out.mode, w.r.out.reason),
+        (Mode::Hold, Some(Reason::TargetJumps))
+    );
 }
 
 type Hand = fn(&mut Sticks);

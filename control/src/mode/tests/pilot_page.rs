@@ -82,7 +82,16 @@ fn on_reason(reason: Reason) -> &'static str {
         Reason::SticksNotCentred => {
             "Perching by itself: roll, pitch and yaw centred, throttle in its middle."
         }
-        Reason::NoRange => "The module below is silent. Hold off, and perch by hand.",
+        Reason::NoRange => {
+            "The module below is silent, and no companion says where the pipe is. Hold off, and perch by hand."
+        }
+        Reason::TargetStale => {
+            "It holds. Look after the companion that sends the pipe's place, or perch by hand."
+        }
+        Reason::TargetFar => {
+            "It holds. Fly within a metre of the pipe and above it; then the companion's axes are wrong."
+        }
+        Reason::TargetJumps => "It climbs and tries again. If it comes back, perch by hand.",
         Reason::TakenOver => "It holds, or flies by hand if hold is off. Perch off, then on, to try again.",
         Reason::NoPipe => "Hold over the pipe, within a metre, nose along it; perch off, then on.",
         Reason::PipeTooShort => "Hold over another part of the pipe, 0.3 m from each end.",

@@ -108,7 +108,6 @@ fn position() -> impl Strategy<Value = Option<Estimate>> {
                 turn,
                 age,
                 jumps,
-                fault: None,
                 foot,
             })
         },

@@ -1,0 +1,60 @@
+//! The way onto a pipe whose place another computer says, in the axes of the poses: nothing is searched or crossed.
+
+use super::limits::*;
+use super::{Approach, Doubt, Phase, View};
+use crate::position::{Estimate, about_down};
+use crate::target::PipeTarget;
+use crate::vector::Vec3;
+
+impl Approach {
+    /// `target` is near the vehicle, and below it.
+    pub fn reaches(target: &PipeTarget, e: &Estimate) -> bool {
+        near(target.crown - e.position)
+    }
+
+    /// The way to `target`, from where the try began.
+    pub(super) fn to(self, target: &PipeTarget) -> Self {
+        let crown = about_down(target.crown - self.origin, -self.heading);
+        Self {
+            phase: Phase::Over,
+            given: true,
+            crown: crown.y,
+            top: crown.z,
+            along: crown.x,
+            ..self
+        }
+    }
+
+    /// Follows the newest place of the pipe, as it comes: its noise is smoothed, and the poses' axes may drift.
+    pub(super) fn follow(&mut self, v: &View, dt: f32) -> Result<(), Doubt> {
+        let target = v.target.ok_or(Doubt::TargetStale)?;
+        if !near(target.crown - v.position) {
+            return Err(Doubt::TargetFar);
+        }
+        let known = Vec3::new(self.along, self.crown, self.top);
+        let off = about_down(target.crown - self.origin, -self.heading) - known;
+        if off.norm_squared() > TARGET_STEP * TARGET_STEP {
+            return Err(Doubt::TargetJumps);
+        }
+        let now = known + off * (dt / (dt + TARGET_TIME));
+        (self.along, self.crown, self.top) = (now.x, now.y, now.z);
+        Ok(())
+    }
+
+    /// Height over the crown by which it comes down, as a range would measure it, m.
+    pub(super) fn clearance(&self, at: Vec3) -> f32 {
+        let surface = if self.given {
+            self.top - UNDER + LOWER
+        } else {
+            self.edges.level()
+        };
+        surface - at.z
+    }
+}
+
+/// What is `off` from the vehicle can be flown to.
+fn near(off: Vec3) -> bool {
+    let (least, most) = TARGET_BELOW;
+    let level = off.x * off.x + off.y * off.y;
+    level <= TARGET_REACH * TARGET_REACH && (least..=most).contains(&off.z)
+}

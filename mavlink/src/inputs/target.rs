@@ -1,0 +1,32 @@
+//! Where another computer sees the pipe.
+
+use sophie_control::target::PipeTarget;
+
+use super::pose::{LOCAL_NED, POSITION_MAX};
+use super::{Refusal, bounded, rotation};
+use crate::dialect::LANDING_TARGET_DATA;
+
+/// What LANDING_TARGET says, measured at `at` µs: x, y, z of the crown where the vehicle is to sit, and q, whose x axis runs
+/// along the pipe. All zeros, or NaN in the first, is a direction that is not given.
+///
+/// # Errors
+/// Axes other than the poses' own, no position, values that are no numbers or out of bounds, a pipe too steep to sit on.
+pub fn target(m: &LANDING_TARGET_DATA, at: u64) -> Result<PipeTarget, Refusal> {
+    if m.frame != LOCAL_NED {
+        return Err(Refusal::Frame);
+    }
+    if m.position_valid != 1 {
+        return Err(Refusal::Value);
+    }
+    let given = m.q.iter().any(|part| *part != 0.0);
+    let along = if given { rotation(m.q)? } else { None };
+    let target = PipeTarget {
+        at_us: at,
+        crown: bounded([m.x, m.y, m.z], POSITION_MAX)?,
+        heading: match along {
+            Some(q) => Some(PipeTarget::heading_of(q).ok_or(Refusal::Value)?),
+            None => None,
+        },
+    };
+    Ok(target)
+}
