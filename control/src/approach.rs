@@ -110,6 +110,8 @@ pub struct Approach {
     crossed: bool,
     looked: bool,
     settled: Held,
+    /// Speed across a little ago, m/s.
+    slow: f32,
     left: bool,
     /// Asked for, m/s.
     speed: Vec3,
@@ -144,6 +146,7 @@ impl Approach {
             crossed: false,
             looked: false,
             settled: Held::default(),
+            slow: 0.0,
             left: false,
             speed: Vec3::ZERO,
         }
@@ -448,9 +451,11 @@ impl Approach {
         let range = self.edges.level() - at.z;
         let share = clamp(self.since / PATIENCE, 0.0, 1.0);
         let within = STRICT + (CONTENT - STRICT) * share;
-        // Where it will touch if it sinks on.
-        let ahead = off + LAST_TIME * velocity.y;
-        let over = ahead.abs() < within && velocity.y.abs() < GATE_SPEED;
+        // Where it will touch if it sinks on: half of what its speed has just changed by will stay.
+        let gained = velocity.y - self.slow;
+        self.slow += gained * dt / (dt + SLOW_TIME);
+        let ahead = off + LAST_TIME * (velocity.y + LAST_TIME / (4.0 * SLOW_TIME) * gained);
+        let over = off.abs() < CONTENT && ahead.abs() < within && velocity.y.abs() < GATE_SPEED;
         let at_gate = range < 1.3 * GATE;
         if self.settled.step(at_gate && over, dt) >= GATE_TIME {
             self.enter(Phase::Commit);

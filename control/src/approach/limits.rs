@@ -35,13 +35,15 @@ pub const CORRECT_SPEED: f32 = 0.05;
 pub const NEAR: f32 = 0.25;
 pub const NEAR_OFF: f32 = 0.06;
 /// Range at which it waits to be over the crown, m: the last at which flow is seen with some margin.
-pub const GATE: f32 = 0.12;
+pub const GATE: f32 = 0.10;
 /// Speed of the last bit, m/s, and time from there to the touch, s: each tenth of a second costs half a centimetre in gusts.
 pub const LAST_SPEED: f32 = 0.3;
 pub const LAST_TIME: f32 = 0.45;
+/// Time over which the change of the speed across is taken, s.
+pub const SLOW_TIME: f32 = 0.15;
 /// Offset that goes on from there, at once and after [`PATIENCE`], m, the speed across, m/s, and for how long, s.
-pub const STRICT: f32 = 0.02;
-pub const CONTENT: f32 = 0.03;
+pub const STRICT: f32 = 0.015;
+pub const CONTENT: f32 = 0.025;
 pub const GATE_SPEED: f32 = 0.04;
 pub const GATE_TIME: f32 = 0.05;
 pub const PATIENCE: f32 = 10.0;
