@@ -113,10 +113,15 @@ pub struct Approach {
     /// Where it sits down along the pipe, m, and the ends that were seen.
     along: f32,
     ends: [Option<f32>; 2],
+    /// Where the range fell off on the way along, m, and for how long it has seen no pipe at the way's end.
+    fell: Option<f32>,
+    lost: Held,
     /// It was crossed at this height, and looked along.
     crossed: bool,
     looked: bool,
     settled: Held,
+    /// Speed across a little ago, m/s.
+    slow: f32,
     left: bool,
     /// The pipe is where it is said to be: nothing is searched.
     given: bool,
@@ -148,9 +153,12 @@ impl Approach {
             before: None,
             along: 0.0,
             ends: [None; 2],
+            fell: None,
+            lost: Held::default(),
             crossed: false,
             looked: false,
             settled: Held::default(),
+            slow: 0.0,
             left: false,
             given: false,
             speed: Vec3::ZERO,
@@ -222,9 +230,9 @@ impl Approach {
             Phase::Climb => self.climb(at, held),
             Phase::Search => self.search(edge, held)?,
             Phase::Over => self.over(at, held, math::wrap_pi(self.heading - v.heading))?,
-            Phase::Fore | Phase::Aft => self.look_along(edge, held)?,
+            Phase::Fore | Phase::Aft => self.look_along(edge, held, dt)?,
             Phase::Cross => self.cross(edge, held)?,
-            Phase::Centre => self.centre(edge, at, velocity, held, dt)?,
+            Phase::Centre => self.centre(edge, at, held)?,
             Phase::Descend => self.descend(edge, at, velocity, held, dt)?,
             Phase::Commit => self.commit(at, held)?,
         };
@@ -248,8 +256,8 @@ impl Approach {
     fn enter(&mut self, phase: Phase) {
         self.phase = phase;
         self.since = 0.0;
-        self.entered = None;
-        self.settled = Held::default();
+        (self.entered, self.fell) = (None, None);
+        (self.settled, self.lost) = Default::default();
     }
 
     fn late(&self, limit: f32, doubt: Doubt) -> Result<(), Doubt> {
@@ -362,19 +370,26 @@ impl Approach {
         self.given || (self.edges.level() - self.top).abs() < 0.5 * self.diameter
     }
 
-    fn look_along(&mut self, edge: Option<Edge>, held: Vec3) -> Result<Vec3, Doubt> {
+    fn look_along(&mut self, edge: Option<Edge>, held: Vec3, dt: f32) -> Result<Vec3, Doubt> {
         self.late(WAY_TIME, Doubt::NotCentred)?;
         let fore = self.phase == Phase::Fore;
         let goal = if fore { LOOK } else { -LOOK };
         let target = Vec3::new(goal, self.crown, self.top - LOW);
-        // A gust carries the beam off the side too: there it comes back.
-        let end = match edge {
-            Some(Edge::Off(at)) if (at.y - self.crown).abs() < SIDE => Some(at.x),
-            _ => None,
-        };
+        // A gust carries the beam off the side as well: what it comes back onto has not ended.
+        match edge {
+            Some(Edge::Off(at)) => self.fell = Some(at.x),
+            Some(Edge::Onto(_)) => self.fell = None,
+            None => (),
+        }
         let there = (target.x - held.x).abs() < REACHED;
-        let end = end.or((there && !self.sees_pipe()).then_some(held.x));
-        if end.is_some() || there {
+        let sees = self.sees_pipe();
+        self.lost.step(there && !sees, dt);
+        if there && (sees || self.lost.time() >= END_TIME) {
+            let end = if sees {
+                None
+            } else {
+                Some(self.fell.unwrap_or(held.x))
+            };
             let [front, rear] = &mut self.ends;
             *(if fore { front } else { rear }) = end;
             if fore {
@@ -419,14 +434,7 @@ impl Approach {
         Ok(Self::way(held, target, CROSS_SPEED, DESCENT))
     }
 
-    fn centre(
-        &mut self,
-        edge: Option<Edge>,
-        at: Vec3,
-        velocity: Vec3,
-        held: Vec3,
-        dt: f32,
-    ) -> Result<Vec3, Doubt> {
+    fn centre(&mut self, edge: Option<Edge>, at: Vec3, held: Vec3) -> Result<Vec3, Doubt> {
         self.late(CENTRE_TIME, Doubt::NotCentred)?;
         match edge {
             // From the side at which the last crossing ended: what has drifted since shows.
@@ -445,13 +453,11 @@ impl Approach {
             // A gust carries the beam off the side.
             Some(Edge::Off(_)) | None => (),
         }
-        let target = self.spot(LOW);
-        let off = at.y - self.crown;
-        let there = off.abs() < SETTLED && velocity.y.abs() < SETTLED_SPEED && self.sees_pipe();
-        if self.settled.step(there, dt) >= SETTLED_TIME {
+        // It comes to rest on the way down: each second here costs a centimetre of what the edge has given.
+        if (at.y - self.crown).abs() < NEAR_OFF && self.sees_pipe() {
             self.enter(Phase::Descend);
         }
-        Ok(Self::way(held, target, CROSS_SPEED, DESCENT))
+        Ok(Self::way(held, self.spot(LOW), CROSS_SPEED, DESCENT))
     }
 
     fn descend(
@@ -470,16 +476,21 @@ impl Approach {
         let range = self.clearance(at);
         let share = clamp(self.since / PATIENCE, 0.0, 1.0);
         let within = STRICT + (CONTENT - STRICT) * share;
-        let ahead = off + LAST_TIME * velocity.y;
-        let over = off.abs() < within && ahead.abs() < within && velocity.y.abs() < GATE_SPEED;
+        // Where it will touch if it sinks on: half of what its speed has just changed by will stay.
+        let gained = velocity.y - self.slow;
+        self.slow += gained * dt / (dt + SLOW_TIME);
+        let ahead = off + LAST_TIME * (velocity.y + LAST_TIME / (4.0 * SLOW_TIME) * gained);
+        let over = off.abs() < CONTENT && ahead.abs() < within && velocity.y.abs() < GATE_SPEED;
         let at_gate = range < 1.3 * GATE;
         if self.settled.step(at_gate && over, dt) >= GATE_TIME {
             self.enter(Phase::Commit);
         }
         let mut way = Self::way(held, self.spot(LOW), CORRECT_SPEED, DESCENT);
-        let waits = range < NEAR && off.abs() > NEAR_OFF;
-        way.z = if waits {
+        let waits = off.abs() > NEAR_OFF;
+        way.z = if waits && range < NEAR {
             0.0
+        } else if over {
+            DESCENT
         } else {
             clamp(HEIGHT_GAIN * (range - GATE), -CORRECT_SPEED, DESCENT)
         };
@@ -492,7 +503,7 @@ impl Approach {
             return Err(Doubt::NotCentred);
         }
         let mut way = Self::way(held, self.spot(LOW), CORRECT_SPEED, DESCENT);
-        way.z = DESCENT;
+        way.z = LAST_SPEED;
         Ok(way)
     }
 }

@@ -58,6 +58,8 @@ const FLOWS_REFUSED_MAX: u32 = 50;
 /// Range of a vehicle that stands, m, and the variance of its level speed, (m/s)².
 const STANDING: f32 = 0.05;
 const STAND_SPEED: f32 = 0.01;
+/// Time over which the way of the beam across an edge is taken, µs.
+const EDGE_TIME: u64 = 100_000;
 /// Share of a new heading's difference that the turn follows: 1 s at 50 Hz.
 const TURN_GAIN: f32 = 0.02;
 /// Cut-off of the lateral and the vertical disturbance, rad/s.
@@ -198,7 +200,7 @@ impl PositionEstimator {
             motor_tau: p.motor_tau,
             past: Past::default(),
             track: None,
-            sight: Sight::default(),
+            sight: Sight::new(p.pipe_diameter),
             trust: Trust::default(),
             seen_us: 0,
             flow_us: 0,
@@ -444,9 +446,9 @@ impl Track {
             let [along, across] = [x, y].map(|axis| axis.correct_speed(-axis.velocity(), STAND_SPEED, lag));
             past.change(at, &[along, across, Change::default()]);
         }
-        let motion = (self.velocity(), self.turn);
+        let earlier = past.at(at.saturating_sub(EDGE_TIME)).unwrap_or(then);
         let [_, _, axis] = &mut self.axes;
-        let Some((innovation, variance)) = sight.height(&then, distance, posed, motion) else {
+        let Some((innovation, variance)) = sight.height((&earlier, &then), distance, posed, self.turn) else {
             return;
         };
         let change = axis.correct(innovation, variance, seconds(at, self.at_us));

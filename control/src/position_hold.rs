@@ -27,6 +27,8 @@ pub const CLIMB_MAX: f32 = 0.7;
 const SPEED_SLEW: f32 = 1.0;
 /// Largest acceleration asked for, the wind's included, m/s²: 17° of tilt, 5.4 N of wind.
 pub const ACCELERATION_MAX: f32 = 3.0;
+/// Time constant of each of the two stages of the held point's velocity, s: together the lag from setpoint to tilt.
+const COURSE_STAGE: f32 = 0.2;
 /// Time constant of learning the wind, s.
 const WIND_TIME: f32 = 4.0;
 /// Departure of the disturbance from the wind beyond which something is touched, m/s²: gusts stay at a fifth.
@@ -56,6 +58,48 @@ pub struct Felt {
     pub carried: bool,
 }
 
+/// How the held point moves: the wished velocity behind two stages, as far behind as the tilt is behind what is asked of it.
+/// Asked for at once, the vehicle then follows the point instead of overtaking it at each turn.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Course {
+    /// Wished velocity within [`SPEED_SLEW`], the same behind one stage, and that of the held point, m/s.
+    wished: Vec3,
+    between: Vec3,
+    speed: Vec3,
+    /// Their changes, m/s².
+    asked: Vec3,
+    turning: Vec3,
+    gained: Vec3,
+}
+
+impl Course {
+    fn step(&mut self, wished: Vec3, dt: f32) {
+        let slew = |from: f32, to: f32| math::slew(from, to, SPEED_SLEW * dt);
+        let before = self.wished;
+        self.wished = Vec3::new(
+            slew(before.x, wished.x),
+            slew(before.y, wished.y),
+            slew(before.z, wished.z),
+        );
+        let level = |v: Vec3| Vec3::new(v.x, v.y, 0.0);
+        let per_second = if dt > 0.0 { 1.0 / dt } else { 0.0 };
+        self.asked = level(self.wished - before) * per_second;
+        let per = 1.0 / (COURSE_STAGE + dt);
+        self.turning = level(self.wished - self.between) * per;
+        self.between += self.turning * dt;
+        self.gained = level(self.between - self.speed) * per;
+        self.speed += self.gained * dt;
+        // The height's law has no such lag.
+        self.speed.z = self.wished.z;
+    }
+
+    /// The way that the held point is behind, m.
+    fn to_come(&self) -> Vec3 {
+        let both = self.between + self.speed;
+        Vec3::new(both.x, both.y, 0.0) * COURSE_STAGE
+    }
+}
+
 /// The law and its state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PositionHold {
@@ -63,9 +107,9 @@ pub struct PositionHold {
     thrust: (f32, f32),
     lag: Lag,
     height: Height,
-    /// Point to hold, m, and the wished velocity, m/s, in the estimate's axes.
+    /// Point to hold, m, and how it moves, in the estimate's axes.
     anchor: Vec3,
-    speed: Vec3,
+    course: Course,
     /// Learnt wind, m/s², in the estimate's axes.
     wind: Vec3,
     jumps: u8,
@@ -82,7 +126,7 @@ impl PositionHold {
             lag: Lag::at(p, tilt(felt.q)),
             height: Height::default(),
             anchor: e.position,
-            speed: Vec3::ZERO,
+            course: Course::default(),
             wind: Vec3::new(e.disturbance.x, e.disturbance.y, 0.0),
             jumps: e.jumps,
         }
@@ -91,13 +135,13 @@ impl PositionHold {
     /// Holds where the vehicle is from now on; what is learnt stays.
     pub fn anchor_at(&mut self, e: &Estimate) {
         self.anchor = e.position;
-        self.speed = Vec3::ZERO;
+        self.course = Course::default();
         self.jumps = e.jumps;
     }
 
-    /// The point that is held, m, in the estimate's axes.
+    /// Where the wished velocities have led the point that is held, m, in the estimate's axes; it comes there behind them.
     pub fn held(&self) -> Vec3 {
-        self.anchor
+        self.anchor + self.course.to_come()
     }
 
     /// One step of `dt` s; without `known` the position is none, and the sticks tilt.
@@ -107,13 +151,9 @@ impl PositionHold {
             self.anchor_at(e);
         }
         let wished = about_down(wish.velocity, heading);
-        let slew = |from: f32, to: f32| math::slew(from, to, SPEED_SLEW * dt);
-        self.speed = Vec3::new(
-            slew(self.speed.x, wished.x),
-            slew(self.speed.y, wished.y),
-            slew(self.speed.z, wished.z),
-        );
-        self.anchor += self.speed * dt;
+        self.course.step(wished, dt);
+        let speed = self.course.speed;
+        self.anchor += speed * dt;
         self.leash(e.position);
         let d = self.disturbance(e, felt.carried, dt);
         let ahead = |v: Vec3| {
@@ -122,8 +162,15 @@ impl PositionHold {
         };
         let wind = ahead(self.wind);
         let u = if known {
-            let (p, v) = (ahead(e.position - self.anchor), ahead(e.velocity - self.speed));
-            self.feedback(p, v, ahead(d), wind, felt)
+            let (p, v) = (ahead(e.position - self.anchor), ahead(e.velocity - speed));
+            let Course {
+                asked,
+                turning,
+                gained,
+                ..
+            } = self.course;
+            let course = [asked, turning, gained].map(ahead);
+            self.feedback(p, v, ahead(d), wind, &course, felt)
         } else {
             core::array::from_fn(|i| at(&wish.lean, i) - at(&wind, i))
         };
@@ -132,7 +179,7 @@ impl PositionHold {
         let up = self.height.step(
             &height::State {
                 error: self.anchor.z - e.position.z,
-                wished: self.speed.z,
+                wished: speed.z,
                 velocity: e.velocity.z,
                 disturbance: e.disturbance.z,
                 landing: felt.carried && wish.velocity.z > 0.0,
@@ -167,8 +214,17 @@ impl PositionHold {
         d
     }
 
-    /// Acceleration to ask for, forward and right, m/s².
-    fn feedback(&self, p: [f32; 2], v: [f32; 2], d: [f32; 2], wind: [f32; 2], felt: &Felt) -> [f32; 2] {
+    /// Acceleration to ask for, forward and right, m/s²; those of the `course` are what it asks for, what is on its way to
+    /// the tilt, and its own.
+    fn feedback(
+        &self,
+        p: [f32; 2],
+        v: [f32; 2],
+        d: [f32; 2],
+        wind: [f32; 2],
+        course: &[[f32; 2]; 3],
+        felt: &Felt,
+    ) -> [f32; 2] {
         let (a, rate) = (tilt(felt.q), tilt_rate(felt.rate));
         let Lag {
             first,
@@ -178,18 +234,19 @@ impl PositionHold {
         } = &self.lag;
         core::array::from_fn(|i| {
             let wind = at(&wind, i);
+            let [asked, under_way, gained] = course.map(|course| at(&course, i));
             let state = [
                 at(&p, i),
                 at(&v, i),
-                at(&a, i) + wind,
+                at(&a, i) + wind - gained,
                 at(&rate, i),
                 at(turning, i),
-                at(second, i) + wind,
-                at(first, i) + wind,
+                at(second, i) + wind - under_way,
+                at(first, i) + wind - under_way,
                 at(&d, i) - wind,
             ];
             let fed: f32 = GAINS.iter().zip(state).map(|(k, x)| k * x).sum();
-            -fed - wind
+            asked - fed - wind
         })
     }
 

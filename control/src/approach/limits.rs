@@ -14,8 +14,8 @@ pub const LEGS: u8 = 3;
 /// Farthest that two crossings, or the last one and the edge on the way back, may differ, m; and the weight of the newer.
 pub const AGREE: f32 = 0.12;
 pub const NEWER: f32 = 0.7;
-/// Offset of the beam at which it falls off the pipe's side, not its end, m.
-pub const SIDE: f32 = 0.08;
+/// Time without the pipe at the end of the way along it after which it has ended, s: a gust has let the beam come back.
+pub const END_TIME: f32 = 1.5;
 /// Widths of a crossing that are the pipe's, share of its diameter.
 pub const WIDTH: (f32, f32) = (0.7, 1.35);
 /// Heights over the crown, m: to which it climbs for another try, and of the crossings.
@@ -31,21 +31,20 @@ pub const LOOK: f32 = 0.3;
 pub const END: f32 = 0.3;
 /// Speed at which it follows a corrected crown, m/s.
 pub const CORRECT_SPEED: f32 = 0.05;
-/// Offset and speed across at which it is over the crown, m and m/s, and for how long, s.
-pub const SETTLED: f32 = 0.03;
-pub const SETTLED_SPEED: f32 = 0.06;
-pub const SETTLED_TIME: f32 = 0.3;
 /// Range below which it does not sink while it is this far off, m.
 pub const NEAR: f32 = 0.25;
 pub const NEAR_OFF: f32 = 0.06;
 /// Range at which it waits to be over the crown, m: the last at which flow is seen with some margin.
-pub const GATE: f32 = 0.12;
-/// Time from there to the touch, s.
-pub const LAST_TIME: f32 = 0.5;
+pub const GATE: f32 = 0.10;
+/// Speed of the last bit, m/s, and time from there to the touch, s: each tenth of a second costs half a centimetre in gusts.
+pub const LAST_SPEED: f32 = 0.3;
+pub const LAST_TIME: f32 = 0.45;
+/// Time over which the change of the speed across is taken, s.
+pub const SLOW_TIME: f32 = 0.15;
 /// Offset that goes on from there, at once and after [`PATIENCE`], m, the speed across, m/s, and for how long, s.
 pub const STRICT: f32 = 0.015;
-pub const CONTENT: f32 = 0.03;
-pub const GATE_SPEED: f32 = 0.05;
+pub const CONTENT: f32 = 0.025;
+pub const GATE_SPEED: f32 = 0.04;
 pub const GATE_TIME: f32 = 0.05;
 pub const PATIENCE: f32 = 10.0;
 /// Offset on the last bit beyond which it goes up again, m: what the pads hold (docs/results.md).

@@ -2,7 +2,7 @@
 
 use super::about_down;
 use super::agreement::Agreement;
-use super::band::Band;
+use super::band::{Band, Depth};
 use super::past::Moment;
 use crate::ground::{Flow, GroundView, Range};
 use crate::math;
@@ -15,6 +15,9 @@ pub const FLOW_HEIGHT: (f32, f32) = (0.08, 2.5);
 const QUALITY_MIN: u8 = 20;
 /// Deviation of a flow, rad: 0.12 rad/s in 20 ms (assumed for modules of this class).
 const FLOW_NOISE: f32 = 2.4e-3;
+/// How much farther the ground seems to a view of 42° whose scale was calibrated by turning: of its rays, tan² ahead, a turn
+/// moves 1 + tan² and a way 1, in the mean 1 + tan²(21°) / 3.
+const CALIBRATED: f32 = 1.049;
 /// Share of the way over the ground that flow and range are off, 1.
 const SCALE_NOISE: f32 = 0.05;
 /// Deviation of a range, m.
@@ -26,6 +29,8 @@ const STEP: f32 = 0.12;
 const STEP_RANGES: u32 = 3;
 /// Ranges that differ by less are of the same surface, m.
 const SAME: f32 = 0.08;
+/// Share by which the height of what is narrow follows each range while its flank alone was seen.
+const FLANK_SHARE: f32 = 0.2;
 /// Steps within [`STEPS_TIME`] from which on the range is not used: two edges of a pipe, swept across, come each second.
 const STEPS_MAX: u32 = 10;
 const STEPS_TIME: u64 = 5_000_000;
@@ -124,6 +129,8 @@ pub struct Seen {
 /// What is known of the ground and of the module.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sight {
+    /// Half the width of what the vehicle perches on, m.
+    radius: f32,
     /// Newest range with a distance: when, µs, and m.
     range: Option<(u64, f32)>,
     /// When the newest range that was looked at was measured, µs.
@@ -139,12 +146,13 @@ pub struct Sight {
     steps: u32,
     window_us: u64,
     distrusted_us: u64,
-    /// Where the first range of a step fell.
+    /// Where the last range of the present surface fell, and where the edge of a step is.
+    foot: Vec3,
     stepped_at: Vec3,
     /// The height of what is narrow below is not known yet: its flank was seen alone.
     flank: bool,
     /// What is narrow, where its edge was seen.
-    band: Option<Band>,
+    pub(super) band: Option<Band>,
     same_ranges: u32,
     same_flows: u32,
     angle: [f32; 2],
@@ -153,6 +161,14 @@ pub struct Sight {
 }
 
 impl Sight {
+    /// Over pipes of `diameter` m.
+    pub fn new(diameter: f32) -> Self {
+        Self {
+            radius: 0.5 * diameter,
+            ..Self::default()
+        }
+    }
+
     /// What is wrong at present.
     pub fn fault(&self) -> Option<SightFault> {
         let faults = [
@@ -211,14 +227,14 @@ impl Sight {
     }
 
     /// What the height at `then` is off by a range of `distance`, m, with its variance, m²; `None` while it is not clear
-    /// what is below. Where a pose is fresh, or something narrow is crossed at `velocity`, m/s, the surface follows the
-    /// height instead. The axes are turned by `turn`, rad.
+    /// what is below. Where a pose is fresh the surface follows the height instead. A little `earlier` the beam was on its
+    /// way there; the axes are turned by `turn`, rad.
     pub fn height(
         &mut self,
-        then: &Moment,
+        (earlier, then): (&Moment, &Moment),
         distance: f32,
         posed: bool,
-        (velocity, turn): (Vec3, f32),
+        turn: f32,
     ) -> Option<(f32, f32)> {
         let cos = then.q.down_in_body().z;
         if cos < COS_MIN {
@@ -233,43 +249,47 @@ impl Sight {
         let foot = then.position + beam(then.q, distance, turn);
         // The range's own place is that of a surface at `level`.
         let off = self.level - surface;
-        if off.abs() <= STEP {
-            self.agreed = 0;
-            let raised = self.base - self.level > STEP;
-            self.band = self.band.filter(|band| band.agrees(foot, raised));
-            if let (Some(band), true) = (&mut self.band, raised) {
-                band.top = self.level;
-            }
-            let Some(band) = self.band.filter(|_| raised) else {
+        let raised = self.raised();
+        let below = Band::below(foot, then.yaw() + turn, self.radius, self.level);
+        let flank = raised && off < 0.0 && below.is_flank(-off);
+        if off.abs() <= STEP || flank {
+            (self.agreed, self.foot) = (0, foot);
+            // Where the beam passes its height: the ground is met farther off.
+            let at = |top: f32| then.position + beam(then.q, (top - then.position.z) / cos, turn);
+            self.band = self.band.map(|band| band.bounded(at(band.top), raised));
+            if !raised {
                 return Some((off, RANGE_NOISE * RANGE_NOISE));
-            };
-            let (drop, doubt) = band.drop(foot)?;
+            }
+            let band = self.band.get_or_insert(below);
+            band.top = self.level;
+            let (drop, doubt) = band.drop(foot);
             let back = surface - drop;
             if self.flank {
-                (self.level, self.other) = (back, back);
+                self.level += FLANK_SHARE * (back - self.level);
+                self.other = self.level;
                 self.flank = doubt > RANGE_NOISE;
-                return None;
             }
             return Some((self.level - back, RANGE_NOISE * RANGE_NOISE + doubt * doubt));
-        }
-        let raised = self.base - self.level > STEP;
-        if raised && off < 0.0 && self.band.is_some_and(|band| band.is_flank(foot, -off)) {
-            self.agreed = 0;
-            return None;
         }
         self.agreed = if (off - self.step).abs() <= SAME {
             self.agreed + 1
         } else {
-            self.stepped_at = foot;
+            // Of the two surfaces' feet the higher one's: a tilted beam meets the ground a hand's breadth beside the edge.
+            self.stepped_at = if off > 0.0 { foot } else { self.foot };
             1
         };
         self.step = off;
         if self.agreed >= STEP_RANGES {
             let (before, onto) = (self.level, off > 0.0);
             let known = self.change_level(surface, then.at_us);
-            let top = self.level.min(before);
+            let mut band = self.band.unwrap_or(below);
+            band.top = self.level.min(before);
+            let reach = band.top - then.position.z;
+            let at = |m: &Moment| m.position + beam(m.q, reach, turn);
+            let way = at(then) - at(earlier);
             let heading = then.yaw() + turn;
-            self.band = Some(Band::at_edge(self.stepped_at, onto, velocity, heading, top));
+            self.band = Some(Band::at_edge(band, self.stepped_at, onto, way, heading));
+            self.foot = foot;
             self.flank = onto && !known;
         }
         None
@@ -281,13 +301,14 @@ impl Sight {
         // One that was there before is that one.
         let known = [self.base, self.other];
         let again = known.iter().find(|level| (**level - surface).abs() <= STEP);
+        let before = self.level;
         self.level = again.copied().unwrap_or(surface);
-        if again.is_none() {
-            self.other = surface;
-        }
-        // Down is positive: the lowest is the ground.
-        if self.level > self.base {
-            (self.other, self.base) = (self.base, self.level);
+        // Down is positive. What the beam falls down to is the ground: a height that has drifted since must not leave a
+        // deeper one beside it, over which the true one would seem raised.
+        if self.level > before {
+            (self.other, self.base) = (before, self.level);
+        } else {
+            self.other = self.level;
         }
         if now.saturating_sub(self.window_us) > STEPS_TIME {
             (self.window_us, self.steps) = (now, 0);
@@ -300,20 +321,31 @@ impl Sight {
         again.is_some()
     }
 
-    /// Distance at which the flow sees what it sees, m, from `to`. Beside something narrow the rest of the view is farther,
-    /// and where an edge of it was seen its share is known.
-    fn depth(&self, to: &Moment, cos: f32, turn: f32) -> f32 {
+    /// Something narrow is below.
+    pub(super) fn raised(&self) -> bool {
+        self.base - self.level > STEP
+    }
+
+    /// How far what the flow sees from `to` is. Beside something narrow the rest of the view is farther, and where an edge
+    /// of it was seen its share is known.
+    pub(super) fn depth(&self, to: &Moment, cos: f32, turn: f32) -> Depth {
         let far = |level: f32| {
             let (least, most) = FLOW_HEIGHT;
             math::clamp((level - to.position.z) / cos, least, 2.0 * most)
         };
         let near = far(self.level);
         let foot = to.position + beam(to.q, near, turn);
-        let raised = self.base - self.level > STEP;
-        let below = raised.then(|| Band::below(foot, self.level));
-        match self.band.or(below) {
-            Some(band) => 1.0 / band.nearness(to.position, foot, far(self.base)),
-            None => near,
+        let seen = match self.band {
+            Some(band) => band.sight(to.position, foot, far(self.base)),
+            None => Depth {
+                distance: near,
+                doubt: 0.0,
+                lean: Vec3::ZERO,
+            },
+        };
+        Depth {
+            distance: CALIBRATED * seen.distance,
+            ..seen
         }
     }
 
@@ -328,17 +360,25 @@ impl Sight {
         if !fresh || cos < COS_MIN || flow.quality < QUALITY_MIN || !(least..=most).contains(&distance) {
             return None;
         }
-        let depth = self.depth(to, cos, turn);
+        let Depth {
+            distance: depth,
+            doubt,
+            lean,
+        } = self.depth(to, cos, turn);
         // What the vehicle has turned by, body.
         let turned = from.q.conjugate() * to.q;
         let half = if turned.w < 0.0 { -2.0 } else { 2.0 };
         let turned = [half * turned.x, half * turned.y];
         let way = about_down(to.position - from.position, -turn);
         let way = to.q.rotate_inverse(way);
+        // On the way down what is near on one side of the view seems to move to that side.
+        let aside = to.q.rotate_inverse(about_down(lean, -turn)) * way.z;
         let [roll, pitch] = flow.angle;
+        let angle = [roll - aside.y / depth, pitch + aside.x / depth];
+        let [roll, pitch] = angle;
         let predicted = [turned[0] - way.y / depth, turned[1] + way.x / depth];
         let per = 1.0 / flow.seconds;
-        let pairs = self.agreements.iter_mut().zip(flow.angle).zip(predicted);
+        let pairs = self.agreements.iter_mut().zip(angle).zip(predicted);
         let mut disagrees = false;
         for ((agreement, measured), predicted) in pairs {
             disagrees |= agreement.step(measured * per, predicted * per, FLOW_NOISE * per, flow.seconds);
@@ -351,7 +391,7 @@ impl Sight {
         let seen = Vec3::new((pitch - turned[1]) * depth, (turned[0] - roll) * depth, way.z);
         let off = about_down(to.q.rotate(seen - way), turn) * per;
         let speed = FLOW_NOISE * depth * per;
-        let scale = SCALE_NOISE * (seen.x.abs() + seen.y.abs()) * per;
+        let scale = (SCALE_NOISE + doubt) * (seen.x.abs() + seen.y.abs()) * per;
         Some(Seen {
             off: [off.x, off.y],
             variance: speed * speed + scale * scale,

@@ -139,6 +139,41 @@ fn sticks_ask_for_velocities_along_the_heading_and_centred_they_stop() {
     assert!(w.e.velocity.norm() < 0.01 && (w.e.position - held).norm() < 0.02);
 }
 
+/// Back and forth across a pipe, as an approach does: without the course's acceleration the vehicle overtook the held point
+/// by 12 cm at each turn.
+#[test]
+fn at_a_turn_the_vehicle_follows_the_held_point() {
+    let mut w = World::new(0.7, 0.0);
+    let (mut off, mut led) = (0.0f32, Vec3::ZERO);
+    for i in 0..1200u32 {
+        // Speeds that change by 0.3 m/s², up to 0.25 m/s.
+        let t = i as f32 * DT;
+        let phase = (t / 2.0) % 2.0;
+        let wished = (0.6 * (phase - 1.0).abs() - 0.3).clamp(-0.25, 0.25);
+        w.wish.velocity = Vec3::new(0.0, wished, 0.0);
+        w.step();
+        led += about_down(w.wish.velocity, 0.7) * DT;
+        off = off.max((w.e.position - w.law.anchor).norm());
+    }
+    assert!(off < 0.04, "{off}");
+    // Where the wishes have led it is where it comes to rest.
+    assert!((w.law.held() - led).norm() < 0.03, "{:?} {led:?}", w.law.held());
+    w.wish = Wish::default();
+    let goal = w.law.held();
+    w.run(6.0);
+    assert!((w.e.position - goal).norm() < 0.04, "{:?} {goal:?}", w.e.position);
+}
+
+#[test]
+fn a_step_of_no_time_asks_for_a_finite_tilt() {
+    let mut w = World::new(0.0, 0.0);
+    w.wish.velocity.y = 0.3;
+    for dt in [DT, 0.0, DT] {
+        let asked = w.law.step(&w.e, &w.felt(), &w.wish, true, dt);
+        assert!(asked.is_finite(), "{dt}: {asked:?}");
+    }
+}
+
 #[test]
 fn what_is_touched_is_not_learnt_as_wind() {
     let mut w = World::new(0.0, 0.0);
