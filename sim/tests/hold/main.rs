@@ -8,6 +8,7 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 use sophie_control::mode::{Mode, Reason};
+use sophie_control::position::PoseFault;
 use sophie_sim::flight::fly;
 use sophie_sim::record::{FlightRecord, Sample, Silent};
 use sophie_sim::scenario::{Assist, PositionSensor, Scenario, Step};
@@ -94,6 +95,8 @@ fn judge(seeds: impl Iterator<Item = u64>, seconds: f64) {
             continue;
         }
         assert!(record.outcome.accomplished, "{seed}: {}", record.outcome.reason);
+        let blamed = |text: &str| PoseFault::ALL.iter().any(|fault| text.ends_with(fault.text()));
+        assert!(!record.events.iter().any(|e| blamed(&e.text)), "{seed}: blamed");
         let samples = settled(&record);
         assert!(
             samples.len() as f64 > 100.0 * (seconds - SETTLE - 3.0),
