@@ -48,6 +48,9 @@ pub const FIX_DEVIATION: f32 = 0.01;
 const DEVIATION_BOUNDS: (f32, f32) = (0.003, 0.5);
 /// Silence of the poses after which one that is off is no jump, s: what was estimated since may be as far off.
 const UNKNOWN_AGE: f32 = 1.0;
+/// Age that an estimate has once its poses were found to disagree, µs: none coasts on by it (see
+/// [`crate::mode::Mode::Hold`]).
+const TAINTED_AGE: u64 = 1_310_000;
 /// Share of the weight from which on the rotors carry the vehicle.
 const FLIES: f32 = 0.5;
 /// Age of the newest pose from which on flow and range are taken, s.
@@ -272,6 +275,9 @@ impl PositionEstimator {
             ..here
         });
         track.left_out |= left_out;
+        if self.trust.fault() == Some(PoseFault::Disagrees) {
+            track.taint();
+        }
         if let Some(fix) = new {
             track.take(&mut self.past, &mut self.trust, fix);
         }
@@ -304,6 +310,8 @@ struct Track {
     fixes: u32,
     /// Poses were left out since the last one that was taken.
     left_out: bool,
+    /// What was estimated from them since they began to disagree was given up.
+    tainted: bool,
     /// There was a pose, the newest one that was taken at this time, µs: the axes are its sender's.
     posed: bool,
     pose_us: u64,
@@ -329,6 +337,7 @@ impl Track {
             fixed_us: fix.at_us,
             fixes: 1,
             left_out: false,
+            tainted: false,
             posed: true,
             pose_us: fix.at_us,
             flows_refused: 0,
@@ -412,9 +421,26 @@ impl Track {
             trust.gate(fix.at_us, true);
             return;
         }
-        self.left_out = false;
+        (self.left_out, self.tainted) = (false, false);
         self.fixed_us = fix.at_us;
         (self.posed, self.pose_us) = (true, fix.at_us);
+    }
+
+    /// The poses have gone another way than the vehicle for a while: velocity and bias follow them no longer. No one coasts
+    /// on with these, and the wind is what is felt.
+    fn taint(&mut self) {
+        if self.tainted {
+            return;
+        }
+        self.tainted = true;
+        self.fixed_us = self.fixed_us.min(self.at_us.saturating_sub(TAINTED_AGE));
+        for axis in &mut self.axes {
+            axis.set_speed(axis.velocity());
+        }
+        let [x, y, _] = &mut self.axes;
+        for axis in [x, y] {
+            axis.forget_bias();
+        }
     }
 
     /// One more fix or flow was taken.

@@ -147,6 +147,15 @@ impl Axis {
         self.rest = [v * v, 0.0, bb];
     }
 
+    /// Begins to learn the bias anew.
+    pub fn forget_bias(&mut self) {
+        let [_, v, b] = START;
+        self.bias = 0.0;
+        self.rest = [v * v, 0.0, b * b];
+        let [pp, ..] = self.with_position;
+        self.with_position = [pp, 0.0, 0.0];
+    }
+
     /// True if `innovation` (m) of a fix with `variance` (m²) is likely enough.
     pub fn accepts(&self, innovation: f32, variance: f32) -> bool {
         let [pp, ..] = self.with_position;

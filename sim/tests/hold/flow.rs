@@ -116,7 +116,7 @@ fn a_module_that_fails_is_named_or_missed_and_the_vehicle_is_level_and_high() {
     let mut wrong = vec![];
     for (fault, text) in cases {
         let (record, samples) = with_a_fault(fault, 6.0);
-        if !harmless(&format!("{fault:?}"), text, &record, &samples) {
+        if !harmless(&format!("{fault:?}"), text, (&record, &samples), (5.0, 1.5)) {
             wrong.push(format!("{fault:?} {}", record.outcome.reason));
         }
     }
