@@ -94,7 +94,7 @@ impl Course {
     }
 
     /// The way that the held point is behind, m.
-    fn to_come(&self) -> Vec3 {
+    fn behind(&self) -> Vec3 {
         let both = self.between + self.speed;
         Vec3::new(both.x, both.y, 0.0) * COURSE_STAGE
     }
@@ -141,7 +141,7 @@ impl PositionHold {
 
     /// Where the wished velocities have led the point that is held, m, in the estimate's axes; it comes there behind them.
     pub fn held(&self) -> Vec3 {
-        self.anchor + self.course.to_come()
+        self.anchor + self.course.behind()
     }
 
     /// One step of `dt` s; without `known` the position is none, and the sticks tilt.

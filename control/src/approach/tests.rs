@@ -14,6 +14,8 @@ struct World {
     radius: f32,
     /// Of the ends from the origin, along the heading, m.
     ends: (f32, f32),
+    /// Where along it the beam misses it for a moment, m.
+    missed: (f32, f32),
 }
 
 const WORLD: World = World {
@@ -23,6 +25,7 @@ const WORLD: World = World {
     ground: Some(2.2),
     radius: 0.15,
     ends: (-1.0, 1.0),
+    missed: (5.0, 5.0),
 };
 
 impl World {
@@ -35,7 +38,9 @@ impl World {
     /// What the range sees straight below `p`.
     fn below(&self, p: Vec3) -> Option<Vec3> {
         let (y, x) = self.beside(p);
-        let on = y.abs() < self.radius && (self.ends.0..self.ends.1).contains(&x);
+        let on = y.abs() < self.radius
+            && (self.ends.0..self.ends.1).contains(&x)
+            && !(self.missed.0..self.missed.1).contains(&x);
         let pipe = self.crown + self.radius - (self.radius * self.radius - y * y).max(0.0).sqrt();
         let z = if on { Some(pipe) } else { self.ground };
         z.filter(|z| (0.02..2.5).contains(&(z - p.z)))
@@ -161,6 +166,17 @@ fn it_keeps_away_from_an_end_and_refuses_a_pipe_that_is_too_short() {
         ..WORLD
     };
     assert_eq!(flown(short, begun(&short)).0, Err(Doubt::TooShort));
+}
+
+#[test]
+fn what_the_beam_comes_back_onto_has_not_ended() {
+    for missed in [(0.1, 0.2), (-0.25, -0.15)] {
+        let world = World { missed, ..WORLD };
+        let (end, at, law, _) = flown(world, begun(&world));
+        let (y, x) = world.beside(at);
+        assert_eq!(end, Ok(()), "{missed:?} {law:?}");
+        assert!(y.abs() < 0.015 && x.abs() < 0.03, "{missed:?}: {y} {x}");
+    }
 }
 
 #[test]
