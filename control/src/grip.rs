@@ -14,7 +14,7 @@ use crate::wrench::PerArm;
 pub struct GripState {
     /// All chosen arms together held the pressure for the dwell time with a force below the limit, and lay round a pipe.
     pub proven: bool,
-    /// They hold the pressure, but no pipe.
+    /// They hold the pressure, but no pipe; or they close on one that lies across.
     pub misfit: Option<Misfit>,
     /// Every arm is free: no pressure, tendon slack, servo back at release.
     pub released: bool,
@@ -35,6 +35,8 @@ pub struct ArmGrip {
     pub closure: Option<f32>,
     /// Cause of [`ArmState::Faulty`].
     pub fault: Option<GripFault>,
+    /// Bending over the parameters', learnt in this closing less than a minute ago; for the next run.
+    pub response: Option<f32>,
 }
 
 /// State of one arm.

@@ -32,11 +32,12 @@ mod pressure_loop;
 mod tests;
 
 pub use self::arm::ArmGripper;
+pub use self::bend_watch::RESPONSE as RESPONSE_RANGE;
 pub use self::config::{Config, TIGHTENINGS, force_per_thrust};
 pub use self::input::{ArmInput, Pressure};
 use crate::grip::{ArmGrip, ArmState};
 use crate::grip_fault::GripFault;
-use crate::grip_fit::{Laid, Misfit, misfit};
+use crate::grip_fit::{Laid, Misfit, lies_across, misfit};
 use crate::math;
 use crate::wrench::PerArm;
 
@@ -77,12 +78,17 @@ pub struct Gripper {
 }
 
 impl Gripper {
-    /// Resumes the loops of closed arms (those with a force) after a restart.
-    pub fn resume(force: PerArm<f32>, fault: PerArm<Option<GripFault>>) -> Self {
+    /// Resumes the loops of closed arms (those with a force) after a restart, with the responses that they had learnt.
+    pub fn resume(
+        force: PerArm<f32>,
+        fault: PerArm<Option<GripFault>>,
+        response: PerArm<Option<f32>>,
+    ) -> Self {
         let mut arms = [ArmGripper::default(); 4];
-        for ((arm, force), fault) in arms.iter_mut().zip(force).zip(fault) {
+        let kept = force.into_iter().zip(fault).zip(response);
+        for (arm, ((force, fault), response)) in arms.iter_mut().zip(kept) {
             if force > 0.0 {
-                *arm = ArmGripper::resume(force, fault);
+                *arm = ArmGripper::resume(force, fault, response);
             }
         }
         Self {
@@ -97,9 +103,12 @@ impl Gripper {
             released: true,
             ..GripperOutput::default()
         };
+        // Arms that let go one after another turn the body about the last: all tendons are slack at once.
+        let opening = self.arms.iter().zip(input).filter(|(_, i)| !i.close);
+        let most = opening.map(|(arm, _)| arm.force).fold(0.0, f32::max);
         let (mut holding, mut within) = (input.iter().any(|i| i.close), true);
         for ((arm, input), output) in self.arms.iter_mut().zip(input).zip(&mut out.arms) {
-            let grip = arm.step(cfg, input, dt);
+            let grip = arm.step(&cfg.releasing(arm.force, most), input, dt);
             *output = ArmOutput {
                 grip,
                 hold_position: arm.holds_position(),
@@ -114,8 +123,12 @@ impl Gripper {
         } else {
             0.0
         };
+        let laid = self.laid(cfg, input);
+        if !self.proven && lies_across(&laid) {
+            out.misfit = Some(Misfit::Oblique);
+        }
         if holding && !self.proven && self.together >= cfg.demand.dwell {
-            out.misfit = self.misfit(cfg, input);
+            out.misfit = misfit(&laid, cfg.pipe_bend);
             self.proven = out.misfit.is_none() && input.iter().all(|i| !i.close || i.tilt.is_some());
         }
         self.proven &= holding;
@@ -123,8 +136,8 @@ impl Gripper {
         out
     }
 
-    /// What is wrong with the closed arms whose tilt is known.
-    fn misfit(&self, cfg: &Config, input: &PerArm<ArmInput>) -> Option<Misfit> {
+    /// The closed arms whose tilt is known.
+    fn laid(&self, cfg: &Config, input: &PerArm<ArmInput>) -> PerArm<Option<Laid>> {
         let mut laid = [None; 4];
         for ((slot, arm), input) in laid.iter_mut().zip(&self.arms).zip(input) {
             let relief = cfg.per_thrust * input.thrust;
@@ -133,6 +146,6 @@ impl Gripper {
                 force: arm.force - relief,
             });
         }
-        misfit(&laid, cfg.pipe_bend)
+        laid
     }
 }

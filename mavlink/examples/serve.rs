@@ -33,6 +33,7 @@ fn picture() -> Vehicle {
         force,
         closure: (state == ArmState::Holding).then_some(2.5),
         fault: None,
+        response: None,
     };
     Vehicle {
         condition: Some(Condition {

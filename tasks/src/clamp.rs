@@ -86,6 +86,7 @@ fn begin(links: &Links) -> Gripper {
             grip_memory: GripMemory::Controlled(_),
             force,
             fault,
+            response,
             ..
         }) => {
             let forces = TendonForces {
@@ -93,7 +94,7 @@ fn begin(links: &Links) -> Gripper {
                 found: false,
             };
             links.tendons.send(Instant::now(), TendonOrder::Resumed(forces));
-            Gripper::resume(force, fault)
+            Gripper::resume(force, fault, response)
         }
         _ => Gripper::default(),
     }

@@ -6,23 +6,26 @@
 
 use sophie_control::grip_fault::GripFault;
 use sophie_control::grip_memory::GripMemory;
+use sophie_control::gripper::RESPONSE_RANGE;
 use sophie_control::math;
 use sophie_control::rc::ArmChoice;
 use sophie_control::vector::Vec3;
 use sophie_control::wrench::PerArm;
 
 /// Words of one copy.
-pub const WORDS: usize = 16;
+pub const WORDS: usize = 17;
 /// One copy as it lies in memory.
 pub type Words = [u32; WORDS];
 
 /// Marks a copy ("WARM") and its layout's number.
-const MAGIC: u32 = 0x5741_524D + 2;
+const MAGIC: u32 = 0x5741_524D + 3;
 const FAULT_BITS: u32 = 4;
 /// Beyond any servo's travel, rad.
 const ANGLE_MAX: f32 = 6.5;
 /// Beyond any parameters' limit, N.
 const FORCE_MAX: f32 = 2000.0;
+/// A learnt response is kept as a byte, in hundredths; 0: none.
+const RESPONSE_UNIT: f32 = 100.0;
 /// The estimator's own bound, rad/s.
 const BIAS_MAX: f32 = 0.1;
 
@@ -37,6 +40,8 @@ pub struct RetainedState {
     pub force: PerArm<f32>,
     /// Latched fault of each closed arm.
     pub fault: PerArm<Option<GripFault>>,
+    /// Bending of each closed arm over the parameters', as the closing learnt it, 0.4 to 2.5 in hundredths.
+    pub response: PerArm<Option<f32>>,
     /// Gyro bias, rad/s, within ±0.1; `None` before calibration.
     pub gyro_bias: Option<Vec3>,
 }
@@ -54,6 +59,10 @@ impl RetainedState {
             .fault
             .iter()
             .fold(0, |word, &fault| word << FAULT_BITS | fault_code(fault));
+        let responses = self
+            .response
+            .iter()
+            .fold(0, |word, &response| word << 8 | response_code(response));
         let bias = self.gyro_bias.unwrap_or_default();
         let [angle_1, angle_2, angle_3, angle_4] = self.angle.map(f32::to_bits);
         let [force_1, force_2, force_3, force_4] = self.force.map(f32::to_bits);
@@ -74,6 +83,7 @@ impl RetainedState {
             bias_x,
             bias_y,
             bias_z,
+            responses,
             0,
         ];
         let sum = checksum(&words);
@@ -102,6 +112,7 @@ impl RetainedState {
             bias_x,
             bias_y,
             bias_z,
+            responses,
             sum,
         ] = *words;
         if magic != MAGIC || sum != checksum(words) || state >> 17 != 0 || faults >> (4 * FAULT_BITS) != 0 {
@@ -118,11 +129,16 @@ impl RetainedState {
         for (slot, arm) in fault.iter_mut().rev().zip(0..) {
             *slot = fault_of(faults >> (arm * FAULT_BITS) & ((1 << FAULT_BITS) - 1))?;
         }
+        let mut response = [None; 4];
+        for (slot, code) in response.iter_mut().zip(responses.to_be_bytes()) {
+            *slot = response_of(code)?;
+        }
         let retained = Self {
             grip_memory,
             angle: [angle_1, angle_2, angle_3, angle_4].map(f32::from_bits),
             force: [force_1, force_2, force_3, force_4].map(f32::from_bits),
             fault,
+            response,
             gyro_bias: (state >> 16 & 1 != 0)
                 .then_some(Vec3::from([bias_x, bias_y, bias_z].map(f32::from_bits))),
         };
@@ -152,6 +168,9 @@ impl RetainedState {
         Self {
             angle: self.angle.map(|a| math::clamp(a, 0.0, ANGLE_MAX)),
             force: self.force.map(|f| math::clamp(f, 0.0, FORCE_MAX)),
+            response: self
+                .response
+                .map(|r| response_of(response_code(r) as u8).flatten()),
             gyro_bias: self
                 .gyro_bias
                 .filter(|b| b.is_finite())
@@ -173,6 +192,24 @@ fn arm_choice(code: u32) -> Option<ArmChoice> {
     [ArmChoice::All, ArmChoice::Front, ArmChoice::Rear]
         .into_iter()
         .find(|&arms| arm_code(arms) == code)
+}
+
+/// A response that is no number or out of range is none.
+fn response_code(response: Option<f32>) -> u32 {
+    let (least, most) = RESPONSE_RANGE;
+    response
+        .filter(|r| (least..=most).contains(r))
+        .map_or(0, |r| (r * RESPONSE_UNIT + 0.5) as u32)
+}
+
+/// Outer `None`: out of range.
+fn response_of(code: u8) -> Option<Option<f32>> {
+    if code == 0 {
+        return Some(None);
+    }
+    let (least, most) = RESPONSE_RANGE;
+    let response = f32::from(code) / RESPONSE_UNIT;
+    (least..=most).contains(&response).then_some(Some(response))
 }
 
 /// Only latched faults: others recur by themselves.

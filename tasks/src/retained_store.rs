@@ -55,6 +55,7 @@ impl<R: Retain> RetainedStore<R> {
                 *slot = arm.fault.filter(|f| f.is_latched());
             }
             self.retained.fault = fault;
+            self.retained.response = grip.arms.map(|arm| arm.response);
         }
         if let Some(attitude) = links.attitude.fresh().filter(|a| a.calibrated) {
             // In the part's own axes: the next start may have another mounting.

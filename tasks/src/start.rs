@@ -75,6 +75,7 @@ mod tests {
     use sophie_control::rc::ArmChoice;
 
     use super::*;
+    use crate::retained_state::WORDS;
 
     #[test]
     fn memory_is_trusted_only_where_power_never_went() {
@@ -91,10 +92,10 @@ mod tests {
             (StartCause::Fault, true),
             (StartCause::Software, true),
         ] {
-            let start = Start::new(cause, &[copy, [0; 16]]);
+            let start = Start::new(cause, &[copy, [0; WORDS]]);
             assert_eq!(start.retained, trusted.then_some(retained), "{cause:?}");
             assert_eq!(start.sequence, if trusted { 8 } else { 0 });
-            assert!(Start::new(cause, &[[7; 16]; 2]).retained.is_none());
+            assert!(Start::new(cause, &[[7; WORDS]; 2]).retained.is_none());
             assert!(cause.warning().len() <= 40);
         }
     }

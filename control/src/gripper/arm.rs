@@ -17,6 +17,9 @@ const REGAIN_RATE_MAX: f32 = 30.0;
 const LAG_STUCK: f32 = 8.0;
 /// Time at the force limit before the arm counts as limited, s.
 const LIMITED_AFTER: f32 = 1.0;
+/// Age up to which a learnt response is kept for the next run, s: well beyond a closing. Longer under load a printed arm creeps,
+/// and sun or shade changes it; the free arm of the next closing teaches it again.
+const RESPONSE_AGE: f32 = 60.0;
 /// Time of known pressure and tilt after a restart, s: ten servo frames of 20 ms.
 const RESUME_TIME: f32 = 0.2;
 /// Time without a tilt until a fault, s; the servo is held at once.
@@ -49,6 +52,8 @@ pub struct ArmGripper {
     bend_watch: Option<BendWatch>,
     /// Learnt in this closing.
     pub(super) response: Response,
+    /// Time since it was learnt, s.
+    response_age: f32,
     ceiling_watch: CeilingWatch,
     fault: Option<GripFault>,
     /// Time without a tilt, s.
@@ -62,12 +67,14 @@ pub struct ArmGripper {
 }
 
 impl ArmGripper {
-    /// Resumes a closed arm with the retained `force` (N) and a latched `fault`, which lasts until release.
-    pub fn resume(force: f32, fault: Option<GripFault>) -> Self {
+    /// Resumes a closed arm with the retained `force` (N), a latched `fault`, which lasts until release, and the `response`
+    /// that it had learnt.
+    pub fn resume(force: f32, fault: Option<GripFault>, response: Option<f32>) -> Self {
         Self {
             phase: Phase::Resume(0.0),
             force: math::clamp(force, 0.0, 1e4),
             fault: fault.filter(|f| f.is_latched()),
+            response: Response::resumed(response),
             ..Self::default()
         }
     }
@@ -75,6 +82,7 @@ impl ArmGripper {
     /// One step of `dt` s. The force stays within 0 and the limit for any input.
     pub fn step(&mut self, cfg: &Config, input: &ArmInput, dt: f32) -> ArmGrip {
         let dt = math::clamp(dt, 1e-4, 0.1);
+        self.response_age = math::clamp(self.response_age + dt, 0.0, 1e6);
         let measured = self.filters.step(input, dt);
         if input.close {
             self.close(cfg, &measured, dt);
@@ -108,6 +116,7 @@ impl ArmGripper {
             force: self.force,
             closure: self.hold.closure(),
             fault: self.fault,
+            response: self.response.known().filter(|_| self.response_age < RESPONSE_AGE),
         }
     }
 
@@ -249,6 +258,7 @@ impl ArmGripper {
         // It may lie on the pipe unfelt.
         if !self.response.is_known() {
             self.response = Response::ASSUMED;
+            self.response_age = RESPONSE_AGE;
         }
     }
 
@@ -308,12 +318,16 @@ impl ArmGripper {
         let sample = self.bend_sample(contact);
         let free = self.phase == Phase::Approach;
         let watch = self.bend_watch.get_or_insert(BendWatch::new(&sample));
+        let known = self.response;
         if let Some(before) = watch.step(cfg, sample, &mut self.response, free, dt) {
             self.fault = Some(GripFault::Unfelt);
             self.force = match self.phase {
                 Phase::Grip(pressure_loop) => math::clamp(pressure_loop.mean_force(), FORCE_MIN, self.force),
                 _ => before,
             };
+        }
+        if self.response != known {
+            self.response_age = 0.0;
         }
     }
 }

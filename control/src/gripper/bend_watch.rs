@@ -21,7 +21,7 @@ const TENSION_MIN: f32 = 20.0;
 /// Least share of the free arm's bending: 1 for a free arm, 0.2 to 0.5 on a pipe's skin.
 const BEND_SHARE_MIN: f32 = 0.6;
 /// Response of arms that fly at all, over the parameters'.
-const RESPONSE: (f32, f32) = (0.4, 2.5);
+pub const RESPONSE: (f32, f32) = (0.4, 2.5);
 /// Response of the stiffest arm, below whose [`BEND_SHARE_MIN`] none bends that is free.
 const STIFFEST: f32 = 0.5;
 /// Delay of the watch on an arm that starts under tension, s.
@@ -36,6 +36,17 @@ pub struct Response(Option<f32>);
 impl Response {
     /// As the parameters have it: of an arm that may lie on the pipe already.
     pub const ASSUMED: Self = Self(Some(1.0));
+
+    /// As an earlier run learnt it, 0.4 to 2.5; out of that range, or none, it is unknown.
+    pub fn resumed(learnt: Option<f32>) -> Self {
+        let (least, most) = RESPONSE;
+        Self(learnt.filter(|r| (least..=most).contains(r)))
+    }
+
+    /// `None` until learnt.
+    pub fn known(self) -> Option<f32> {
+        self.0
+    }
 
     /// 1 until learnt.
     pub fn value(self) -> f32 {

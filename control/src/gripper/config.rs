@@ -70,6 +70,14 @@ impl Config {
         self
     }
 
+    /// For an arm that lets go of `force` while the tightest lets go of `most`, N.
+    pub(super) fn releasing(mut self, force: f32, most: f32) -> Self {
+        if most > 0.0 {
+            self.release_rate *= math::clamp(force / most, 0.0, 1.0);
+        }
+        self
+    }
+
     /// Largest force, N.
     pub fn limit(&self) -> f32 {
         self.limit

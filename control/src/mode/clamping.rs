@@ -14,6 +14,8 @@ pub const STOP_TIME: f32 = 0.3;
 const PROOF_TIME: f32 = 3.0;
 /// Time of an arm at its force limit, or faulty, that ends the closing, s.
 pub const HOPELESS_TIME: f32 = 1.0;
+/// The same where the pipe lies across, s: it comes no better, and on a flank the lean grows meanwhile.
+const ACROSS_TIME: f32 = 0.1;
 /// Time beyond `clamp_timeout` for spooling down and proof, s.
 const SPOOL_ALLOWANCE: f32 = 10.0;
 
@@ -56,6 +58,7 @@ impl Clamping {
             return Some(Reason::ClosingCancelled);
         }
         match self.hopeless(step) {
+            Some(why @ Reason::PipeOblique) if self.spool.hopeless >= ACROSS_TIME => Some(why),
             Some(why) if self.spool.hopeless >= HOPELESS_TIME => Some(why),
             _ if context.since >= limit => Some(Reason::GripNotProven),
             _ => None,

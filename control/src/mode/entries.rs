@@ -161,6 +161,7 @@ pub fn armed_on_pipe(from: &State, step: &mut Step<'_>, why: Option<Reason>) -> 
 /// The pilot wants to leave: rotors first.
 pub fn releasing(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Releasing {
     step.context.by_itself = ByItself::default();
+    step.context.lean.sit();
     let grip_memory = from.behaviour().grip_memory();
     Releasing {
         hold: present(step, grip_memory.arms().unwrap_or_default()),
@@ -169,6 +170,13 @@ pub fn releasing(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Releas
         opening: false,
         kept: matches!(grip_memory, GripMemory::HeldByGears(_)),
     }
+}
+
+/// The same after a slip: a slow spool-up would take the belly off the pipe while the arms still close, and it slides on.
+pub fn leaving(from: &State, step: &mut Step<'_>, why: Option<Reason>) -> Escaping {
+    step.context.by_itself = ByItself::default();
+    step.context.lean.sit();
+    giving_up(from, step, why)
 }
 
 /// The closing ends where the arms carry and the rotors may stand: these spool up first, as on a release.

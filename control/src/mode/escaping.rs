@@ -26,6 +26,9 @@ pub const SLIDE_RAMP: f32 = 0.05;
 /// their limit must pay out first.
 const STAND_DELAY: f32 = 0.25;
 const STAND_RAMP: f32 = 0.5;
+/// Where friction holds it, the rise waits for free arms, at most so long, s: one that is bent round the pipe hooks it, and
+/// its rotor turns the body. From 146° an arm is free after 1.2 s.
+const STAND_MAX: f32 = 2.0;
 /// Time after the rise until the vehicle is clear and the sticks steer, s.
 const CLEAR_TIME: f32 = 0.65;
 /// Largest lean away from the pipe, rad: level rotors beside the crown pull the vehicle up along the flank, a lean
@@ -46,7 +49,9 @@ pub struct Escaping {
     roll: f32,
     /// Collective at the start of the slow rise, N; `None` on a slide.
     from: Option<f32>,
-    /// Climb rate since the escape began, m/s.
+    /// Time since the collective began to rise, s.
+    rise: f32,
+    /// Climb rate since then, m/s.
     climb: f32,
     opening: bool,
 }
@@ -59,6 +64,7 @@ impl Escaping {
             grip_memory,
             roll: clamp_abs(lean, AWAY_LEAN),
             from,
+            rise: 0.0,
             climb: 0.0,
             opening: grip_memory == GripMemory::Open,
         }
@@ -72,9 +78,17 @@ impl Escaping {
     /// The arms are free, and there was time to leave. Unless pulled down, the vehicle flies whatever an arm's sensors
     /// read.
     pub fn clear(&self, context: &Context) -> bool {
-        let ramp = self.from.map_or(SLIDE_RAMP, |_| STAND_DELAY + STAND_RAMP);
+        let ramp = self.from.map_or(SLIDE_RAMP, |_| STAND_RAMP);
         let free = self.grip_memory == GripMemory::Open || self.late(context);
-        context.since >= ramp + CLEAR_TIME && free
+        self.rise >= ramp + CLEAR_TIME && free
+    }
+
+    /// The collective rises.
+    fn rises(&self, context: &Context) -> bool {
+        let holds = !context.lean.lifts_off() && context.tightened == 0;
+        let waits = self.grip_memory != GripMemory::Open && holds;
+        let until = if waits { STAND_MAX } else { STAND_DELAY };
+        self.from.is_none() || context.since >= until
     }
 
     fn late(&self, context: &Context) -> bool {
@@ -93,10 +107,14 @@ pub fn takes_over(step: &Step<'_>) -> bool {
 impl Behaviour for Escaping {
     fn observe(&mut self, step: &mut Step<'_>) {
         let context = &step.context;
-        self.climb -= context.sinking * step.dt;
         if context.lean.slides() || context.lean.falls() {
             // Nothing stands there any more that would be worth the wait.
             self.from = None;
+        }
+        // From the stand, and the first step on: a rise that has begun does not end.
+        if self.rise > 0.0 || self.rises(context) {
+            self.rise = clamp(self.rise + step.dt, 0.0, 1e3);
+            self.climb -= context.sinking * step.dt;
         }
         // Below this only the arms keep the vehicle on the pipe.
         self.opening |= context.collective.now() >= release_thrust(&context.params);
@@ -128,7 +146,7 @@ impl Behaviour for Escaping {
         let share = clamp(1.0 + CLIMB_GAIN * (wanted - self.climb), LEAST_SHARE, LIFT_SHARE);
         let goal = share * context.support.weight();
         let thrust = self.from.map_or(goal, |from| {
-            let risen = clamp((context.since - STAND_DELAY) / STAND_RAMP, 0.0, 1.0);
+            let risen = clamp(self.rise / STAND_RAMP, 0.0, 1.0);
             from + (goal - from) * risen
         });
         let steer = inputs.sticks.filter(|_| clear).unwrap_or_default();

@@ -96,6 +96,7 @@ guards! {
     };
     SLIDES = "slides", |_, s| s.context.lean.slides();
     CREEPS = "leans more and more", |_, s| s.context.lean.creeps();
+    TWISTS = "turns on its pads", |_, s| s.context.lean.twists();
     NOT_RESTING = "nothing carries", |_, s| !s.context.support.resting();
     RESTED = "rested long enough", |_, s| s.context.since >= CONTACT_TIME && s.context.support.resting();
 
@@ -120,6 +121,8 @@ guards! {
     RELEASE_ASKED = "perch switch off again, throttle set", |_, s| Perched::release_asked(s);
     UPRIGHT = "attitude known, lean small", |_, s| s.inputs.motion.is_some() && !s.context.lean.too_far_to_release();
 
+    SLIPPED = "arms were tightened", |_, s| s.context.tightened > 0;
+    GIVES_WAY = "leans more than at the start", |_, s| s.context.lean.gives_way();
     ARMS_FREE = "arms free long enough", |state, _| releasing(state, |r| r.free >= FREE_TIME);
     FALLS = "arms opening and nothing carries", |state, s| releasing(state, |r| r.opening && s.context.lean.falls());
     HELD_BY_GEARS = "gears alone hold", |state, _| releasing(state, |r| r.kept && !r.opening);

@@ -239,7 +239,8 @@ params! {
     /// Friction of the belly pads on the pipe: 0.3 of wet or oily steel, 0.6 of rubber on dry paint (assumed). It sets the
     /// leans up to which the arms close and let go; a lean that grows ends a closing at any friction.
     pipe_friction = 0.6, "1", 0.1 ..= 1.5;
-    /// Diameter of the pipe (paper); the leans above change by 1.5 degrees from 0.2 to 0.4 m.
+    /// Diameter of the pipe (paper). A grip is proven on pipes of 0.6 to 1.5 times this; on its own the vehicle looks for one of
+    /// 0.7 to 1.35 times; the leans above change by 1.5 degrees from 0.2 to 0.4 m.
     pipe_diameter = 0.3, "m", 0.1 ..= 2.0;
 
     /// Contact pressure of a proven grip (paper).

@@ -465,6 +465,7 @@ fn told_grip(text: &str) -> Option<(usize, ArmGrip)> {
         force: force.parse().ok()?,
         closure: Some(closure.parse().ok()?),
         fault: None,
+        response: None,
     };
     Some((arm, grip))
 }

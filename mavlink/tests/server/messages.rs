@@ -245,6 +245,7 @@ fn arms_have_si_units_and_nan_where_nothing_is_known() {
         force: 42.0,
         closure: Some(2.61),
         fault: None,
+        response: None,
     };
     grip.proven = true;
     v.grip = Some(grip);

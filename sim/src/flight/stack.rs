@@ -13,6 +13,7 @@ use sophie_drivers::rc_decoder::Decoder;
 use sophie_mixers::{Mixer, Variant};
 use sophie_tasks::deadline::TaskId;
 use sophie_tasks::links::{GripState, Links, Newest, Stamped, Status};
+use sophie_tasks::retained_state::Words;
 use sophie_tasks::start::{Start, StartCause};
 
 use super::aircraft::{Aircraft, Belief, Reset, Said};
@@ -293,8 +294,7 @@ impl Aircraft for Stack {
             below.reset();
         }
         if cause.loses_memory() {
-            let noise: [[u32; 16]; 2] =
-                core::array::from_fn(|_| core::array::from_fn(|_| self.noise.random()));
+            let noise: [Words; 2] = core::array::from_fn(|_| core::array::from_fn(|_| self.noise.random()));
             self.board.memory.set(noise);
         }
         let start = Start::new(cause, &self.board.memory.get());

@@ -15,6 +15,7 @@ fn held() -> RetainedState {
             Some(GripFault::Ceiling),
             Some(GripFault::Unfelt),
         ],
+        response: [None, Some(0.4), Some(1.37), Some(2.5)],
         gyro_bias: Some(Vec3::new(0.01, -0.02, 0.03)),
     }
 }
@@ -47,8 +48,8 @@ fn what_is_kept_comes_back() {
 
 #[test]
 fn the_checksum_is_the_standard_one() {
-    // CRC-32 of fifteen zero words, by zlib: crc32(bytes(60)).
-    assert_eq!(checksum(&[0; WORDS]), 0x0412_8908);
+    // CRC-32 of sixteen zero words, by zlib: crc32(bytes(64)).
+    assert_eq!(checksum(&[0; WORDS]), 0x758D_6336);
 }
 
 #[test]
@@ -166,6 +167,8 @@ fn what_is_no_number_or_out_of_range_is_neither_kept_nor_used() {
         (2, 0x0302),
         (3, 4),
         (3, 0x10000),
+        (15, 39),
+        (15, 251 << 24),
     ] {
         let mut forged = words(held(), 3);
         forged[word] = value;
@@ -174,6 +177,27 @@ fn what_is_no_number_or_out_of_range_is_neither_kept_nor_used() {
     }
     for retained in bad.into_iter().take(8) {
         assert!(retained.bounded().to_words(1).is_some(), "{retained:?}");
+    }
+}
+
+#[test]
+fn a_response_that_no_arm_has_is_kept_as_none() {
+    for (response, kept) in [
+        (Some(f32::NAN), None),
+        (Some(0.39), None),
+        (Some(2.6), None),
+        (Some(1.234), Some(1.23)),
+        (None, None),
+    ] {
+        let retained = RetainedState {
+            response: [response; 4],
+            ..held()
+        };
+        let back = retained
+            .bounded()
+            .to_words(1)
+            .and_then(|w| RetainedState::from_words(&w));
+        assert_eq!(back.map(|(r, _)| r.response), Some([kept; 4]), "{response:?}");
     }
 }
 
@@ -195,7 +219,7 @@ impl RetainedState {
 
 proptest! {
     #[test]
-    fn noise_is_nothing(noise in prop::array::uniform16(any::<u32>()), marked: bool) {
+    fn noise_is_nothing(noise in prop::array::uniform17(any::<u32>()), marked: bool) {
         let mut words = noise;
         if marked {
             words[0] = MAGIC;

@@ -65,6 +65,32 @@ fn every_chosen_arm_must_hold_and_every_arm_be_free() {
     assert!(out.released && !out.proven);
 }
 
+/// One that holds longer than the others turns the body.
+#[test]
+fn tendons_go_slack_together_however_tight_each_was() {
+    let cfg = config();
+    let mut gripper = Gripper::default();
+    let tight = [22.0, 33.0, 31.0, 107.0];
+    for (arm, force) in gripper.arms.iter_mut().zip(tight) {
+        *arm = ArmGripper::resume(force, None, None);
+    }
+    let mut time = 0.0;
+    while gripper.arms.iter().any(|arm| arm.force > 0.5) {
+        let inputs = gripper.arms.map(|arm| released(input(&cfg, &arm, 300.0)));
+        gripper.step(&cfg, &inputs, DT);
+        time += DT;
+        let share = gripper.arms[3].force / tight[3];
+        for (arm, force) in gripper.arms.iter().zip(tight) {
+            assert!(
+                close(arm.force, share * force, 0.01),
+                "{time}: {share} {}",
+                arm.force
+            );
+        }
+    }
+    assert!(close(time, 107.0 / 240.0, 0.03), "{time}");
+}
+
 #[test]
 fn arms_round_no_pipe_are_no_proof_until_they_lie_round_one() {
     let cfg = config();

@@ -42,7 +42,7 @@ fn a_touch_takes_the_tendon_s_own_force_over_without_a_kick() {
 fn a_resumed_grip_goes_on_from_its_force_without_a_kick() {
     let cfg = config();
     let before = holding(&cfg).force;
-    let mut arm = ArmGripper::resume(before, None);
+    let mut arm = ArmGripper::resume(before, None, None);
     // The tilt precedes the drive's tension, 4 N more by the new attitude.
     let has = before + 4.0;
     for (pressure, tension, tilt, seconds, force, stays) in [
@@ -73,7 +73,7 @@ fn a_resumed_grip_goes_on_from_its_force_without_a_kick() {
 #[test]
 fn a_resumed_arm_that_does_not_touch_goes_on_closing() {
     let cfg = config();
-    let mut arm = ArmGripper::resume(30.0, None);
+    let mut arm = ArmGripper::resume(30.0, None, None);
     let grip = run(&mut arm, &cfg, 0.0, 0.5);
     assert!(close(grip.force, 30.0 + 0.3 * 28.95, 1.0) && grip.state == ArmState::Closing);
     for _ in 0..100 {
@@ -92,7 +92,7 @@ fn restart_after_restart_leaves_the_force_where_it_is() {
         ..ArmInput::default()
     };
     for _ in 0..200 {
-        let mut arm = ArmGripper::resume(force, None);
+        let mut arm = ArmGripper::resume(force, None, None);
         // 70 ms each, the first two steps without pressure.
         arm.step(&cfg, &unknown, DT);
         arm.step(&cfg, &unknown, DT);

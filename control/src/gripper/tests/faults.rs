@@ -6,11 +6,11 @@ use super::*;
 fn a_fault_that_stays_until_release_outlives_a_restart() {
     let cfg = config();
     for fault in [GripFault::Sensor, GripFault::Unfelt, GripFault::Ceiling] {
-        let mut arm = ArmGripper::resume(50.0, Some(fault));
+        let mut arm = ArmGripper::resume(50.0, Some(fault), None);
         let grip = run(&mut arm, &cfg, 0.0, 3.0);
         assert!(grip.force == 50.0 && grip.fault == Some(fault), "{grip:?}");
     }
-    let mut arm = ArmGripper::resume(50.0, Some(GripFault::Tilt));
+    let mut arm = ArmGripper::resume(50.0, Some(GripFault::Tilt), None);
     assert!(run(&mut arm, &cfg, 950.0, 0.1).fault.is_none());
 }
 

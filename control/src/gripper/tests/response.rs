@@ -147,6 +147,45 @@ fn what_was_learnt_is_forgotten_with_the_arm_let_go_and_kept_while_it_is_not() {
 }
 
 #[test]
+fn what_was_learnt_is_used_again_after_a_restart_unless_it_is_old() {
+    let cfg = config();
+    let closes = |arm: &mut ArmGripper, steps: u32| {
+        let mut grip = ArmGrip::default();
+        for _ in 0..steps {
+            let i = ArmInput {
+                tilt: Some(REST - 1.6 * cfg.bend_per_force * arm.force),
+                ..input(&cfg, arm, 0.0)
+            };
+            grip = arm.step(&cfg, &i, DT);
+        }
+        grip
+    };
+    let mut arm = ArmGripper::default();
+    assert_eq!(closes(&mut arm, 5).response, None);
+    let grip = closes(&mut arm, 115);
+    assert!(grip.response.is_some_and(|r| close(r, 1.6, 0.1)), "{grip:?}");
+    let rate = |response| {
+        let mut arm = ArmGripper::resume(grip.force, None, response);
+        closes(&mut arm, 25);
+        let before = arm.force;
+        (closes(&mut arm, 10).force - before, arm.response.value())
+    };
+    let (again, response) = rate(grip.response);
+    let (assumed, _) = rate(None);
+    assert!(
+        close(response, 1.6, 0.1) && close(assumed / again, 1.6, 0.1),
+        "{assumed} {again}"
+    );
+    // What was assumed is not handed on as learnt, nor what is out of range.
+    let mut arm = ArmGripper::resume(grip.force, None, Some(f32::NAN));
+    assert_eq!(closes(&mut arm, 22).response, None);
+    // A minute in the grip.
+    let mut arm = holding(&cfg);
+    assert!(run(&mut arm, &cfg, 950.0, 50.0).response.is_some());
+    assert!(run(&mut arm, &cfg, 950.0, 12.0).response.is_none() && arm.response.is_known());
+}
+
+#[test]
 fn no_reading_makes_a_response_beyond_its_bounds() {
     let cfg = config();
     for wild in [-3.0f32, -0.9, 0.9, 3.0, f32::NAN, f32::INFINITY] {
