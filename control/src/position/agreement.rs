@@ -22,12 +22,15 @@ pub struct Agreement {
 
 impl Agreement {
     /// Takes a measurement and its prediction, `dt` s after the last; `noise` is the measurement's deviation in the same
-    /// unit. True while it does not follow.
-    pub fn step(&mut self, measured: f32, predicted: f32, noise: f32, dt: f32) -> bool {
+    /// unit. One whose prediction is not `sure` says nothing. True while it does not follow.
+    pub fn step(&mut self, measured: f32, predicted: f32, noise: f32, sure: bool, dt: f32) -> bool {
         let [slow_m, slow_p] = &mut self.slow;
         let share = CUTOFF * dt / (1.0 + CUTOFF * dt);
         *slow_m += (measured - *slow_m) * share;
         *slow_p += (predicted - *slow_p) * share;
+        if !sure {
+            return self.wrong;
+        }
         let (m, p) = (measured - *slow_m, predicted - *slow_p);
         let [both, square] = &mut self.sums;
         let keep = 1.0 - dt / (dt + WINDOW);

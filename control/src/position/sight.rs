@@ -43,6 +43,12 @@ const FROZEN_FLOWS: u32 = 12;
 const FROZEN_MIN: f32 = 0.1;
 /// Least cosine of a tilt at which flow and range say something: 40°.
 const COS_MIN: f32 = 0.77;
+/// Way, m, and time, µs, since what is narrow was met below, after which it is elsewhere: a pipe has ends.
+const LEFT_BEHIND: (f32, u64) = (2.0, 20_000_000);
+/// Range below which flow is not judged, m: there the noise of the estimated velocity is as much as a slow turn.
+const JUDGED: f32 = 0.45;
+/// Time after a step of the range for which it is not, µs: three of the time constants of what is slow.
+const UNSURE_TIME: u64 = 600_000;
 
 /// What is wrong with flow or range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -151,12 +157,15 @@ pub struct Sight {
     stepped_at: Vec3,
     /// The height of what is narrow below is not known yet: its flank was seen alone.
     flank: bool,
-    /// What is narrow, where its edge was seen.
+    /// What is narrow, where its edge was seen; when it was met below last, µs, and where.
     pub(super) band: Option<Band>,
+    met: (u64, Vec3),
     same_ranges: u32,
     same_flows: u32,
     angle: [f32; 2],
     agreements: [Agreement; 2],
+    /// When the depth was unsure last, µs.
+    unsure_us: u64,
     disagrees: bool,
 }
 
@@ -251,6 +260,15 @@ impl Sight {
         let off = self.level - surface;
         let raised = self.raised();
         let below = Band::below(foot, then.yaw() + turn, self.radius, self.level);
+        if raised {
+            self.met = (then.at_us, foot);
+        } else {
+            let (met_us, met) = self.met;
+            let (way, time) = (foot - met, then.at_us.saturating_sub(met_us));
+            let level = Vec3::new(way.x, way.y, 0.0).norm();
+            let behind = level > LEFT_BEHIND.0 || time > LEFT_BEHIND.1;
+            self.band = self.band.filter(|_| !behind);
+        }
         let flank = raised && off < 0.0 && below.is_flank(-off);
         if off.abs() <= STEP || flank {
             (self.agreed, self.foot) = (0, foot);
@@ -379,9 +397,14 @@ impl Sight {
         let predicted = [turned[0] - way.y / depth, turned[1] + way.x / depth];
         let per = 1.0 / flow.seconds;
         let pairs = self.agreements.iter_mut().zip(angle).zip(predicted);
+        if self.agreed > 0 || self.flank || distance < JUDGED {
+            self.unsure_us = flow.until_us;
+        }
+        let sure = flow.until_us.saturating_sub(self.unsure_us) > UNSURE_TIME;
         let mut disagrees = false;
         for ((agreement, measured), predicted) in pairs {
-            disagrees |= agreement.step(measured * per, predicted * per, FLOW_NOISE * per, flow.seconds);
+            let (measured, predicted) = (measured * per, predicted * per);
+            disagrees |= agreement.step(measured, predicted, FLOW_NOISE * per, sure, flow.seconds);
         }
         self.disagrees = disagrees;
         if disagrees || self.same_flows >= FROZEN_FLOWS {

@@ -169,6 +169,48 @@ fn the_ground_is_what_the_beam_falls_back_to() {
     }
 }
 
+/// Along its own line beyond its end, and a while later, nothing narrow is in the view.
+#[test]
+fn a_pipe_is_left_behind_by_way_and_by_time() {
+    for (way, seconds) in [(2.5, 1), (0.0, 25)] {
+        let mut sight = Sight::new(0.3);
+        let at = |us: u64, x: f32, y: f32| Moment {
+            at_us: us,
+            position: Vec3::new(x, y, -1.9),
+            q: Quat::IDENTITY,
+            ..Moment::default()
+        };
+        let look = |sight: &mut Sight, us: u64, (x, y): (f32, f32), distance: f32| {
+            for _ in 0..5 {
+                let _ = sight.height((&at(us, x, y - 0.02), &at(us, x, y)), distance, false, 0.0);
+            }
+        };
+        look(&mut sight, 0, (0.0, 0.5), 1.9);
+        look(&mut sight, 0, (0.0, 0.8), 0.4);
+        look(&mut sight, 0, (0.0, 1.1), 1.9);
+        let depth = |sight: &Sight, x: f32| sight.depth(&at(0, x, 1.1), 1.0, 0.0).distance / 1.049;
+        assert!(depth(&sight, 0.0) < 1.7, "beside it: {}", depth(&sight, 0.0));
+        look(&mut sight, seconds * 1_000_000, (way, 1.1), 1.9);
+        assert!(
+            (depth(&sight, way) - 1.9).abs() < 0.01,
+            "{way} {seconds}: {}",
+            depth(&sight, way)
+        );
+    }
+}
+
+/// Where the range has just stepped, or is near, a flow that does not fit is not the flow's fault.
+#[test]
+fn an_agreement_says_nothing_while_its_prediction_is_unsure() {
+    let mut agreement = agreement::Agreement::default();
+    let turns = |i: u32| (0.4 * i as f32).sin();
+    for i in 0..500 {
+        assert!(!agreement.step(0.1 * turns(i), turns(i), 0.12, false, 0.02));
+    }
+    let named = (0..500).any(|i| agreement.step(0.1 * turns(i), turns(i), 0.12, true, 0.02));
+    assert!(named);
+}
+
 /// A beam that leans by 5° in a cross wind meets the ground 17 cm beside the vehicle and the pipe 3 cm.
 #[test]
 fn a_leaning_beam_finds_the_edges_where_they_are() {
