@@ -140,7 +140,8 @@ pub fn run(print: &mut dyn FnMut(Arguments<'_>), overhead: u32) {
                 continue;
             }
             // Without an estimate, or with what it gets left out, another law would be counted.
-            let found = estimator.out.filter(|e| e.fault.is_none() && e.age < 0.1);
+            let sound = estimator.law.fault().is_none();
+            let found = estimator.out.filter(|e| sound && e.age < 0.1);
             let Some(found) = found else {
                 panic!("{name}: no estimate in step {step}");
             };
