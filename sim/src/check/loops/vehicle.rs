@@ -1,4 +1,8 @@
 //! The hovering vehicle's response to a moment of one step, through allocation, thrust curve and plant.
+//!
+//! The loop about one axis is open, the two others stay closed as in flight: left to themselves arms that differ would turn
+//! the vehicle about yaw within seconds, and a turning body precesses at a few tenths of a hertz, which it never does in
+//! flight.
 
 use glam::DVec3;
 use sophie_control::chain::{
@@ -46,8 +50,11 @@ const PLACE: DVec3 = DVec3::new(0.0, 0.0, -1000.0);
 #[derive(Clone)]
 pub struct Hovering {
     plant: Plant,
+    control: Control,
     mixing: Mixing<Mixer>,
+    mix: MixOutput,
     params: Params,
+    /// Of the settled hover.
     wrench: Wrench,
     /// Scale of the impulses for which the rotors have room.
     push: f64,
@@ -74,7 +81,9 @@ impl Hovering {
         let thrust = (v.body.mass * GRAVITY).min(HOVER_SHARE * 4.0 * v.rotor.thrust_max);
         let mut hovering = Self {
             plant,
+            control: gentle(&scenario.params),
             mixing: Mixing::new(&scenario.params, mixer),
+            mix: MixOutput::default(),
             params: scenario.params,
             wrench: Wrench {
                 thrust: thrust as f32,
@@ -92,16 +101,29 @@ impl Hovering {
     }
 
     fn settle(&mut self) {
-        let p = &self.params;
-        let [attitude_p, rate_p, attitude_yaw_p, rate_yaw_p] = GENTLE;
-        let mut control = Control::new(&Params {
-            attitude_p: attitude_p.min(p.attitude_p),
-            rate_p: rate_p.min(p.rate_p),
-            attitude_yaw_p: attitude_yaw_p.min(p.attitude_yaw_p),
-            rate_yaw_p: rate_yaw_p.min(p.rate_yaw_p),
-            rate_d: 0.0,
-            ..*p
-        });
+        for step in 0..TRIM_STEPS {
+            if step.is_multiple_of(ARM_STEPS) {
+                let tilt = self.plant.tilt();
+                for (arm, tilt) in tilt.into_iter().enumerate() {
+                    self.mixing.allocation.tilt_mut().correct(arm, tilt as f32);
+                }
+            }
+            self.wrench = self.held();
+            self.step(self.wrench);
+        }
+    }
+
+    /// What the gentle loops ask for.
+    fn held(&mut self) -> Wrench {
+        let pose = self.plant.pose();
+        let [x, y, z, w] = pose.attitude.to_array().map(|q| q as f32);
+        let attitude = Attitude {
+            q: Quat { w, x, y, z },
+            rate: Vec3::from(pose.omega.as_vec3().to_array()),
+            calibrated: true,
+            dt: DT as f32,
+            ..Attitude::default()
+        };
         let command = Command {
             setpoint: Setpoint::Angle {
                 roll: 0.0,
@@ -111,40 +133,33 @@ impl Hovering {
             },
             at_us: 1,
         };
-        let mut mix = MixOutput::default();
-        for step in 0..TRIM_STEPS {
-            let pose = self.plant.pose();
-            let [x, y, z, w] = pose.attitude.to_array().map(|q| q as f32);
-            let attitude = Attitude {
-                q: Quat { w, x, y, z },
-                rate: Vec3::from(pose.omega.as_vec3().to_array()),
-                calibrated: true,
-                dt: DT as f32,
-                ..Attitude::default()
-            };
-            if let Demand::Wrench(wrench) = control.step(&attitude, &command, &mix.feedback()) {
-                self.wrench = wrench;
-            }
-            if step.is_multiple_of(ARM_STEPS) {
-                let tilt = self.plant.tilt();
-                for (arm, tilt) in tilt.into_iter().enumerate() {
-                    self.mixing.allocation.tilt_mut().correct(arm, tilt as f32);
-                }
-            }
-            self.step(self.wrench, &mut mix);
+        match self.control.step(&attitude, &command, &self.mix.feedback()) {
+            Demand::Wrench(wrench) => wrench,
+            _ => self.wrench,
         }
     }
 
-    fn step(&mut self, wrench: Wrench, mix: &mut MixOutput) {
+    /// A step with `moment` (N m) beside the settled one about `axis`, and the others held.
+    fn pushed(&mut self, axis: usize, moment: f32) {
+        let (settled, mut wrench) = (self.wrench, self.held());
+        match axis {
+            0 => wrench.roll = settled.roll + moment,
+            1 => wrench.pitch = settled.pitch + moment,
+            _ => wrench.yaw = settled.yaw + moment,
+        }
+        self.step(wrench);
+    }
+
+    fn step(&mut self, wrench: Wrench) {
         self.at_us += 1000;
         let surroundings = Surroundings {
             battery_ratio: Some(self.plant.battery_voltage() as f32 / self.params.battery_nominal),
             arms: None,
         };
         self.mixing
-            .step(self.at_us, &Demand::Wrench(wrench), &surroundings, mix);
+            .step(self.at_us, &Demand::Wrench(wrench), &surroundings, &mut self.mix);
         let actuators = Actuators {
-            motors: mix.commands.map(f64::from),
+            motors: self.mix.commands.map(f64::from),
             ..Actuators::default()
         };
         for _ in 0..PLANT_STEPS {
@@ -160,13 +175,12 @@ impl Hovering {
     pub fn response(&self, axis: usize) -> Response {
         let push = PUSH[axis] * self.push;
         let (mut there, mut back) = (self.clone(), self.clone());
-        let (mut mix_there, mut mix_back) = (MixOutput::default(), MixOutput::default());
         let (mut answer, mut largest, mut quiet) = (Vec::new(), 0.0_f64, 0);
         let mut last = 0.0;
         while answer.len() < LONGEST && quiet < QUIET {
             let now = if answer.is_empty() { push as f32 } else { 0.0 };
-            there.step(pushed(self.wrench, axis, now), &mut mix_there);
-            back.step(pushed(self.wrench, axis, -now), &mut mix_back);
+            there.pushed(axis, now);
+            back.pushed(axis, -now);
             let difference = there.plant.pose().omega[axis] - back.plant.pose().omega[axis];
             let rate = 0.5 * difference / push;
             let change = (rate - last).abs();
@@ -179,12 +193,15 @@ impl Hovering {
     }
 }
 
-fn pushed(wrench: Wrench, axis: usize, moment: f32) -> Wrench {
-    let mut pushed = wrench;
-    match axis {
-        0 => pushed.roll += moment,
-        1 => pushed.pitch += moment,
-        _ => pushed.yaw += moment,
-    }
-    pushed
+/// Loops of [`GENTLE`] gains.
+fn gentle(p: &Params) -> Control {
+    let [attitude_p, rate_p, attitude_yaw_p, rate_yaw_p] = GENTLE;
+    Control::new(&Params {
+        attitude_p: attitude_p.min(p.attitude_p),
+        rate_p: rate_p.min(p.rate_p),
+        attitude_yaw_p: attitude_yaw_p.min(p.attitude_yaw_p),
+        rate_yaw_p: rate_yaw_p.min(p.rate_yaw_p),
+        rate_d: 0.0,
+        ..*p
+    })
 }
