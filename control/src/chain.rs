@@ -10,7 +10,7 @@ pub(crate) mod mixing;
 mod sensing;
 mod step_clock;
 
-pub use control::{Command, Control};
+pub use control::{Command, Control, RESTING_ROLL_GAIN};
 pub use messages::{Attitude, Demand, ImuReading, ImuSample, MixOutput, lift};
 pub use mixing::{ArmReading, Mixing, Surroundings};
 pub use sensing::Sensing;

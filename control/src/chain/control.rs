@@ -16,7 +16,7 @@ use crate::wrench::Wrench;
 /// Largest share of a rotor's thrust for roll and for pitch on the pipe.
 const RESTING_SHARES: [f32; 2] = [0.6, 0.4];
 /// Roll moment on the pipe over that in the air: about the pipe's axis the vehicle has four times its own inertia.
-const RESTING_ROLL_GAIN: f32 = 2.0;
+pub const RESTING_ROLL_GAIN: f32 = 2.0;
 
 /// A setpoint and its time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

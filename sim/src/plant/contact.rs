@@ -144,7 +144,7 @@ impl Surface {
 pub struct Pad {
     /// Along the normal, N/m.
     pub stiffness: f64,
-    /// Along the normal, N·s/m; full from 1 mm of depth: no step at the touch.
+    /// Along the normal, N·s/m; full from [`FULL_DAMPING_DEPTH`].
     pub damping: f64,
     /// Along the surface, N/m.
     pub bristle: f64,
@@ -152,8 +152,11 @@ pub struct Pad {
     pub bristle_damping: f64,
 }
 
+/// Depth from which a contact damps in full, m: no step at the touch.
+pub const FULL_DAMPING_DEPTH: f64 = 1e-3;
+
 /// A quarter of the vehicle per belly pad: 15 Hz, damping ratio 0.5.
-const BELLY: Pad = Pad {
+pub const BELLY: Pad = Pad {
     stiffness: 4.0e3,
     damping: 42.0,
     bristle: 4.0e3,
@@ -209,7 +212,7 @@ impl ContactPoint {
             return Touch::default();
         };
         let along = velocity.dot(n);
-        let damping = pad.damping * (depth / 1e-3).min(1.0);
+        let damping = pad.damping * (depth / FULL_DAMPING_DEPTH).min(1.0);
         let normal = (pad.stiffness * depth - damping * along).max(0.0);
 
         let slip = velocity - n * along;
@@ -265,7 +268,7 @@ pub struct Belly {
 
 impl Belly {
     /// Body positions, m.
-    const PADS: [DVec3; 4] = [
+    pub const PADS: [DVec3; 4] = [
         DVec3::new(0.10, -0.03, BELLY_Z),
         DVec3::new(-0.10, -0.03, BELLY_Z),
         DVec3::new(0.10, 0.03, BELLY_Z),

@@ -7,11 +7,13 @@
 mod laws;
 mod margins;
 mod response;
+mod resting;
 mod vehicle;
 
 pub use laws::Laws;
 pub use margins::Margins;
 pub use response::{Complex, Response};
+pub use resting::{Place, resting_margins, slide};
 pub use vehicle::{AXES, Hovering};
 
 use sophie_control::chain::CONTROL_RATE_HZ;

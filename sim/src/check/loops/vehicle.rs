@@ -65,6 +65,12 @@ impl Hovering {
     /// Held level with gentle gains until arms and rotors have settled.
     #[must_use]
     pub fn of(scenario: &Scenario) -> Self {
+        Self::carrying(scenario, 1.0)
+    }
+
+    /// The same with rotors that carry the `share` of the weight, above 0, as beside a pipe.
+    #[must_use]
+    pub fn carrying(scenario: &Scenario, share: f64) -> Self {
         let calm = Scenario {
             world: World {
                 gust_force: 0.0,
@@ -78,7 +84,7 @@ impl Hovering {
         let mut plant = Plant::new(&calm);
         plant.place(PLACE, DVec3::ZERO);
         let mixer = Mixer::new(scenario.mixer, v.configuration, &scenario.params);
-        let thrust = (v.body.mass * GRAVITY).min(HOVER_SHARE * 4.0 * v.rotor.thrust_max);
+        let thrust = (share * v.body.mass * GRAVITY).min(HOVER_SHARE * 4.0 * v.rotor.thrust_max);
         let mut hovering = Self {
             plant,
             control: gentle(&scenario.params),

@@ -1,6 +1,6 @@
-//! Yaw at equal margins (docs/results.md): disk margins of each allocation over the yaw gain and over arms that are not what
+//! Margins (docs/results.md): of the roll loop on the pipe, and of yaw at equal margins: disk margins of each allocation over the yaw gain and over arms that are not what
 //! the stack takes them for, and how tightly each holds its heading at the gain that its worst arms allow
-//! (`cargo run --release -p sophie-sim --example yaw`).
+//! (`cargo run --release -p sophie-sim --example margins`).
 
 #![allow(clippy::print_stdout, reason = "the table is what it is for")]
 
@@ -8,7 +8,9 @@ use std::f64::consts::TAU;
 
 use sophie_control::params::Params;
 use sophie_control::wrench::Configuration::{self, A, B};
-use sophie_sim::check::loops::{Hovering, Laws, Margins, Response, margins, margins_of};
+use sophie_sim::check::loops::{
+    Hovering, Laws, Margins, Place, Response, margins, margins_of, resting_margins, slide,
+};
 use sophie_sim::flight_level::{Rig, level, vehicle};
 use sophie_sim::mixers::Variant::{self, Flexible, Rigid};
 use sophie_sim::parallel;
@@ -138,13 +140,45 @@ fn springy() {
     println!();
 }
 
+/// The roll loop's margins while the vehicle comes to rest on a pipe, and how fast a slide grows.
+fn resting(draws: &[u64]) {
+    println!("| where | weight on the rotors | gain, phase, disk | worst arms: gain, disk |");
+    println!("|---|---|---|---|");
+    let nominal = Scenario::default_mission();
+    for place in [Place::Air, Place::Standing] {
+        for share in [1.0, 0.9, 0.6, 0.375] {
+            let all = parallel::each(draws, |draw| {
+                resting_margins(&drawn(&nominal, *draw), place, share)
+            });
+            let least = |of: fn(&Margins) -> f64| all.iter().map(of).fold(f64::INFINITY, f64::min);
+            println!(
+                "| {place:?} | {share} | {:.1}, {:.0}°, {:.2} | {:.1}, {:.2} |",
+                all[0].gain,
+                all[0].phase.to_degrees(),
+                all[0].disk,
+                least(|m| m.gain),
+                least(|m| m.disk),
+            );
+        }
+    }
+    println!();
+    for diameter in [0.2, 0.3, 0.4] {
+        let (with, without) = slide(&nominal, diameter);
+        println!(
+            "a slide without friction on {diameter} m grows at {with:.1} 1/s, without the loop at {without:.1} 1/s"
+        );
+    }
+    println!();
+}
+
 fn main() {
+    let draws: Vec<u64> = (0..=ARMS).collect();
+    resting(&draws);
     springy();
     println!(
         "| configuration | K | mixer | yaw gain 1/s | gain margin | phase margin | disk margin | worst arms | crossover Hz | least there, Hz |"
     );
     println!("|---|---|---|---|---|---|---|---|---|---|");
-    let draws: Vec<u64> = (0..=ARMS).collect();
     for (configuration, gain_k) in [(B, 7.75), (B, 1.0), (A, 1.0)] {
         for mixer in [Flexible, Rigid] {
             compare(configuration, gain_k, mixer, &draws);
