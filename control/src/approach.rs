@@ -200,6 +200,11 @@ impl Approach {
         matches!(self.phase, Phase::Descend | Phase::Commit)
     }
 
+    /// It is on its way up.
+    pub fn climbs(&self) -> bool {
+        self.phase == Phase::Climb
+    }
+
     /// It has climbed off the pipe.
     pub fn has_left(&self) -> bool {
         self.left

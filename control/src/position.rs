@@ -13,6 +13,8 @@ mod fit_tests;
 mod past;
 mod sight;
 #[cfg(test)]
+mod sight_fuzz;
+#[cfg(test)]
 mod sight_tests;
 #[cfg(test)]
 mod tests;
@@ -275,8 +277,9 @@ impl PositionEstimator {
             ..here
         });
         track.left_out |= left_out;
-        if self.trust.fault() == Some(PoseFault::Disagrees) {
+        if self.trust.fault() == Some(PoseFault::Disagrees) && !track.tainted {
             track.taint();
+            track.tainted = true;
         }
         if let Some(fix) = new {
             track.take(&mut self.past, &mut self.trust, fix);
@@ -291,6 +294,11 @@ impl PositionEstimator {
         if let Some(flow) = flow {
             track.take_flow(&mut self.past, &mut self.sight, &flow, posed);
         }
+        let misled = self.sight.flow_disagrees() && !posed;
+        if misled && !track.misled {
+            track.taint();
+        }
+        track.misled = misled;
         track.estimate()
     }
 }
@@ -310,8 +318,10 @@ struct Track {
     fixes: u32,
     /// Poses were left out since the last one that was taken.
     left_out: bool,
-    /// What was estimated from them since they began to disagree was given up.
+    /// What was estimated from poses since they began to disagree was given up.
     tainted: bool,
+    /// The same by the flow.
+    misled: bool,
     /// There was a pose, the newest one that was taken at this time, µs: the axes are its sender's.
     posed: bool,
     pose_us: u64,
@@ -338,6 +348,7 @@ impl Track {
             fixes: 1,
             left_out: false,
             tainted: false,
+            misled: false,
             posed: true,
             pose_us: fix.at_us,
             flows_refused: 0,
@@ -426,13 +437,9 @@ impl Track {
         (self.posed, self.pose_us) = (true, fix.at_us);
     }
 
-    /// The poses have gone another way than the vehicle for a while: velocity and bias follow them no longer. No one coasts
-    /// on with these, and the wind is what is felt.
+    /// Poses, or the flow, have gone another way than the vehicle for a while: velocity and bias follow them no longer. No one
+    /// coasts on with these, and the wind is what is felt.
     fn taint(&mut self) {
-        if self.tainted {
-            return;
-        }
-        self.tainted = true;
         self.fixed_us = self.fixed_us.min(self.at_us.saturating_sub(TAINTED_AGE));
         for axis in &mut self.axes {
             axis.set_speed(axis.velocity());

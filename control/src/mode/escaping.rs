@@ -6,8 +6,10 @@
 
 use super::behaviour::Behaviour;
 use super::context::{Context, Step};
+use super::holding::fresh;
 use super::releasing::release_thrust;
-use super::{ClampCommand, Inputs, Setpoint};
+use super::{ClampCommand, Inputs, Reason, Setpoint};
+use crate::arming::ArmingInhibits;
 use crate::grip_memory::GripMemory;
 use crate::math::{clamp, clamp_abs, deg};
 use crate::support::HINT_FORCE;
@@ -31,6 +33,8 @@ const STAND_RAMP: f32 = 0.5;
 const STAND_MAX: f32 = 2.0;
 /// Time after the rise until the vehicle is clear and the sticks steer, s.
 const CLEAR_TIME: f32 = 0.65;
+/// Time from there that a position may take to come back, s; then the pilot is asked. Flow sees again from 8 cm on.
+const WAIT_TIME: f32 = 1.3;
 /// Largest lean away from the pipe, rad: level rotors beside the crown pull the vehicle up along the flank, a lean
 /// across the crown throws it under the pipe.
 pub const AWAY_LEAN: f32 = deg(8.0);
@@ -78,9 +82,13 @@ impl Escaping {
     /// The arms are free, and there was time to leave. Unless pulled down, the vehicle flies whatever an arm's sensors
     /// read.
     pub fn clear(&self, context: &Context) -> bool {
-        let ramp = self.from.map_or(SLIDE_RAMP, |_| STAND_RAMP);
         let free = self.grip_memory == GripMemory::Open || self.late(context);
-        self.rise >= ramp + CLEAR_TIME && free
+        self.rise >= self.clear_after() && free
+    }
+
+    /// Time of the rise until it is clear, s.
+    fn clear_after(&self) -> f32 {
+        self.from.map_or(SLIDE_RAMP, |_| STAND_RAMP) + CLEAR_TIME
     }
 
     /// The collective rises.
@@ -160,6 +168,17 @@ impl Behaviour for Escaping {
             pitch: steer.pitch * params.stick_angle,
             yaw_rate: steer.yaw * params.stick_yaw_rate,
             thrust,
+        }
+    }
+
+    fn reason(&self, context: &Context, inputs: &Inputs, _: ArmingInhibits) -> Option<Reason> {
+        let waits = self.rise >= self.clear_after() + WAIT_TIME && self.clear(context);
+        let adrift = waits && context.by_itself.acts() && !fresh(inputs);
+        let lands = context.dangers.battery_critical() || inputs.sticks.is_none();
+        if adrift && !lands {
+            Some(Reason::PositionLost)
+        } else {
+            context.reason(inputs, true)
         }
     }
 

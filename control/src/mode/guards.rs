@@ -15,6 +15,7 @@ use super::{Reason, State};
 use crate::arming::Gesture;
 use crate::grip_memory::GripMemory;
 use crate::rc::Sticks;
+use crate::support::HINT_FORCE;
 
 /// A condition of a transition.
 #[derive(Clone, Copy, Debug)]
@@ -78,6 +79,11 @@ guards! {
     LEAVES = "leaving by itself", |_, s| s.context.by_itself.acts() && s.context.by_itself.leaving;
     HAS_LEFT = "climbed off the pipe", |state, _| approaching(state, Approach::has_left);
     GIVEN_UP = "no other try", |state, _| approaching(state, |a| a.given_up.is_some());
+    FEELS_PIPE = "on the way down, and something seems to carry it", |state, s| {
+        approaching(state, Approach::committed) && s.context.support.force() > HINT_FORCE
+    };
+    TOUCHED_ASTRAY = "a try ends while something seems to carry it", |state, _| approaching(state, Approach::astray);
+    UNAWARE = "nothing below by what it sees", |state, _| approaching(state, Approach::unaware);
     COMMITTED = "on the way down", |state, _| approaching(state, Approach::committed);
     RELEASE_BY_ITSELF = "perch switch off again, hold switch on, sticks centred, perched by itself", |_, s| {
         let sticks_ask = |t: &Sticks| t.arm_switch && !t.perch_switch && holding::kept(t) && centred(t);

@@ -9,6 +9,7 @@ use crate::approach::{Approach as Law, Doubt, RANGE_AGE, View};
 use crate::arming::ArmingInhibits;
 use crate::position::Estimate;
 use crate::position_hold::{PositionHold, Wish};
+use crate::support::HINT_FORCE;
 
 /// See [`super::Mode::Approach`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,6 +19,8 @@ pub struct Approach {
     wanted: Setpoint,
     /// Why no other try follows.
     pub given_up: Option<Reason>,
+    /// The try ends at a touch.
+    astray: bool,
 }
 
 /// The perch switch was turned on while the position is held.
@@ -72,6 +75,7 @@ impl Approach {
             way,
             wanted: Setpoint::Stop,
             given_up: None,
+            astray: false,
         };
         approach.step(&estimate, step);
         approach
@@ -80,6 +84,16 @@ impl Approach {
     /// It is on the way down to the pipe.
     pub fn committed(&self) -> bool {
         self.way.committed()
+    }
+
+    /// It crosses the pipe at a height, and touches nothing.
+    pub fn unaware(&self) -> bool {
+        !self.committed() && !self.way.climbs()
+    }
+
+    /// Its try has ended while something seemed to carry it.
+    pub fn astray(&self) -> bool {
+        self.astray
     }
 
     /// It has climbed off the pipe.
@@ -104,6 +118,10 @@ impl Approach {
     /// Another try, or none.
     fn again(&mut self, why: Reason, view: &View, e: &Estimate, step: &mut Step<'_>) {
         step.context.note(Some(why));
+        if self.committed() && step.context.support.force() > HINT_FORCE {
+            (self.astray, self.given_up) = (true, Some(why));
+            return;
+        }
         let tries = &mut step.context.by_itself.tries;
         let searched = matches!(
             why,

@@ -72,6 +72,8 @@ reasons! {
     NotCentred = "not settled over the crown",
     /// Perching by itself: nothing was touched.
     NotTouched = "nothing touched at the crown",
+    /// Perching by itself: something carries it where nothing was seen so near.
+    TouchedEarly = "touched before the crown: climbing",
     /// Perching by itself: the range is missing.
     RangeStale = "range stale",
     /// Perching by itself: another computer no longer says where the pipe is.

@@ -124,6 +124,11 @@ pub const TRANSITIONS: &[Transition] = &[
     row(AIRBORNE, &[LINE_SILENT], To::Failsafe(entries::failsafe), Lasting(Reason::LINE_SILENT)),
     // The pilot's hands first.
     row(&[Hold, Approach], &[HOLD_OFF], To::Flight(entries::flight), Clear),
+    // What it feels would slide from under a hold: up, as from the pipe.
+    row(&[Approach], &[FEELS_PIPE, TAKEN_OVER], To::Escaping(entries::sliding), Show(Reason::TakenOver)),
+    row(&[Approach], &[FEELS_PIPE, POSITION_ADRIFT], To::Escaping(entries::sliding), Show(Reason::PositionStale)),
+    row(&[Approach], &[TOUCHED_ASTRAY], To::Escaping(entries::sliding), HANDED_BACK),
+    row(&[Approach], &[UNAWARE, TOUCHED], To::Escaping(entries::sliding), Show(Reason::TouchedEarly)),
     row(&[Approach], &[TAKEN_OVER], To::Hold(entries::handed_back), Show(Reason::TakenOver)),
     row(&[Approach], &[POSITION_ADRIFT], To::Hold(entries::handed_back), Show(Reason::PositionStale)),
     row(&[Approach], &[GIVEN_UP], To::Hold(entries::handed_back), HANDED_BACK),

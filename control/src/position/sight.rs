@@ -189,6 +189,11 @@ impl Sight {
         faults.iter().find(|(holds, _)| *holds).map(|(_, fault)| *fault)
     }
 
+    /// The flow does not follow the vehicle.
+    pub fn flow_disagrees(&self) -> bool {
+        self.disagrees
+    }
+
     /// When the newest range that was looked at was measured, µs.
     pub fn looked_us(&self) -> u64 {
         self.range_us

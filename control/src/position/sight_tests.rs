@@ -11,7 +11,7 @@ const FLOW_US: u64 = 20_000;
 const LATE_US: u64 = 25_000;
 
 /// A vehicle that swings and tilts above ground.
-struct Rig {
+pub(super) struct Rig {
     estimator: PositionEstimator,
     now: u64,
     /// What the module makes of its flow along each axis.
@@ -20,11 +20,11 @@ struct Rig {
     /// Height of what is below over the ground, m.
     floor: f32,
     silent: bool,
-    out: Option<Estimate>,
+    pub(super) out: Option<Estimate>,
 }
 
 impl Rig {
-    fn new() -> Self {
+    pub(super) fn new() -> Self {
         Self {
             estimator: PositionEstimator::new(&Params::default()),
             now: 1_000_000,
@@ -55,7 +55,7 @@ impl Rig {
         Quat::from_euler(lean(7.0), lean(9.0), (0.2 * t) as f32)
     }
 
-    fn view(&self) -> Option<GroundView> {
+    pub(super) fn view(&self) -> Option<GroundView> {
         let until = (self.now - LATE_US) / FLOW_US * FLOW_US;
         let from = until - FLOW_US;
         let [[a, ..], [b, ..]] = [from, until].map(Self::truth);
@@ -82,29 +82,39 @@ impl Rig {
         })
     }
 
-    fn run(&mut self, seconds: f32) {
+    pub(super) fn run(&mut self, seconds: f32) {
         for _ in 0..(seconds * 1e6) as u64 / STEP_US {
             self.now += STEP_US;
-            let [_, _, acceleration] = Self::truth(self.now);
-            let q = Self::q(self.now);
-            let felt = Inertial {
-                at_us: self.now,
-                q,
-                accel: q.rotate_inverse(acceleration - Vec3::new(0.0, 0.0, GRAVITY)),
-            };
             let view = self.view();
-            self.out = self.estimator.step(&felt, 17.7, None, view.as_ref());
+            self.look(view.as_ref());
         }
     }
 
+    /// One step later with `view`.
+    pub(super) fn step(&mut self, view: Option<&GroundView>) {
+        self.now += STEP_US;
+        self.look(view);
+    }
+
+    fn look(&mut self, view: Option<&GroundView>) {
+        let [_, _, acceleration] = Self::truth(self.now);
+        let q = Self::q(self.now);
+        let felt = Inertial {
+            at_us: self.now,
+            q,
+            accel: q.rotate_inverse(acceleration - Vec3::new(0.0, 0.0, GRAVITY)),
+        };
+        self.out = self.estimator.step(&felt, 17.7, None, view);
+    }
+
     /// Errors of velocity and height, m/s and m.
-    fn errors(&self) -> [f32; 2] {
+    pub(super) fn errors(&self) -> [f32; 2] {
         let [position, velocity, _] = Self::truth(self.now);
         let e = self.out.expect("an estimate");
         [(e.velocity - velocity).norm(), (e.position.z - position.z).abs()]
     }
 
-    fn fault(&self) -> Option<SightFault> {
+    pub(super) fn fault(&self) -> Option<SightFault> {
         match self.estimator.fault() {
             Some(Fault::Sight(fault)) => Some(fault),
             _ => None,
@@ -265,6 +275,28 @@ fn what_is_mirrored_turned_dead_frozen_or_wrongly_scaled_is_named_within_three_s
             r.errors()
         );
     }
+}
+
+/// What was estimated by a flow that disagrees is no velocity to coast on: its age is that of a hold's end at once.
+#[test]
+fn nothing_coasts_on_a_flow_that_disagrees_and_a_sound_one_is_taken_again() {
+    let mut r = Rig::new();
+    r.run(10.0);
+    r.spoil = |[x, y]| [-x, -y];
+    for _ in 0..60 {
+        let age = r.out.map_or(0.0, |e| e.age);
+        r.run(0.05);
+        if r.fault() == Some(SightFault::FlowDisagrees) {
+            assert!(age < 0.2, "{age}");
+            break;
+        }
+    }
+    let age = r.out.map_or(0.0, |e| e.age);
+    assert!(age > 1.3 && age < 1.5, "{age}");
+    r.spoil = |angle| angle;
+    r.run(10.0);
+    let [v, _] = r.errors();
+    assert!(r.out.is_some_and(|e| e.age < 0.1) && v < 0.05, "{v}");
 }
 
 #[test]

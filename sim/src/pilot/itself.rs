@@ -1,6 +1,6 @@
 //! Steps that the vehicle flies by itself: the pilot holds near the pipe, turns the perch switch, and keeps his hands off.
 
-use sophie_control::mode::Mode;
+use sophie_control::mode::{Mode, Reason};
 
 use super::held::CENTRE;
 use super::mission::{Mission, Phase, Progress, View};
@@ -14,6 +14,8 @@ const NEAR: f64 = 0.8;
 const NEAR_SPEED: f64 = 0.5;
 /// Time with centred sticks before he turns the perch switch, s.
 const STILL: f64 = 1.5;
+/// Time for which the display asks for him before he takes over, s.
+const NOTICED: f64 = 0.5;
 /// How far it has climbed when he takes the leaving as done, m.
 const LEFT: f64 = 0.4;
 
@@ -58,7 +60,7 @@ impl Mission {
             Phase::Descend => (),
             Phase::Commit => {
                 // The display is a moment late.
-                let back = matches!(v.mode, Some(Mode::Hold | Mode::Flight | Mode::Failsafe));
+                let back = v.mode == Some(Mode::Hold) || Self::left_to_him(v);
                 if self.held_for(back, STILL, dt) {
                     return Progress::Failed(format!("handed back, {}", v.shown()));
                 }
@@ -76,9 +78,29 @@ impl Mission {
         }
     }
 
-    /// Turns the perch switch off and waits until the vehicle holds its place above the pipe.
+    /// The vehicle flies, but no longer by itself.
+    fn left_to_him(v: &View<'_>) -> bool {
+        matches!(v.mode, Some(Mode::Flight | Mode::Failsafe))
+            || (v.mode == Some(Mode::Escaping) && v.shows(Reason::PositionLost))
+    }
+
+    /// Turns the perch switch off and waits until the vehicle holds its place above the pipe. Where it cannot, he flies on by
+    /// hand.
     pub(super) fn release_by_itself(&mut self, step: &Step, v: &View<'_>, dt: f64) -> Progress {
+        if self.phase == Phase::Fly {
+            return self.release(v, dt);
+        }
+        let left = Self::left_to_him(v);
+        if left && self.phase == Phase::Wait && self.held_for(left, NOTICED, dt) {
+            self.hold_switch = false;
+            self.height = v.height();
+            self.spot = v.seen.position.truncate();
+            self.enter(Phase::Fly);
+        }
         let wish = self.idle();
+        if left {
+            return Progress::Going(wish);
+        }
         if self.phase == Phase::Start {
             self.height = v.height();
             self.enter(Phase::Throttle);

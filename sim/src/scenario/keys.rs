@@ -99,8 +99,12 @@ pub const FLOW_FAULTS: &[&str] = &[
     "mirrored",
     "scaled",
     "frozen",
+    "jumps",
+    "range-silent",
     "range-frozen",
     "range-jumps",
+    "range-long",
+    "range-short",
 ];
 /// Words for how a source of poses fails.
 pub const POSE_FAULTS: &[&str] = &[
@@ -194,8 +198,12 @@ pub fn flow_fault(word: &str) -> FlowFault {
         "mirrored" => FlowFault::Mirrored,
         "scaled" => FlowFault::Scaled,
         "frozen" => FlowFault::Frozen,
+        "jumps" => FlowFault::Jumps,
+        "range-silent" => FlowFault::RangeSilent,
         "range-frozen" => FlowFault::RangeFrozen,
         "range-jumps" => FlowFault::RangeJumps,
+        "range-long" => FlowFault::RangeLong,
+        "range-short" => FlowFault::RangeShort,
         _ => FlowFault::Silent,
     }
 }

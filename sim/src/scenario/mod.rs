@@ -276,10 +276,18 @@ pub enum FlowFault {
     Scaled,
     /// Its flow stands still.
     Frozen,
+    /// Its flow jumps by 1.5 rad/s, back and forth.
+    Jumps,
+    /// Its range says nothing.
+    RangeSilent,
     /// Its range stands still.
     RangeFrozen,
     /// Its range jumps by 0.6 m, back and forth.
     RangeJumps,
+    /// Its range is 1.6 times as long.
+    RangeLong,
+    /// Its range is 0.6 times as long.
+    RangeShort,
 }
 
 /// What measures the position.

@@ -49,6 +49,13 @@ const GAP: (f64, f64) = (0.3, 1.0);
 const BETWEEN: (f64, f64) = (10.0, 40.0);
 /// Where it is, m, body.
 const MOUNTED: DVec3 = DVec3::new(0.0, 0.0, 0.02);
+/// How a module that fails errs: flow, counts of an interval (1.5 rad/s) and range, mm, that jump, the time between two jumps,
+/// ms, and how many times as long its range is.
+const JUMP: i32 = 18;
+const RANGE_JUMP: f64 = 600.0;
+const JUMP_MS: u64 = 300;
+const LONG: f64 = 1.6;
+const SHORT: f64 = 0.6;
 /// Quality of a picture with enough in it.
 const QUALITY: u8 = 120;
 
@@ -163,6 +170,7 @@ impl FlowModule {
         let mut distance = distance.map(|d| (d * self.range_scale + noise) * 1e3);
         let mut quality = if seen && !dark { QUALITY } else { 0 };
         let jitter = self.rng.random_range(0..JITTER_US);
+        let jumped = (self.ms / JUMP_MS).is_multiple_of(2);
         match fault {
             None => (self.held, self.held_range) = (None, None),
             Some(FlowFault::Silent) => return,
@@ -170,13 +178,19 @@ impl FlowModule {
             Some(FlowFault::Mirrored) => counts = counts.map(|count| -count),
             Some(FlowFault::Scaled) => counts = counts.map(|count| 5 * count / 2),
             Some(FlowFault::Frozen) => counts = *self.held.get_or_insert([counts[0] | 1, counts[1]]),
+            Some(FlowFault::Jumps) => {
+                let off = if jumped { JUMP } else { -JUMP };
+                counts = counts.map(|count| count + off);
+            }
+            Some(FlowFault::RangeSilent) => distance = None,
+            Some(FlowFault::RangeLong) => distance = distance.map(|d| LONG * d),
+            Some(FlowFault::RangeShort) => distance = distance.map(|d| SHORT * d),
             Some(FlowFault::RangeFrozen) => {
                 let held = *self.held_range.get_or_insert(distance.unwrap_or(1000.0) as i32);
                 distance = Some(f64::from(held));
             }
             Some(FlowFault::RangeJumps) => {
-                let high = (self.ms / 300).is_multiple_of(2);
-                distance = distance.map(|d| if high { d + 600.0 } else { d });
+                distance = distance.map(|d| if jumped { d + RANGE_JUMP } else { d });
             }
         }
         let flow = Message::Flow { quality, counts };

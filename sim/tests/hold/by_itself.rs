@@ -6,7 +6,7 @@ use sophie_sim::scenario::PoseFault;
 use super::*;
 
 /// Holds near the pipe, perches by itself and leaves, with `sensors`, in gusts and wind as [`held`] unless `calm`.
-fn mission(seed: u64, sensors: PositionSensor, calm: bool) -> Scenario {
+pub(super) fn mission(seed: u64, sensors: PositionSensor, calm: bool) -> Scenario {
     let mut s = held(seed, 0.0);
     s.steps = vec![
         Step::Arm,

@@ -2,6 +2,7 @@
 
 mod by_itself;
 mod flow;
+mod on_the_way;
 mod pose;
 
 use std::f64::consts::TAU;

@@ -494,3 +494,72 @@ fn what_ends_a_flight_ends_it_too() {
     w.r.inputs.motion = None;
     w.expect(0.1, Mode::Disarmed);
 }
+
+/// Carried by the pipe since a step, before the touch is sure.
+fn at_the_touch() -> World {
+    let mut w = World::searching();
+    for _ in 0..8000 {
+        w.step();
+        if w.r.carried {
+            break;
+        }
+    }
+    w.r.step();
+    assert_eq!(w.r.out.mode, Mode::Approach);
+    w
+}
+
+#[test]
+fn what_ends_it_at_the_touch_leaves_the_pipe_instead_of_holding_on_it() {
+    let mut w = at_the_touch();
+    w.r.sticks().roll = 0.3;
+    w.r.step();
+    assert_eq!(w.r.out.mode, Mode::Escaping);
+    assert_eq!(w.r.out.reason, Some(Reason::TakenOver));
+
+    let mut w = at_the_touch();
+    w.r.inputs.position = w.r.inputs.position.map(|e| Estimate { age: 1.4, ..e });
+    w.r.step();
+    assert_eq!(w.r.out.mode, Mode::Escaping);
+    assert_eq!(w.r.out.reason, Some(Reason::PositionStale));
+
+    // Six centimetres beside the crown, which ends the try.
+    let mut w = at_the_touch();
+    w.at.y += 0.06;
+    w.see();
+    w.r.step();
+    w.r.step();
+    assert_eq!(w.r.out.mode, Mode::Escaping);
+    assert_eq!(w.r.out.reason, Some(Reason::NotCentred));
+}
+
+#[test]
+fn a_touch_where_nothing_was_seen_so_near_climbs_and_tries_again() {
+    let mut w = World::searching();
+    w.run(1.0);
+    w.r.carried = true;
+    for _ in 0..12 {
+        w.see();
+        w.r.step();
+    }
+    assert_eq!(w.r.out.mode, Mode::Escaping);
+    assert_eq!(w.r.out.reason, Some(Reason::TouchedEarly));
+    w.r.carried = false;
+    w.expect(1.0, Mode::Approach);
+}
+
+#[test]
+fn without_a_position_an_escape_asks_for_the_pilot_and_he_flies_on() {
+    let mut w = World::touched();
+    w.r.carried = false;
+    w.r.inputs.position = w.r.inputs.position.map(|e| Estimate { age: 2.0, ..e });
+    w.r.expect(0.5, Mode::Escaping);
+    assert_eq!(w.r.out.reason, Some(Reason::SlidesOff));
+    // Flow sees again as it rises: that is waited for.
+    w.r.expect(1.0, Mode::Escaping);
+    assert_eq!(w.r.out.reason, Some(Reason::SlidesOff));
+    w.r.expect(1.0, Mode::Escaping);
+    assert_eq!(w.r.out.reason, Some(Reason::PositionLost));
+    w.r.sticks().hold_switch = false;
+    w.r.expect(0.02, Mode::Flight);
+}

@@ -98,6 +98,9 @@ fn on_reason(reason: Reason) -> &'static str {
         Reason::PipeLost | Reason::NotCentred | Reason::NotTouched => {
             "It climbs and tries again, five times in all; then it holds. Wait for less wind."
         }
+        Reason::TouchedEarly => {
+            "It climbs and tries again. If it comes back, the range is wrong: perch by hand."
+        }
         Reason::RangeStale => "It holds. Look after the module below, or perch by hand.",
         Reason::ArmsStuck => "Keep the throttle, or perch on to hold again. Something holds the tendons.",
     }

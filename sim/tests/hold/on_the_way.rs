@@ -1,0 +1,191 @@
+//! Flow, range, poses and the place of the pipe that fail at any moment of perching and leaving by themselves.
+
+use rand::{Rng, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+use sophie_control::position::{PoseFault as Called, SightFault};
+use sophie_sim::scenario::{FlowFault, PoseFault};
+
+use super::by_itself::mission;
+use super::*;
+
+/// For how long it fails, s.
+const FAILS: f64 = 8.0;
+/// Largest lean, rad, and speed, m/s, while the vehicle flies by itself, and the least height at any time, m: what is held
+/// level against a wrong wind is as fast after the four seconds until the pilot flies.
+const LEAN: f64 = 0.36;
+const SPEED: f64 = 3.5;
+const LOW: f64 = 0.6;
+
+/// The part of a sound flight within which the fault begins.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Part {
+    /// From the beginning of the approach until shortly before the touch.
+    Approach,
+    /// The last three seconds before it.
+    Touch,
+    /// From the touch until it is perched.
+    Closing,
+    /// While the arms open, and on the way up.
+    Release,
+}
+
+const PARTS: [Part; 4] = [Part::Approach, Part::Touch, Part::Closing, Part::Release];
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Fault {
+    Flow(FlowFault),
+    Pose(PoseFault),
+}
+
+const FAULTS: [Fault; 20] = [
+    Fault::Flow(FlowFault::Silent),
+    Fault::Flow(FlowFault::Dark),
+    Fault::Flow(FlowFault::Mirrored),
+    Fault::Flow(FlowFault::Scaled),
+    Fault::Flow(FlowFault::Frozen),
+    Fault::Flow(FlowFault::Jumps),
+    Fault::Flow(FlowFault::RangeSilent),
+    Fault::Flow(FlowFault::RangeFrozen),
+    Fault::Flow(FlowFault::RangeJumps),
+    Fault::Flow(FlowFault::RangeLong),
+    Fault::Flow(FlowFault::RangeShort),
+    Fault::Pose(PoseFault::Silent),
+    Fault::Pose(PoseFault::Frozen),
+    Fault::Pose(PoseFault::Jumps),
+    Fault::Pose(PoseFault::Mirrored),
+    Fault::Pose(PoseFault::Scaled),
+    Fault::Pose(PoseFault::Turned),
+    Fault::Pose(PoseFault::TargetSilent),
+    Fault::Pose(PoseFault::TargetJumps),
+    Fault::Pose(PoseFault::TargetFar),
+];
+
+impl Fault {
+    /// What the pilot reads, and within which time if the vehicle still approaches then, s; `None` where a wrong scale is
+    /// not found (docs/hold.md).
+    fn named(self) -> Option<(&'static str, f64)> {
+        let stale = Reason::PositionStale.text();
+        let named = match self {
+            Self::Flow(FlowFault::RangeLong | FlowFault::RangeShort) => return None,
+            Self::Flow(FlowFault::Silent | FlowFault::Dark | FlowFault::RangeSilent) => (stale, 2.5),
+            Self::Flow(FlowFault::Frozen) => (SightFault::FlowFrozen.text(), 1.0),
+            Self::Flow(FlowFault::Mirrored | FlowFault::Scaled | FlowFault::Jumps) => {
+                (SightFault::FlowDisagrees.text(), 6.0)
+            }
+            Self::Flow(FlowFault::RangeFrozen) => (SightFault::RangeFrozen.text(), 1.0),
+            Self::Flow(FlowFault::RangeJumps) => (SightFault::RangeJumps.text(), 6.0),
+            Self::Pose(PoseFault::Silent) => (stale, 2.5),
+            Self::Pose(PoseFault::Frozen) => (Called::Frozen.text(), 1.0),
+            Self::Pose(PoseFault::Jumps) => (Called::Jumps.text(), 1.0),
+            Self::Pose(PoseFault::Mirrored | PoseFault::Scaled | PoseFault::Turned) => {
+                (Called::Disagrees.text(), 6.0)
+            }
+            Self::Pose(PoseFault::TargetSilent) => (Reason::TargetStale.text(), 2.5),
+            Self::Pose(PoseFault::TargetJumps) => (Reason::TargetJumps.text(), 1.0),
+            Self::Pose(PoseFault::TargetFar) => (Reason::TargetFar.text(), 1.0),
+        };
+        Some(named)
+    }
+
+    fn sensor(self) -> PositionSensor {
+        match self {
+            Self::Flow(_) => PositionSensor::Flow,
+            Self::Pose(_) => PositionSensor::Pose,
+        }
+    }
+}
+
+/// When each part begins and ends in a sound flight, s; `None` where that is not accomplished.
+fn parts(seed: u64, sensor: PositionSensor) -> Option<[(f64, f64); 4]> {
+    let sound = fly(&mission(seed, sensor, false), &mut Silent);
+    if !sound.outcome.accomplished {
+        println!("{seed} {sensor:?}: {}", sound.outcome.reason);
+        return None;
+    }
+    let first = |mode: Mode| sound.samples.iter().find(|s| s.mode == mode).map(|s| s.t);
+    let (begun, touched) = (first(Mode::Approach)?, first(Mode::Contact)?);
+    let (perched, released) = (first(Mode::Perched)?, first(Mode::Releasing)?);
+    let near = (touched - 3.0).max(begun);
+    Some([
+        (begun, near),
+        (near, touched),
+        (touched, perched),
+        (released, released + 4.0),
+    ])
+}
+
+/// Flies the mission of `seed` with `fault` from `at` s on; what is wrong with it.
+fn flown(seed: u64, fault: Fault, part: Part, at: f64) -> Option<String> {
+    let mut s = mission(seed, fault.sensor(), false);
+    s.sensors.pose_fails_at = at;
+    s.sensors.pose_fails_for = FAILS;
+    match fault {
+        Fault::Flow(fault) => s.sensors.flow_fault = fault,
+        Fault::Pose(fault) => s.sensors.pose_fault = fault,
+    }
+    let record = fly(&s, &mut Silent);
+    let why = &record.outcome.reason;
+    let during = || record.samples.iter().filter(|s| s.t >= at && s.t < at + FAILS);
+    let alone = |s: &&Sample| matches!(s.mode, Mode::Approach | Mode::Hold | Mode::Escaping);
+    let most = |of: fn(&Sample) -> f64| during().filter(alone).map(of).fold(0.0, f64::max);
+    let lean = most(|s| s.attitude[0].hypot(s.attitude[1]));
+    let speed = most(|s| DVec3::from_array(s.velocity).length());
+    let low = during().map(|s| -s.position[2]).fold(f64::INFINITY, f64::min);
+    let named = fault.named().and_then(|(text, _)| {
+        let said = record.events.iter().find(|e| e.t >= at && e.text.ends_with(text));
+        said.map(|e| e.t - at)
+    });
+    println!(
+        "{seed} {fault:?} {part:?} at {at:.1} s: {why}; named after {named:.1?} s, {:.0} deg, {speed:.2} m/s, {low:.2} m",
+        lean.to_degrees()
+    );
+    // It has perched and left, or the pilot has it back in the air.
+    let ends_well = record.outcome.accomplished || (why.contains("handed back") && part != Part::Release);
+    let bounded = lean < LEAN && speed < SPEED && low > LOW;
+    let missed = fault.named().is_some_and(|(_, within)| {
+        let owed = |s: &Sample| matches!(s.mode, Mode::Approach | Mode::Hold);
+        let flies = during().take_while(|s| s.t < at + within).all(owed);
+        let until = record.samples.last().is_some_and(|s| s.t >= at + within);
+        flies && until && part == Part::Approach && named.is_none_or(|after| after > within)
+    });
+    (!ends_well || !bounded || missed).then(|| {
+        format!("{seed} {fault:?} {part:?} at {at:.2} s: {why}, {named:?} {lean:.2} {speed:.2} {low:.2}")
+    })
+}
+
+/// Flies `count` cases of `seeds`, drawn with `draw`: what is wrong with them.
+fn judge(draw: u64, seeds: &[u64], count: usize) -> Vec<String> {
+    let mut rng = Pcg64Mcg::seed_from_u64(draw);
+    let times = |sensor| -> Vec<_> {
+        let times = seeds.iter().map(|seed| (*seed, parts(*seed, sensor)));
+        times.filter_map(|(seed, parts)| Some((seed, parts?))).collect()
+    };
+    let by = [times(PositionSensor::Flow), times(PositionSensor::Pose)];
+    let mut wrong = vec![];
+    for i in 0..count {
+        // Every fault comes before one comes again; seed, part and moment are drawn.
+        let fault = FAULTS[i % FAULTS.len()];
+        let known = &by[usize::from(fault.sensor() == PositionSensor::Pose)];
+        let (seed, parts) = known[rng.random_range(0..known.len())];
+        let part = rng.random_range(0..PARTS.len());
+        let (from, to) = parts[part];
+        let at = rng.random_range(from..=to);
+        wrong.extend(flown(seed, fault, PARTS[part], at));
+    }
+    wrong
+}
+
+#[test]
+fn what_fails_at_any_moment_is_named_and_harms_nothing() {
+    let wrong = judge(1, &[2], 12);
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+#[ignore = "two hundred missions: docs/hold.md has what has come of them"]
+fn what_fails_at_any_moment_is_named_and_harms_nothing_with_many_seeds() {
+    let wrong = judge(2, &[1, 2, 3, 4, 5, 6, 7, 8], 200);
+    println!("{} of 200: {wrong:#?}", wrong.len());
+    // A range that becomes too long is not found, and does harm: docs/hold.md has what.
+    assert!(wrong.iter().all(|what| what.contains("RangeLong")), "{wrong:#?}");
+}
