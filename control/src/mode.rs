@@ -178,6 +178,8 @@ pub struct Inputs {
     pub roll_moment: f32,
     /// The grip.
     pub grip: Option<GripState>,
+    /// Tilts of the arms by their sensors, rad; `None` where not fresh.
+    pub tilts: PerArm<Option<f32>>,
     /// Pressure sensors that are faulty or silent.
     pub fsr_fault: PerArm<bool>,
     /// Battery voltage under load, V.
@@ -215,6 +217,7 @@ impl Inputs {
                 }),
             }),
             motion: self.motion.filter(sane),
+            tilts: self.tilts.map(|tilt| tilt.filter(|t| t.is_finite())),
             battery: self.battery.filter(|v| v.is_finite()),
             position: self.position.filter(position::Estimate::is_finite),
             target: self.target.filter(PipeTarget::is_finite),

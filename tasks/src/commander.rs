@@ -91,6 +91,7 @@ fn collect(links: &Links, late: bool) -> Inputs {
         lift: links.mix.fresh().map_or(0.0, |mix| mix.lift()),
         roll_moment: links.mix.fresh().map_or(0.0, |mix| mix.roll(links.params.arm_d)),
         grip: links.grip.fresh(),
+        tilts: links.tilts().values(),
         fsr_fault: links
             .contact
             .fresh()

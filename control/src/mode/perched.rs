@@ -3,7 +3,7 @@
 use super::behaviour::Behaviour;
 use super::context::{Context, Step};
 use super::releasing::RELEASE_THROTTLE_MIN;
-use super::slip::Slip;
+use super::slip::{Slip, bending};
 use super::{Inputs, Reason, Setpoint};
 use crate::arming::ArmingInhibits;
 use crate::grip::{ArmState, GripDemand};
@@ -93,7 +93,9 @@ impl Behaviour for Perched {
         let Some(motion) = step.inputs.motion else {
             return;
         };
-        if self.slip.step(motion, self.may_tighten(step), step.dt) {
+        let arms = self.grip_memory.arms();
+        let bent = arms.and_then(|arms| bending(&step.inputs.tilts, arms.mask()));
+        if self.slip.step(motion, bent, self.may_tighten(step), step.dt) {
             let times = step.context.tightened.saturating_add(1);
             step.context.tightened = times;
             let last = times >= TIGHTENINGS;

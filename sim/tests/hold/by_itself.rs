@@ -1,6 +1,7 @@
 //! Perching by itself, and leaving again.
 
 use sophie_control::position::PoseFault as Called;
+use sophie_control::rc::ArmChoice;
 use sophie_sim::scenario::PoseFault;
 
 use super::*;
@@ -109,6 +110,53 @@ fn in_wind_and_gusts_nearly_all_seeds_perch_by_pose() {
     println!("{done} of {begun}, touches 95 % within {most:.3} m");
     assert!(begun >= 90 && 20 * done >= 19 * begun, "{done} of {begun}");
     assert!(most < 0.035, "{most:.3}");
+}
+
+/// Flies `seeds` by pose in gusts and 1 N of wind along or `across` the pipe from either side: begun, accomplished, and the
+/// largest pressure in a closing and in a hold, Pa.
+fn flown_in_wind(seeds: &[u64], across: bool, arms: ArmChoice) -> (usize, usize, [f64; 2]) {
+    let flights = sophie_sim::parallel::each(seeds, |&seed| {
+        let mut s = mission(seed, PositionSensor::Pose, false);
+        // The pipe runs north.
+        let quarters = u64::from(across) + 2 * (seed % 2);
+        s.world.steady_wind_from = Some(quarters as f64 * 0.25 * TAU);
+        s.arms = arms;
+        let record = fly(&s, &mut Silent);
+        let peak = |mode| {
+            let within = record.samples.iter().filter(|s| s.mode == mode);
+            within.flat_map(|s| s.pressure).fold(0.0, f64::max)
+        };
+        let begun = record.samples.iter().any(|s| s.mode == Mode::Approach);
+        let peaks = [peak(Mode::Clamping), peak(Mode::Perched)];
+        (begun, record.outcome, peaks)
+    });
+    let (mut begun, mut done, mut peaks) = (0, 0, [0.0f64; 2]);
+    for ((tried, outcome, reached), seed) in flights.into_iter().zip(seeds) {
+        begun += usize::from(tried);
+        done += usize::from(tried && outcome.accomplished);
+        if !outcome.accomplished {
+            println!("{seed}, across {across}, {arms:?}: {}", outcome.reason);
+        }
+        peaks = [peaks[0].max(reached[0]), peaks[1].max(reached[1])];
+    }
+    (begun, done, peaks)
+}
+
+#[test]
+#[ignore = "two hundred missions by pose"]
+fn wind_across_the_pipe_costs_no_more_than_along_it() {
+    let seeds: Vec<u64> = (1..=50).collect();
+    for arms in [ArmChoice::All, ArmChoice::Front] {
+        let [along, across] = [false, true].map(|across| {
+            let (begun, done, [closing, hold]) = flown_in_wind(&seeds, across, arms);
+            println!(
+                "{arms:?}, across {across}: {done} of {begun}, closing {closing:.0}, hold {hold:.0} N/m2"
+            );
+            (begun - done, begun)
+        });
+        assert!(along.1 >= 40 && across.1 >= 40, "{along:?}, {across:?}");
+        assert!(across.0 <= along.0 + 1, "missed {across:?}, along {along:?}");
+    }
 }
 
 #[test]

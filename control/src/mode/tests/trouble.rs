@@ -169,6 +169,22 @@ fn a_grip_lost_while_spooling_down_brings_the_rotors_back() {
 }
 
 #[test]
+fn a_push_that_rocks_a_perched_body_on_its_pads_tightens_nothing() {
+    for (bent, tightens) in [(0.7, false), (0.0, true), (f32::NAN, true)] {
+        let mut r = Rig::perched();
+        r.inputs.tilts = [Some(-1.2); 4];
+        r.run(1.0);
+        let motion = r.inputs.motion.as_mut().unwrap();
+        motion.q = Quat::from_euler(deg(0.7), 0.0, 0.0);
+        let bent = deg(bent);
+        r.inputs.tilts = [-1.2 - bent, -1.2 - bent, -1.2 + bent, -1.2 + bent].map(Some);
+        r.run(1.0);
+        let presses = matches!(r.out.tendons, ClampCommand::Tighten { .. });
+        assert_eq!(presses, tightens, "bent by {bent}");
+    }
+}
+
+#[test]
 fn nothing_but_the_pilot_starts_the_rotors_of_a_perched_vehicle() {
     type Edit = fn(&mut Rig);
     let cases: [(Edit, Reason); 5] = [
