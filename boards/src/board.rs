@@ -9,8 +9,8 @@ mod chosen;
 #[cfg(not(family = "f4"))]
 pub(crate) use chosen::DATA_CACHE;
 pub use chosen::{
-    AnalogPort, ArmsPort, ImuPort, LightsPort, MotorsPort, NAME, ServosPort, StoragePort, WIRING,
-    WatchdogPort, start_levels, stop_motors, take,
+    AnalogPort, ArmsPort, BarometerPort, ImuPort, LightsPort, MotorsPort, NAME, ServosPort, StoragePort,
+    WIRING, WatchdogPort, start_levels, stop_motors, take,
 };
 use sophie_control::params::Params;
 use sophie_tasks::ports::Loaded;
@@ -25,6 +25,8 @@ pub struct Board {
     pub imu: ImuPort,
     /// The arms' inertial sensors.
     pub arms: ArmsPort,
+    /// The barometer, or none.
+    pub barometer: BarometerPort,
     /// Pressure sensors and battery.
     pub analog: AnalogPort,
     /// The motors.

@@ -6,6 +6,7 @@
 //! | motors 1 to 4 | TIM1 | DMA2 5 | AUX 4, 3, 2, 1 |
 //! | servos 1 and 2, 3 and 4 | TIM4, TIM12 | none | AUX 5 and 6, 7 and 8 |
 //! | arm sensors 1 and 2, 3 and 4 | I2C1, I2C2 | DMA1 0 and 6, 2 and 7 | GPS, I2C2 |
+//! | barometer, MS5611 | SPI4 | none | on board |
 //! | pressure 1 to 4, battery | ADC1 | DMA2 4 | ADC (PC4), CAP1 (PA5), RSSI (PB0), POWER2 current (PA3); POWER1 |
 //! | receiver | USART3 | DMA1 1 and 3 | TELEM2 |
 //! | console | UART7 | none | FMU debug |
@@ -36,6 +37,7 @@ use sophie_drivers::esc_protocol::EscProtocol;
 use sophie_drivers::fram::Fram;
 use sophie_drivers::icm20689::{self, Icm20689};
 use sophie_drivers::mounting::{Heading, Mounting};
+use sophie_drivers::ms5611::{self, Ms5611};
 
 use crate::Board;
 use crate::cortex_m::{enable_caches, levels_on};
@@ -84,6 +86,8 @@ pub const WIRING: Wiring = Wiring {
 pub type ImuPort = Icm20689<DmaChip, ReadyLine>;
 /// The arms' inertial sensors.
 pub type ArmsPort = ArmBuses<ArmBus<LeftArms>, ArmBus<RightArms>>;
+/// The barometer.
+pub type BarometerPort = Ms5611<PlainChip>;
 /// Pressure sensors and battery.
 pub type AnalogPort = AnalogInputs<peripherals::DMA2_CH4, Irqs>;
 /// The motors.
@@ -177,6 +181,13 @@ assign_resources! {
         tx_dma: DMA1_CH7,
         rx_dma: DMA1_CH2,
     }
+    barometer: BarometerParts {
+        spi: SPI4,
+        clock: PE2,
+        data_in: PE13,
+        data_out: PE6,
+        select: PF10,
+    }
     analog: AnalogParts {
         adc: ADC1,
         fsr_1: PC4,
@@ -258,6 +269,7 @@ pub async fn take() -> Board {
             ArmBus::new(parts.right_arms),
             [bno055::Config::default(); 4],
         ),
+        barometer: barometer(parts.barometer),
         analog: analog(parts.analog),
         servos: servos(parts.servos, &params),
         receiver,
@@ -355,7 +367,7 @@ fn first_levels() {
     drive(pac::GPIOD, &[13, 14], Level::Low);
     drive(pac::GPIOH, &[6, 9], Level::Low);
     drive(pac::GPIOE, &[5], Level::Low);
-    drive(pac::GPIOF, &[2, 3, 4, 5], Level::High);
+    drive(pac::GPIOF, &[2, 3, 4, 5, 10], Level::High);
     drive(pac::GPIOG, &[10], Level::High);
     drive(pac::GPIOE, &[3], Level::High);
     drive(pac::GPIOG, &[4], Level::Low);
@@ -370,6 +382,13 @@ fn servos(p: ServoParts, params: &Params) -> ServosPort {
         (p.servo_3, p.servo_4),
         params,
     )
+}
+
+fn barometer(p: BarometerParts) -> BarometerPort {
+    // Without DMA: a transfer is of four bytes, 2 µs.
+    let config = spi_config(&p.spi, ms5611::SPI_HZ);
+    let bus = Spi::new_blocking(p.spi, p.clock, p.data_out, p.data_in, config);
+    Ms5611::on(Selected::new(BlockingAsync::new(bus), p.select))
 }
 
 fn analog(p: AnalogParts) -> AnalogPort {

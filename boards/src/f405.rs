@@ -73,6 +73,8 @@ pub const WIRING: Wiring = Wiring {
 pub type ImuPort = SpiImu<part::Config, DmaChip, ReadyLine>;
 /// The arms' inertial sensors.
 pub type ArmsPort = ArmBuses<ArmBus<LeftArms>, ArmBus<RightArms>>;
+/// No barometer.
+pub type BarometerPort = ();
 /// Pressure sensors and battery.
 pub type AnalogPort = AnalogInputs<peripherals::DMA2_CH4, Irqs>;
 /// The motors.
@@ -233,6 +235,7 @@ pub async fn take() -> Board {
             ArmBus::new(parts.right_arms),
             [bno055::Config::default(); 4],
         ),
+        barometer: (),
         analog: analog(parts.analog),
         servos: servos(parts.servos, &params),
         receiver,

@@ -6,6 +6,7 @@
 //! | motors 1 to 4 | TIM4 | DMA1 0 | S7, S8, S9, S10 |
 //! | servos 1 to 4 | TIM5 | none | S3, S4, S5, S6 |
 //! | arm sensors 1 and 2, 3 and 4 | I2C1, I2C2 | DMA1 1 to 4 | CL1 DA1, CL2 DA2 |
+//! | barometer, DPS310 | I2C2, with arm sensors 3 and 4 | DMA1 3 and 4 | on board |
 //! | pressure 1 to 4, battery | ADC1 | DMA2 4 | S1, S2, RSSI, CU2; on board |
 //! | receiver | USART6 | DMA2 0 and 1 | RX6, TX6 |
 //! | console | UART7 | none | RX7, TX7 |
@@ -19,18 +20,23 @@
 //! wants 50 Hz. Pins are those of the board's maker as Betaflight (`MATEKH743`) and ArduPilot (`MatekH743`) name them.
 
 use assign_resources::assign_resources;
+use embassy_embedded_hal::shared_bus::asynch::i2c::I2cDevice;
 use embassy_stm32::adc::AdcChannel;
 use embassy_stm32::exti::ExtiInput;
 use embassy_stm32::gpio::{Level, Pin, Pull};
 use embassy_stm32::spi::Spi;
 use embassy_stm32::time::mhz;
 use embassy_stm32::{Peri, bind_interrupts, dma, exti, i2c, interrupt, pac, peripherals, rcc, usart, usb};
+use embassy_sync::mutex::Mutex;
 use sophie_control::params::Params;
 use sophie_drivers::arm_buses::ArmBuses;
 use sophie_drivers::bno055;
+use sophie_drivers::dps310::Dps310;
 use sophie_drivers::esc_protocol::EscProtocol;
 use sophie_drivers::icm42688p::{self, Icm42688p};
 use sophie_drivers::mounting::{Heading, Mounting};
+use sophie_tasks::links::Raw;
+use static_cell::StaticCell;
 
 use crate::Board;
 use crate::cortex_m::{enable_caches, levels_on};
@@ -69,7 +75,11 @@ pub const WIRING: Wiring = Wiring {
 /// The vehicle's inertial sensor.
 pub type ImuPort = Icm42688p<DmaChip, ReadyLine>;
 /// The arms' inertial sensors.
-pub type ArmsPort = ArmBuses<ArmBus<LeftArms>, ArmBus<RightArms>>;
+pub type ArmsPort = ArmBuses<ArmBus<LeftArms>, RightBus>;
+/// The barometer.
+pub type BarometerPort = Dps310<RightBus>;
+/// The bus of arm sensors 3 and 4 and of the barometer: who waits for it waits for one transaction, half a millisecond.
+type RightBus = I2cDevice<'static, Raw, ArmBus<RightArms>>;
 /// Pressure sensors and battery.
 pub type AnalogPort = AnalogInputs<peripherals::DMA2_CH4, Irqs>;
 /// The motors.
@@ -82,6 +92,8 @@ pub type WatchdogPort = Dog<peripherals::IWDG1>;
 pub type StoragePort = BoardStorage<ParamFlash<0x2_0000>>;
 /// Lights and buzzer.
 pub type LightsPort = Lights<Lamp>;
+
+static RIGHT_BUS: StaticCell<Mutex<Raw, ArmBus<RightArms>>> = StaticCell::new();
 
 levels_on!(SAI3, SAI4);
 i2c_bus!(LeftArms, Irqs);
@@ -220,15 +232,17 @@ pub async fn take() -> Board {
     let (mavlink_input, mavlink_output) = mavlink_lines(m.uart, m.rx, m.tx, Irqs);
     let g = parts.ground;
     let ground = ground_line(g.uart, g.rx, g.tx, Irqs, &params);
+    let right: &'static _ = RIGHT_BUS.init(Mutex::new(ArmBus::new(parts.right_arms)));
     Board {
         watchdog: Dog::start(parts.watchdog.dog),
         motors: motors(parts.motors, &params),
         imu: imu(parts.imu, &params),
         arms: ArmBuses::new(
             ArmBus::new(parts.left_arms),
-            ArmBus::new(parts.right_arms),
+            I2cDevice::new(right),
             [bno055::Config::default(); 4],
         ),
+        barometer: Dps310::at(I2cDevice::new(right)),
         analog: analog(parts.analog),
         servos: servos(parts.servos, &params),
         receiver,

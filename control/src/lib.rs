@@ -15,6 +15,7 @@
 // Tests compare floats exactly where exactness is the point.
 #![cfg_attr(not(test), deny(clippy::float_cmp))]
 
+pub mod air_pressure;
 pub mod approach;
 pub mod arming;
 pub mod attitude;

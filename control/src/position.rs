@@ -5,6 +5,9 @@
 //! (the vehicle has no compass, and a visual odometry drifts). By flow alone they begin where the first one came. docs/hold.md has derivation and figures.
 
 mod agreement;
+mod aloft;
+#[cfg(test)]
+mod aloft_tests;
 mod axis;
 mod band;
 mod fit;
@@ -22,6 +25,8 @@ mod trust;
 #[cfg(test)]
 mod trust_tests;
 
+use self::aloft::Aloft;
+pub use self::aloft::PressureFault;
 use self::axis::{Axis, Change};
 pub use self::fit::{FlowFit, FlowTurns, Round, flow_fit};
 use self::past::{Moment, Past};
@@ -29,6 +34,7 @@ pub use self::sight::{FLOW_HEIGHT, SightFault, SightLimit};
 use self::sight::{Sight, beam};
 pub use self::trust::PoseFault;
 use self::trust::Trust;
+use crate::air_pressure::AirPressure;
 use crate::ground::{Flow, GroundView};
 use crate::math::{self, GRAVITY};
 use crate::params::Params;
@@ -126,6 +132,8 @@ pub struct Estimate {
     pub turn: f32,
     /// Age of the newest fix that was taken, s, below [`LOST_AGE`].
     pub age: f32,
+    /// The height is by the pressure of the air, since neither range nor pose give it.
+    pub by_pressure: bool,
     /// Counts where the position has jumped with the sender's origin.
     pub jumps: u8,
     /// Where the beam of the range falls.
@@ -170,6 +178,8 @@ pub enum Fault {
     Pose(PoseFault),
     /// Flow or range.
     Sight(SightFault),
+    /// The pressure of the air.
+    Pressure(PressureFault),
 }
 
 impl Fault {
@@ -178,6 +188,7 @@ impl Fault {
         match self {
             Self::Pose(fault) => fault.text(),
             Self::Sight(fault) => fault.text(),
+            Self::Pressure(fault) => fault.text(),
         }
     }
 }
@@ -192,6 +203,7 @@ pub struct PositionEstimator {
     track: Option<Track>,
     sight: Sight,
     trust: Trust,
+    aloft: Aloft,
     /// When the newest fix and the newest flow that were looked at were measured, µs: each is taken once.
     seen_us: u64,
     flow_us: u64,
@@ -207,6 +219,7 @@ impl PositionEstimator {
             track: None,
             sight: Sight::new(p.pipe_diameter),
             trust: Trust::default(),
+            aloft: Aloft::default(),
             seen_us: 0,
             flow_us: 0,
         }
@@ -216,6 +229,12 @@ impl PositionEstimator {
     pub fn fault(&self) -> Option<Fault> {
         let pose = self.trust.fault().map(Fault::Pose);
         pose.or_else(|| self.sight.fault().map(Fault::Sight))
+            .or_else(|| self.aloft.fault().map(Fault::Pressure))
+    }
+
+    /// Takes the newest pressure of the air, for the next step: the height of last resort. Without one nothing changes.
+    pub fn hear(&mut self, air: &AirPressure) {
+        self.aloft.hear(air);
     }
 
     /// One step with the inertial sensor, the thrust demanded along -z, N, the newest fix and the newest flow and range.
@@ -257,6 +276,7 @@ impl PositionEstimator {
             (Some(track), _) if track.follows(at_us) => track,
             (track, Some(fix)) => {
                 self.past.clear();
+                self.aloft.forget();
                 *track = Some(Track::begin(at_us, felt.q.to_euler().2, fix));
                 return None;
             }
@@ -265,6 +285,7 @@ impl PositionEstimator {
                 let height = flow.and_then(|flow| self.sight.begin(&flow, felt.q));
                 *track = height.map(|height| {
                     self.past.clear();
+                    self.aloft.forget();
                     Track::above(at_us, height)
                 });
                 self.past.push(here);
@@ -277,9 +298,11 @@ impl PositionEstimator {
             ..here
         });
         track.left_out |= left_out;
+        let jumps = track.jumps;
         if self.trust.fault() == Some(PoseFault::Disagrees) && !track.tainted {
             track.taint();
             track.tainted = true;
+            self.aloft.forget();
         }
         if let Some(fix) = new {
             track.take(&mut self.past, &mut self.trust, fix);
@@ -299,7 +322,15 @@ impl PositionEstimator {
             track.taint();
         }
         track.misled = misled;
-        track.estimate()
+        if track.jumps != jumps {
+            self.aloft.forget();
+        }
+        if let Some(at) = self.aloft.news(at_us)
+            && lift > FLIES * GRAVITY * self.mass
+        {
+            track.take_pressure(&mut self.past, &mut self.aloft, at);
+        }
+        track.estimate(self.aloft.carries(at_us))
     }
 }
 
@@ -325,6 +356,8 @@ struct Track {
     /// There was a pose, the newest one that was taken at this time, µs: the axes are its sender's.
     posed: bool,
     pose_us: u64,
+    /// When the newest pose or range that gave the height was measured, µs.
+    height_us: u64,
     /// Flows refused in a row.
     flows_refused: u32,
     resets: u8,
@@ -351,6 +384,7 @@ impl Track {
             misled: false,
             posed: true,
             pose_us: fix.at_us,
+            height_us: fix.at_us,
             flows_refused: 0,
             resets: fix.resets,
             jumps: 0,
@@ -434,7 +468,7 @@ impl Track {
         }
         (self.left_out, self.tainted) = (false, false);
         self.fixed_us = fix.at_us;
-        (self.posed, self.pose_us) = (true, fix.at_us);
+        (self.posed, self.pose_us, self.height_us) = (true, fix.at_us, fix.at_us);
     }
 
     /// Poses, or the flow, have gone another way than the vehicle for a while: velocity and bias follow them no longer. No one
@@ -486,6 +520,25 @@ impl Track {
         };
         let change = axis.correct(innovation, variance, seconds(at, self.at_us));
         past.change(at, &[Change::default(), Change::default(), change]);
+        self.height_us = at;
+    }
+
+    /// Compares the newest pressure, measured at `at` µs, with the height; beside range or pose it is only learnt from.
+    fn take_pressure(&mut self, past: &mut Past, aloft: &mut Aloft, at: u64) {
+        let Some(then) = past.at(at) else {
+            return;
+        };
+        let known = seconds(self.height_us, at);
+        let Some((innovation, variance)) = aloft.height(then.position.z, known) else {
+            return;
+        };
+        let [_, _, axis] = &mut self.axes;
+        if axis.accepts(innovation, variance) {
+            let change = axis.correct(innovation, variance, seconds(at, self.at_us));
+            past.change(at, &[Change::default(), Change::default(), change]);
+        } else {
+            aloft.refuse();
+        }
     }
 
     /// Compares a flow with the velocity in its middle; beside a pose it is only watched.
@@ -559,13 +612,14 @@ impl Track {
         self.of(Axis::bias)
     }
 
-    fn estimate(&self) -> Option<Estimate> {
+    fn estimate(&self, by_pressure: bool) -> Option<Estimate> {
         let estimate = Estimate {
             position: self.position(),
             velocity: self.velocity(),
             disturbance: self.disturbance,
             turn: self.turn,
             age: seconds(self.fixed_us, self.at_us),
+            by_pressure,
             jumps: self.jumps,
             foot: match self.foot_us {
                 0 => Foot::default(),

@@ -8,6 +8,7 @@
 //! | [`icm42688p`], [`icm20689`] over [`spi_imu`] | vehicle's inertial sensor, SPI | `Imu` |
 //! | [`line_watch`] | silent data-ready line | used by [`spi_imu`] |
 //! | [`bno055`], [`arm_buses`] | arms' inertial sensors, I2C | `ArmImus` |
+//! | [`dps310`], [`ms5611`] over [`barometer`] | barometer, I2C or SPI | `Barometer` |
 //! | [`i2c_lines`] | held I2C bus | used by the board's buses |
 //! | [`esc_protocol`]: [`dshot`], [`dshot_decoder`], [`esc_pwm`] | motor controllers | used by the board's `Motors` |
 //! | [`rc_decoder`]: [`crsf`], [`sbus`] | receiver | `RcDecoder` |
@@ -29,9 +30,11 @@
 )]
 
 pub mod arm_buses;
+pub mod barometer;
 pub mod bno055;
 pub mod crsf;
 pub mod data_ready;
+pub mod dps310;
 pub mod dshot;
 pub mod dshot_decoder;
 pub mod esc_protocol;
@@ -45,6 +48,7 @@ pub mod icm20689;
 pub mod icm42688p;
 pub mod line_watch;
 pub mod mounting;
+pub mod ms5611;
 pub mod msp;
 pub mod param_store;
 pub mod pwm_timing;

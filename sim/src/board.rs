@@ -7,6 +7,8 @@ use embassy_sync::pipe::Pipe;
 use embassy_sync::signal::Signal;
 use embassy_time::{Instant, Timer};
 use heapless::Vec;
+use sophie_control::air_pressure::AirPressure;
+use sophie_control::math::GRAVITY;
 use sophie_control::motor_map::at_rotors;
 use sophie_control::params::{MotorMap, Params};
 use sophie_control::vector::Vec3;
@@ -19,6 +21,7 @@ use crate::plant::{Actuators, Plant, STEP};
 use crate::scenario::{Faults, Scenario};
 use crate::sensors::analog::{BatteryInputs, PIN_VOLTS_PER_COUNT};
 use crate::sensors::arm_imu::{self, ArmImu, TiltBreak};
+use crate::sensors::barometer::{Barometer, MEASUREMENT_US};
 use crate::sensors::fsr::FsrSensor;
 use crate::sensors::imu::{Imu, Misfit};
 use crate::streams::Streams;
@@ -67,6 +70,8 @@ struct Sensors {
     fsr: PerArm<FsrSensor>,
     battery: BatteryInputs,
     arm_clock: f64,
+    /// `None` on a board without one.
+    barometer: Option<Barometer>,
 }
 
 impl Board {
@@ -79,7 +84,14 @@ impl Board {
     /// That of `scenario`, motors wired as its parameters say.
     #[must_use]
     pub fn of(scenario: &Scenario) -> Self {
-        Self::with(&scenario.params, scenario.streams(), &scenario.faults)
+        let board = Self::with(&scenario.params, scenario.streams(), &scenario.faults);
+        let s = &scenario.sensors;
+        if s.barometer {
+            let sound = Barometer::new(scenario.streams(), f64::from(scenario.params.mass * GRAVITY));
+            let barometer = sound.failing(s.barometer_fault, s.pose_fails_at, s.pose_fails_for);
+            board.sensors.borrow_mut().barometer = Some(barometer);
+        }
+        board
     }
 
     fn with(params: &Params, streams: Streams, faults: &Faults) -> Self {
@@ -98,6 +110,7 @@ impl Board {
                 fsr,
                 battery: BatteryInputs::new(streams),
                 arm_clock: 0.0,
+                barometer: None,
             }),
             truth: Cell::default(),
             arm_gravity: Cell::new([Some(Vec3::default()); 4]),
@@ -151,6 +164,9 @@ impl Board {
                 *g = (arm.broken() != Some(TiltBreak::Silent)).then_some(sent);
             }
             self.arm_gravity.set(gravity);
+        }
+        if let Some(barometer) = &mut sensors.barometer {
+            barometer.step(-plant.pose().position.z, plant.thrust().iter().sum());
         }
         self.truth.set(AnalogTruth {
             pressure: plant.pressure(),
@@ -232,6 +248,19 @@ impl ports::ArmImus for Port {
             .copied()
             .flatten()
             .ok_or(PortError::Absent)
+    }
+}
+
+impl ports::Barometer for Port {
+    const FITTED: bool = true;
+
+    async fn read(&mut self) -> Result<AirPressure, PortError> {
+        Timer::after_micros(MEASUREMENT_US).await;
+        let mut sensors = self.0.sensors.borrow_mut();
+        let barometer = sensors.barometer.as_mut().ok_or(PortError::Absent)?;
+        barometer
+            .measure(Instant::now().as_micros())
+            .ok_or(PortError::Timeout)
     }
 }
 

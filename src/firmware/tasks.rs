@@ -4,13 +4,13 @@
 use embassy_executor::SpawnError;
 use embassy_sync::mutex::Mutex;
 use sophie_boards::retained::Memory;
-use sophie_boards::{Board, BufferedInput, BufferedOutput, ThisChip, UsbDriver};
+use sophie_boards::{BarometerPort, Board, BufferedInput, BufferedOutput, ThisChip, UsbDriver};
 use sophie_flight::tasks as flight;
 use sophie_tasks::links::{Links, Raw};
 use sophie_tasks::mavlink::Lines;
 use sophie_tasks::mavlink::signing::Stored;
 use sophie_tasks::one_of::OneOf;
-use sophie_tasks::ports::{Look, Storage};
+use sophie_tasks::ports::{Barometer, Look, Storage};
 use sophie_tasks::schedule::TaskId;
 use sophie_tasks::shared::SharedStorage;
 use sophie_tasks::shell::{Shell, ShellPort};
@@ -67,6 +67,9 @@ pub fn spawn(
     levels.spawn(TaskId::Servos, flight::servos(links, board.servos)?);
     levels.spawn(TaskId::Position, flight::position(links)?);
     levels.spawn(TaskId::Arms, arms(links, board.arms)?);
+    if <BarometerPort as Barometer>::FITTED {
+        levels.spawn(TaskId::Barometer, barometer(links, board.barometer)?);
+    }
     levels.spawn(TaskId::Telemetry, telemetry(links, board.telemetry)?);
     let looks = board.chip.looks;
     let port: &'static Port = USB_PORT.init_with(Port::new);
@@ -116,6 +119,11 @@ pub fn spawn(
 #[embassy_executor::task]
 async fn arms(links: &'static Links, port: sophie_boards::ArmsPort) -> ! {
     sophie_tasks::arms::run(links, port).await
+}
+
+#[embassy_executor::task]
+async fn barometer(links: &'static Links, port: BarometerPort) -> ! {
+    sophie_tasks::barometer::run(links, port).await
 }
 
 #[embassy_executor::task]

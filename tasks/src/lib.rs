@@ -20,6 +20,7 @@
 
 pub mod analog;
 pub mod arms;
+pub mod barometer;
 pub mod clamp;
 pub mod commander;
 pub mod console;

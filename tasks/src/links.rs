@@ -18,6 +18,7 @@ use core::cell::{Cell, RefCell};
 use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::signal::Signal;
 use embassy_time::{Duration, Instant};
+pub use sophie_control::air_pressure::AirPressure;
 use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
 use sophie_control::attitude::Target;
 pub use sophie_control::battery::Battery;
@@ -419,11 +420,13 @@ links! {
     external_pose: ExternalPose, Mavlink to "position, console", stale after 200 ms;
     /// Flow and range below the vehicle, from the module's line or by MAVLink, of the newest one's arrival; each has its own time.
     ground: GroundView, Ground to "position, console", stale after 200 ms;
+    /// Pressure of the air by the board's barometer; without it the height of last resort is the inertial sensor's.
+    air_pressure: AirPressure, Barometer to "position, console", stale after 200 ms;
     /// Where the vehicle is; the message says since when only the inertial sensor says it. Without it nothing is held.
     position: Estimate, Position to "commander, console, log", stale after 50 ms;
     /// Where another computer sees the pipe, as it sends it; without it, and without a range, there is no perching by itself.
     pipe_target: PipeTarget, Mavlink to "commander", stale after 1500 ms;
-    /// What of pose, flow and range is wrong and left out, as long as it is.
+    /// What of pose, flow, range and air pressure is wrong and left out, as long as it is.
     position_fault: Fault, Position to "commander, console", stale after 50 ms;
     /// The attitude that another computer wishes, as it sends it; nothing flies by it.
     offboard: OffboardAttitude, Mavlink to "console", stale after 500 ms;

@@ -2,6 +2,7 @@
 
 use embassy_time::Instant;
 use heapless::{String, Vec};
+use sophie_control::air_pressure::AirPressure;
 use sophie_control::arming::ArmingInhibit;
 pub use sophie_control::chain::ImuReading;
 use sophie_control::ground::GroundView;
@@ -63,6 +64,27 @@ pub trait ArmImus {
     /// # Errors
     /// A silent, absent or uncalibrated sensor; the other three still work.
     async fn gravity(&mut self, arm: usize) -> Result<Vec3, PortError>;
+}
+
+/// The board's barometer.
+pub trait Barometer {
+    /// A board that has none spawns no task for it.
+    const FITTED: bool;
+
+    /// Measures once, within [`crate::barometer::READING`]: waits for it and holds no bus meanwhile.
+    ///
+    /// # Errors
+    /// A silent, absent or garbled part.
+    async fn read(&mut self) -> Result<AirPressure, PortError>;
+}
+
+/// No barometer.
+impl Barometer for () {
+    const FITTED: bool = false;
+
+    async fn read(&mut self) -> Result<AirPressure, PortError> {
+        Err(PortError::Absent)
+    }
 }
 
 /// Raw conversions of the analog inputs, 12 bit, right-aligned.

@@ -1,4 +1,5 @@
-//! The position estimate, 200 Hz: the inertial sensor, and the poses that others send, or flow and range.
+//! The position estimate, 200 Hz: the inertial sensor, and the poses that others send, or flow and range; for the height the
+//! pressure of the air, where there is neither.
 //!
 //! A miss makes the estimate later: its readers have a limit of ten periods. A stale attitude ends it for as long; without
 //! either there is none, and nothing is sent.
@@ -35,6 +36,9 @@ pub async fn run(links: &Links) -> ! {
         let lift = pushed
             .flatten()
             .map_or(0.0, |(thrusts, tilt)| chain::lift(&thrusts, &tilt));
+        if let Some(air) = links.air_pressure.look(|m| m.value) {
+            estimator.hear(&air);
+        }
         let at_us = at.as_micros();
         if let Some(estimate) =
             estimator.step(&Inertial { at_us, q, accel }, lift, fix.as_ref(), view.as_ref())

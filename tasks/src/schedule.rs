@@ -126,6 +126,8 @@ tasks! {
     Position "position": Steady, each 5000 us at 150 us, within 5000 us, Unwatched;
     /// Arm sensors. Their bus may stall; the mixer does without.
     Arms "arms": Background, each 10000 us at 0 us, within 10000 us, Unwatched;
+    /// Barometer, whose bus arm sensors share. Without it the height of last resort is the inertial sensor's.
+    Barometer "barometer": Background, each 40000 us at 5000 us, within 40000 us, Unwatched;
     /// Telemetry to the pilot.
     Telemetry "telemetry": Background, each 50000 us at 0 us, within 50000 us, Unwatched;
     /// MAVLink: what is due to ground stations.

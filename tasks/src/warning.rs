@@ -1,6 +1,6 @@
 //! Warnings to the pilot that do not affect the modes.
 
-use sophie_control::position::{Fault, PoseFault, SightFault, SightLimit};
+use sophie_control::position::{Fault, PoseFault, PressureFault, SightFault, SightLimit};
 
 use crate::start::StartCause;
 
@@ -11,7 +11,7 @@ pub enum Warning {
     ArmTilt,
     /// Cause of an unusual start of the board.
     Restarted(StartCause),
-    /// Pose, flow or range is left out as faulty.
+    /// Pose, flow, range or air pressure is left out as faulty.
     Position(Fault),
     /// Flow cannot be used where the vehicle is.
     Limit(SightLimit),
@@ -23,7 +23,7 @@ pub enum Warning {
 
 impl Warning {
     /// Every warning.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 20] = [
         Self::ArmTilt,
         Self::Restarted(StartCause::BrownOut),
         Self::Restarted(StartCause::Watchdog),
@@ -35,6 +35,9 @@ impl Warning {
         Self::Position(Fault::Sight(SightFault::FlowDisagrees)),
         Self::Position(Fault::Sight(SightFault::RangeFrozen)),
         Self::Position(Fault::Sight(SightFault::RangeJumps)),
+        Self::Position(Fault::Pressure(PressureFault::Frozen)),
+        Self::Position(Fault::Pressure(PressureFault::Jumps)),
+        Self::Position(Fault::Pressure(PressureFault::Disagrees)),
         Self::Limit(SightLimit::TooLow),
         Self::Limit(SightLimit::TooHigh),
         Self::Limit(SightLimit::NoRange),

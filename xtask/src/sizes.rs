@@ -9,9 +9,9 @@ use crate::boards::Board;
 use crate::image::Image;
 use crate::{Error, build};
 
-/// Of any board, bytes: half of the smallest chip's flash, the F405's 1 MiB. It was 400 KiB until USB (32 KiB) and the position
-/// by flow and range (17 KiB) came.
-const FLASH_LIMIT: u64 = 512 * 1024;
+/// Of any board, bytes: five eighths of the smallest chip's flash, the F405's 1 MiB. It was 512 KiB until the position, its
+/// sources' trust and the barometer had filled these.
+const FLASH_LIMIT: u64 = 640 * 1024;
 /// Static, of any board, bytes.
 const RAM_LIMIT: u64 = 64 * 1024;
 

@@ -18,6 +18,8 @@ pub const COAST_AGE: f32 = 1.0;
 pub const APPROACH_AGE: f32 = 1.3;
 /// Age up to which it carries the height, s: some decimetres off. Then the pilot has the throttle.
 pub const HEIGHT_AGE: f32 = 4.0;
+/// The same with the pressure of the air for the height, s: within [`crate::position::LOST_AGE`], with which the estimate ends.
+pub const PRESSURE_AGE: f32 = 9.0;
 /// Throttle of a centred stick, and the half width about it that asks for no climb, 1.
 pub const THROTTLE_CENTRE: f32 = 0.5;
 pub const THROTTLE_ZONE: f32 = 0.1;
@@ -44,7 +46,8 @@ pub fn adrift(i: &Inputs) -> bool {
 
 /// Nothing is known any more.
 pub fn lost(i: &Inputs) -> bool {
-    !younger(i, HEIGHT_AGE)
+    let by_pressure = i.position.is_some_and(|e| e.by_pressure);
+    !younger(i, if by_pressure { PRESSURE_AGE } else { HEIGHT_AGE })
 }
 
 fn younger(i: &Inputs, age: f32) -> bool {

@@ -127,6 +127,12 @@ pub struct Bus(pub Vec<Rc<RefCell<Chip>>>);
 #[derive(Debug)]
 pub struct BusError(ErrorKind);
 
+impl BusError {
+    pub fn of(kind: ErrorKind) -> Self {
+        Self(kind)
+    }
+}
+
 impl i2c::Error for BusError {
     fn kind(&self) -> ErrorKind {
         self.0

@@ -1,7 +1,9 @@
 //! Fake chips and buses in virtual time.
 
+pub mod dps310;
 pub mod fram;
 pub mod i2c;
+pub mod ms5611;
 pub mod spi;
 
 use std::cell::RefCell;

@@ -7,14 +7,15 @@ use std::rc::Rc;
 use embassy_sync::signal::Signal;
 use embassy_time::{Duration, Instant, Timer};
 use heapless::Vec as Few;
+use sophie_control::air_pressure::AirPressure;
 use sophie_control::math::GRAVITY;
 use sophie_control::params::Params;
 use sophie_control::vector::Vec3;
 use sophie_control::wrench::PerArm;
 use sophie_tasks::links::{Links, Raw};
 use sophie_tasks::ports::{
-    Analog, AnalogFrame, ArmImus, IMU_BATCH, Imu, ImuReading, Motors, PortError, Retain, SerialInput, Servos,
-    Watchdog,
+    Analog, AnalogFrame, ArmImus, Barometer, IMU_BATCH, Imu, ImuReading, Motors, PortError, Retain,
+    SerialInput, Servos, Watchdog,
 };
 use sophie_tasks::retained_state::{WORDS, Words};
 
@@ -131,6 +132,24 @@ impl ArmImus for FakeArms {
         self.1[arm].work(10).await?;
         let left = if arm < 2 { self.2.get() } else { 0.0 };
         Ok(Vec3::new(0.0, GRAVITY * left.sin(), GRAVITY * left.cos()))
+    }
+}
+
+/// A barometer that takes 15 ms and gives what the test sets, Pa, as of its middle.
+#[derive(Clone, Default)]
+pub struct FakeBarometer(pub Part, pub Rc<Cell<f32>>);
+
+impl Barometer for FakeBarometer {
+    const FITTED: bool = true;
+
+    async fn read(&mut self) -> Result<AirPressure, PortError> {
+        let at_us = Instant::now().as_micros() + 7500;
+        self.0.work(15_000).await?;
+        Ok(AirPressure {
+            at_us,
+            pascal: self.1.get(),
+            celsius: 30.0,
+        })
     }
 }
 

@@ -49,6 +49,8 @@ pub struct Stack {
     live: Option<Live>,
     /// The computer that sends poses; `None` where there is none.
     companion: Option<Companion>,
+    /// The board has a barometer.
+    barometer: bool,
     /// The module below the vehicle; `None` where there is none.
     below: Option<Below>,
 }
@@ -89,6 +91,7 @@ impl Stack {
             noise: scenario.streams().of("memory"),
             live,
             companion,
+            barometer: scenario.sensors.barometer,
             below: (scenario.sensors.position == PositionSensor::Flow).then(|| Below::new(scenario)),
         };
         stack.spawn(0);
@@ -121,6 +124,9 @@ impl Stack {
         time.spawn(sophie_tasks::supervisor::run(links, Port(board), Port(board)));
         // Background.
         time.spawn(sophie_tasks::arms::run(links, Port(board)));
+        if self.barometer {
+            time.spawn(sophie_tasks::barometer::run(links, Port(board)));
+        }
         time.spawn(sophie_tasks::telemetry::run(links, Port(board)));
         if let Some(live) = &mut self.live {
             live.spawn(&time, links);

@@ -7,7 +7,7 @@ use sophie_control::wrench::{Configuration, PerArm};
 use sophie_mixers::Variant;
 
 use super::faults;
-use super::{Assist, FlowFault, PoseFault, PositionSensor, Scenario, ServoProfile};
+use super::{Assist, BarometerFault, FlowFault, PoseFault, PositionSensor, Scenario, ServoProfile};
 
 /// One key.
 pub struct Key {
@@ -118,6 +118,8 @@ pub const POSE_FAULTS: &[&str] = &[
     "target-jumps",
     "target-far",
 ];
+/// Words for how a barometer fails.
+pub const BAROMETER_FAULTS: &[&str] = &["none", "silent", "frozen", "jumps", "drifts"];
 /// Words for what the pilot leaves to the vehicle.
 pub const ASSISTS: &[&str] = &["none", "hold", "self"];
 
@@ -220,6 +222,17 @@ pub fn pose_fault(word: &str) -> PoseFault {
         "target-jumps" => PoseFault::TargetJumps,
         "target-far" => PoseFault::TargetFar,
         _ => PoseFault::Silent,
+    }
+}
+
+/// A word from [`BAROMETER_FAULTS`].
+pub fn barometer_fault(word: &str) -> BarometerFault {
+    match word {
+        "silent" => BarometerFault::Silent,
+        "frozen" => BarometerFault::Frozen,
+        "jumps" => BarometerFault::Jumps,
+        "drifts" => BarometerFault::Drifts,
+        _ => BarometerFault::None,
     }
 }
 
@@ -453,6 +466,16 @@ pub const KEYS: &[Key] = &[
     Key {
         name: "sensors.pose_fault",
         kind: Kind::Choice(POSE_FAULTS, |s, v| s.sensors.pose_fault = pose_fault(v)),
+    },
+    Key {
+        name: "sensors.barometer",
+        kind: Kind::Flag(|s| &mut s.sensors.barometer),
+    },
+    Key {
+        name: "sensors.barometer_fault",
+        kind: Kind::Choice(BAROMETER_FAULTS, |s, v| {
+            s.sensors.barometer_fault = barometer_fault(v);
+        }),
     },
     number!("pilot.delay_s", Range::new(0.0, 1.0, "s"), pilot.delay),
     number!("pilot.bandwidth_hz", Range::new(0.2, 20.0, "Hz"), pilot.bandwidth),

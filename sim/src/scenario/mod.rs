@@ -236,6 +236,26 @@ pub struct Sensors {
     pub flow_fault: FlowFault,
     /// How poses fail then.
     pub pose_fault: PoseFault,
+    /// The board carries a barometer.
+    pub barometer: bool,
+    /// How it fails then.
+    pub barometer_fault: BarometerFault,
+}
+
+/// How a barometer fails.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BarometerFault {
+    /// Not at all.
+    #[default]
+    None,
+    /// It says nothing.
+    Silent,
+    /// It says the same all the time.
+    Frozen,
+    /// It jumps by 2 m, back and forth.
+    Jumps,
+    /// It drifts by 1 m/s.
+    Drifts,
 }
 
 /// How a source of poses fails.

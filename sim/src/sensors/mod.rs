@@ -2,6 +2,7 @@
 
 pub mod analog;
 pub mod arm_imu;
+pub mod barometer;
 pub mod flow;
 pub mod fsr;
 pub mod imu;

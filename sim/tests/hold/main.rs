@@ -1,5 +1,6 @@
 //! Flights that hold their position by poses over MAVLink, or by flow and range, through every task.
 
+mod barometer;
 mod by_itself;
 mod flow;
 mod on_the_way;

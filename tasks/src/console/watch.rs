@@ -34,7 +34,7 @@ struct Group {
     read: fn(&Links) -> Row,
 }
 
-const GROUPS: [Group; 10] = [
+const GROUPS: [Group; 11] = [
     Group {
         name: "sticks",
         what: "sticks -1 to 1, throttle 0 to 1, switches by their position",
@@ -97,6 +97,13 @@ const GROUPS: [Group; 10] = [
         columns: "       x       y       z      vx      vy      vz      wx      wy     age",
         places: 2,
         read: position,
+    },
+    Group {
+        name: "air",
+        what: "pressure of the air in Pa, temperature of the barometer in deg C",
+        columns: "      Pa    degC",
+        places: 1,
+        read: air,
     },
     Group {
         name: "offb",
@@ -216,6 +223,13 @@ fn position(links: &Links) -> Row {
     let motion = [e.position, e.velocity].into_iter().flat_map(Vec3::to_array);
     let wind = [e.disturbance.x, e.disturbance.y];
     motion.chain(wind).chain([e.age]).map(Some).collect()
+}
+
+fn air(links: &Links) -> Row {
+    let Some(air) = links.air_pressure.fresh() else {
+        return silent(2);
+    };
+    [air.pascal, air.celsius].into_iter().map(Some).collect()
 }
 
 fn offboard(links: &Links) -> Row {

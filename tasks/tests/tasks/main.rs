@@ -2,6 +2,7 @@
 
 mod analog;
 mod arms;
+mod barometer;
 mod bench;
 mod calibrate;
 mod clamp;

@@ -35,6 +35,9 @@ fn to_do(warning: Warning) -> &'static str {
         Warning::Position(Fault::Sight(SightFault::RangeJumps)) => {
             "Steer it away from what is rough below; look at the lens."
         }
+        Warning::Position(Fault::Pressure(_)) => {
+            "Go on: it counts where pose or range are lost alone. Foam over the barometer, or a new board."
+        }
         Warning::Limit(SightLimit::TooLow | SightLimit::TooHigh) => {
             "Fly within 8 cm to 2.5 m of what is below, or by hand."
         }

@@ -173,6 +173,31 @@ fn a_source_that_comes_back_in_time_holds_where_the_vehicle_is_then() {
 }
 
 #[test]
+fn with_the_height_by_pressure_the_hold_lasts_for_nine_seconds() {
+    let mut r = holding();
+    r.run(1.0);
+    let by_pressure = |r: &mut Rig, age, by_pressure| {
+        r.inputs.position = Some(Estimate {
+            age,
+            by_pressure,
+            ..r.inputs.position.unwrap()
+        });
+    };
+    by_pressure(&mut r, 8.9, true);
+    r.expect(0.5, Mode::Hold);
+    assert_eq!(r.out.reason, Some(Reason::PositionStale));
+    by_pressure(&mut r, 9.1, true);
+    r.expect(0.02, Mode::Flight);
+    // Where the pressure ends as well, it is as without.
+    let mut r = holding();
+    r.run(1.0);
+    by_pressure(&mut r, 4.1, true);
+    r.expect(0.5, Mode::Hold);
+    by_pressure(&mut r, 4.1, false);
+    r.expect(0.02, Mode::Flight);
+}
+
+#[test]
 fn the_learnt_wind_is_leant_against_without_a_position_and_the_sticks_tilt() {
     let wind = 0.55;
     let mut r = placed(0.02);

@@ -100,14 +100,16 @@ fn position() -> impl Strategy<Value = Option<Estimate>> {
     let point = prop_oneof![3 => vector(20.0).prop_map(Some), 1 => Just(None)];
     let foot = (point, any::<u8>(), prop_oneof![3 => Just(0.02f32), 1 => number()])
         .prop_map(|(point, count, age)| Foot { point, count, age });
+    let age = (age, any::<bool>());
     let some = (vector(20.0), vector(5.0), vector(8.0), number(), age, jumps, foot).prop_map(
-        |(position, velocity, disturbance, turn, age, jumps, foot)| {
+        |(position, velocity, disturbance, turn, (age, by_pressure), jumps, foot)| {
             Some(Estimate {
                 position,
                 velocity,
                 disturbance,
                 turn,
                 age,
+                by_pressure,
                 jumps,
                 foot,
             })
