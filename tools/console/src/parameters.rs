@@ -75,16 +75,23 @@ pub struct Version {
     pub build: String,
 }
 
-/// What runs on the board, as it says it.
+/// What runs on the board, as it says it. Lines that are lost on the way are asked for again; a firmware that has none of them
+/// is an earlier one.
 ///
 /// # Errors
 /// The line is lost.
 pub fn version(session: &mut Session) -> Result<Version, Failure> {
-    let said = session.ask("version")?;
-    let line = |begin: &str| said.iter().find(|line| line.starts_with(begin)).cloned();
+    let (mut firmware, mut build) = (None, None);
+    let mut tries = 0..TRIES;
+    while (firmware.is_none() || build.is_none()) && tries.next().is_some() {
+        let said = session.ask("version")?;
+        let line = |begin: &str| said.iter().find(|line| line.starts_with(begin)).cloned();
+        firmware = firmware.or_else(|| line("SOPHIE "));
+        build = build.or_else(|| line("build "));
+    }
     Ok(Version {
-        firmware: line("SOPHIE ").unwrap_or_else(|| "an earlier firmware".to_owned()),
-        build: line("build ").unwrap_or_else(|| "build unknown".to_owned()),
+        firmware: firmware.unwrap_or_else(|| "an earlier firmware".to_owned()),
+        build: build.unwrap_or_else(|| "build unknown".to_owned()),
     })
 }
 
