@@ -54,7 +54,7 @@ fn with_a_barometer_the_height_lasts_where_range_or_poses_end() {
 }
 
 #[test]
-#[ignore = "a hundred and sixty flights: prints a table of seeds 1 to 20"]
+#[ignore = "a hundred and sixty flights, a table of seeds 1 to 20: .ci/campaign flies them"]
 fn how_far_the_height_goes_with_most_seeds() {
     println!("| source | barometer | held for | median | worst |\n|---|---|---:|---:|---:|");
     for position in [PositionSensor::Flow, PositionSensor::Pose] {

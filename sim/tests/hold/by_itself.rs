@@ -143,7 +143,7 @@ fn flown_in_wind(seeds: &[u64], across: bool, arms: ArmChoice) -> (usize, usize,
 }
 
 #[test]
-#[ignore = "two hundred missions by pose"]
+#[ignore = "two hundred missions by pose: .ci/campaign flies them"]
 fn wind_across_the_pipe_costs_no_more_than_along_it() {
     let seeds: Vec<u64> = (1..=50).collect();
     for arms in [ArmChoice::All, ArmChoice::Front] {
