@@ -14,6 +14,8 @@ pub use laws::Laws;
 pub use margins::Margins;
 pub use response::{Complex, Response};
 pub use resting::{Place, resting_margins, slide};
+#[cfg(test)]
+pub use vehicle::STEPS;
 pub use vehicle::{AXES, Hovering};
 
 use sophie_control::chain::CONTROL_RATE_HZ;

@@ -46,6 +46,12 @@ const QUIET: usize = 300;
 /// m, NED: off ground and pipe.
 const PLACE: DVec3 = DVec3::new(0.0, 0.0, -1000.0);
 
+#[cfg(test)]
+thread_local! {
+    /// Steps of hovering vehicles, nearly all of what a check costs.
+    pub static STEPS: std::cell::Cell<u64> = const { std::cell::Cell::new(0) };
+}
+
 /// A vehicle that hovers in still air.
 #[derive(Clone)]
 pub struct Hovering {
@@ -157,6 +163,8 @@ impl Hovering {
     }
 
     fn step(&mut self, wrench: Wrench) {
+        #[cfg(test)]
+        STEPS.set(STEPS.get() + 1);
         self.at_us += 1000;
         let surroundings = Surroundings {
             battery_ratio: Some(self.plant.battery_voltage() as f32 / self.params.battery_nominal),
