@@ -271,12 +271,12 @@ impl View {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::super::synthetic;
     use super::*;
 
     /// The synthetic flight, with the way from 5 to 3 cm over its pipe in two tries, flown by itself.
-    fn flown() -> FlightRecord {
+    pub fn flown() -> FlightRecord {
         let mut record = synthetic::record();
         let crown = record.scenario.world.pipe_position[1];
         for s in &mut record.samples {

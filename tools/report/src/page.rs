@@ -140,17 +140,28 @@ fn scenes(record: &FlightRecord) -> String {
     section("Key moments", note, &(out + "</div>"))
 }
 
+/// What the approach's dots are.
+const RANGE_FELL: &str = "<li><svg viewBox=\"0 0 30 12\"><circle class=\"foot\" cx=\"9\" cy=\"6\" r=\"2\"/>\
+    <circle class=\"foot\" cx=\"20\" cy=\"6\" r=\"2\"/></svg>where the range fell</li>";
+
 fn approach(record: &FlightRecord) -> String {
     let Some((svg, caption)) = approach::draw(record) else {
         return String::new();
     };
-    let legend = "<ul class=\"legend\">\
+    // A flight by pose has no range.
+    let range = if svg.contains("class=\"foot\"") {
+        RANGE_FELL
+    } else {
+        ""
+    };
+    let legend = format!(
+        "<ul class=\"legend\">\
         <li><svg viewBox=\"0 0 30 12\"><path class=\"trace true\" d=\"M0 6L30 6\"/></svg>true way</li>\
         <li><svg viewBox=\"0 0 30 12\"><path class=\"trace estimate\" d=\"M0 6L30 6\"/></svg>estimated way</li>\
-        <li><svg viewBox=\"0 0 30 12\"><circle class=\"foot\" cx=\"9\" cy=\"6\" r=\"2\"/>\
-        <circle class=\"foot\" cx=\"20\" cy=\"6\" r=\"2\"/></svg>where the range fell</li>\
+        {range}\
         <li><svg viewBox=\"0 0 30 12\"><circle class=\"begin\" cx=\"15\" cy=\"6\" r=\"4\"/></svg>begin</li>\
-        <li><svg viewBox=\"0 0 30 12\"><path class=\"touch\" d=\"M10 1L20 11M10 11L20 1\"/></svg>touch</li></ul>";
+        <li><svg viewBox=\"0 0 30 12\"><path class=\"touch\" d=\"M10 1L20 11M10 11L20 1\"/></svg>touch</li></ul>"
+    );
     let content = format!("{legend}<div class=\"scroll\">{svg}</div>");
     section("Approach by itself", &caption, &content)
 }
@@ -276,6 +287,17 @@ pub(super) mod tests {
             page.contains("&lt;&amp;&quot;&gt;"),
             "texts of events are escaped"
         );
+    }
+
+    #[test]
+    fn the_legend_of_an_approach_names_the_range_where_there_was_one() {
+        let mut record = approach::tests::flown();
+        let ranged = |record: &FlightRecord| html(record).contains("where the range fell");
+        assert!(ranged(&record));
+        record.samples.iter_mut().for_each(|s| s.range_measured = None);
+        let page = html(&record);
+        assert!(page.contains("true way") && !ranged(&record));
+        well_formed(&(body(&page).to_owned() + "</body>"));
     }
 
     #[test]
