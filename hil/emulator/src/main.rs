@@ -17,19 +17,18 @@ use sophie_emulator::bench::Setup;
 use sophie_emulator::compare;
 use sophie_emulator::elf::Firmware;
 use sophie_emulator::flight::{self, Flight};
-use sophie_emulator::flyable;
 use sophie_emulator::log::Line;
 use sophie_emulator::plan::{Plan, Trouble};
 use sophie_emulator::silicon;
 use sophie_emulator::terminal::{Sockets, Terminal};
 use sophie_emulator::wires::{BoardFault, Gap};
-use sophie_emulator::{SPEEDS, arguments, boards};
+use sophie_emulator::{arguments, boards};
 use sophie_report::terminal::console::{self, Console};
 use sophie_report::terminal::live::Lines;
 use sophie_report::terminal::output::OutDir;
 use sophie_report::terminal::{Besides, FILES, complain, finish, result};
 use sophie_sim::record::Silent;
-use sophie_sim::scenario::{Overrides, Scenario};
+use sophie_sim::scenario::Scenario;
 
 const PROGRAM: &str = "bench";
 /// The decoded log, and the log as written by the firmware.
@@ -108,19 +107,8 @@ fn main() -> ExitCode {
 
 fn run(args: &Args) -> Result<bool, String> {
     let board = boards::find(&args.board)?;
-    if !SPEEDS.contains(&args.speed) {
-        let (low, high) = (SPEEDS.start(), SPEEDS.end());
-        return Err(format!("--speed {}: allowed is {low} to {high}", args.speed));
-    }
-    let overrides = Overrides {
-        seed: args.seed,
-        ..Overrides::default()
-    };
-    let scenario = match &args.scenario {
-        Some(path) => Scenario::load(path, &overrides).map_err(|e| e.to_string())?,
-        None => Scenario::default_mission_with(&overrides),
-    };
-    flyable::check(&scenario)?;
+    arguments::check_speed(args.speed)?;
+    let scenario = arguments::scenario(args.scenario.as_deref(), args.seed)?;
     let firmware = Firmware::read(&args.elf, board)?;
     let listen = |option, port: Option<u16>| port.map(|port| Terminal::listen(option, port)).transpose();
     let sockets = Sockets {

@@ -13,11 +13,11 @@ use sophie_emulator::elf::Firmware;
 use sophie_emulator::flight::{self, Flight};
 use sophie_emulator::plan::Plan;
 use sophie_emulator::terminal::Sockets;
-use sophie_emulator::{SPEEDS, arguments, boards, compare, flyable};
+use sophie_emulator::{arguments, boards, compare};
 use sophie_report::terminal::complain;
 use sophie_sim::parallel;
 use sophie_sim::record::{FlightRecord, Silent};
-use sophie_sim::scenario::{Overrides, Scenario};
+use sophie_sim::scenario::Scenario;
 
 const PROGRAM: &str = "sample";
 /// Most seeds of one call: a mission takes minutes.
@@ -70,26 +70,11 @@ fn main() -> ExitCode {
 
 fn run(args: &Args) -> Result<bool, String> {
     let board = boards::find(&args.board)?;
-    if !SPEEDS.contains(&args.speed) {
-        let (low, high) = (SPEEDS.start(), SPEEDS.end());
-        return Err(format!("--speed {}: allowed is {low} to {high}", args.speed));
-    }
-    let scenario = |seed| -> Result<Scenario, String> {
-        let overrides = Overrides {
-            seed: Some(seed),
-            ..Overrides::default()
-        };
-        let scenario = match &args.scenario {
-            Some(path) => Scenario::load(path, &overrides).map_err(|e| e.to_string())?,
-            None => Scenario::default_mission_with(&overrides),
-        };
-        flyable::check(&scenario)?;
-        Ok(scenario)
-    };
-    let seeds: Vec<u64> = args.seeds.clone().collect();
-    let scenarios = seeds
-        .into_iter()
-        .map(scenario)
+    arguments::check_speed(args.speed)?;
+    let scenarios = args
+        .seeds
+        .clone()
+        .map(|seed| arguments::scenario(args.scenario.as_deref(), Some(seed)))
         .collect::<Result<Vec<_>, String>>()?;
     let firmware = Firmware::read(&args.elf, board)?;
     let results = parallel::each(&scenarios, |scenario| {
