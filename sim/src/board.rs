@@ -8,7 +8,6 @@ use embassy_sync::signal::Signal;
 use embassy_time::{Instant, Timer};
 use heapless::Vec;
 use sophie_control::air_pressure::AirPressure;
-use sophie_control::math::GRAVITY;
 use sophie_control::motor_map::at_rotors;
 use sophie_control::params::{MotorMap, Params};
 use sophie_control::vector::Vec3;
@@ -85,11 +84,8 @@ impl Board {
     #[must_use]
     pub fn of(scenario: &Scenario) -> Self {
         let board = Self::with(&scenario.params, scenario.streams(), &scenario.faults);
-        let s = &scenario.sensors;
-        if s.barometer {
-            let sound = Barometer::new(scenario.streams(), f64::from(scenario.params.mass * GRAVITY));
-            let barometer = sound.failing(s.barometer_fault, s.pose_fails_at, s.pose_fails_for);
-            board.sensors.borrow_mut().barometer = Some(barometer);
+        if scenario.sensors.barometer {
+            board.sensors.borrow_mut().barometer = Some(Barometer::of(scenario));
         }
         board
     }

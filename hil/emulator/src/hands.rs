@@ -31,6 +31,8 @@ pub struct Held {
     pub pressed: PerArm<f64>,
     /// Each arm's tip up, beyond where it hangs, rad.
     pub bent: PerArm<f64>,
+    /// Above the table, m.
+    pub height: f64,
     /// Of a transmitter on CRSF; `None`: it is off.
     pub sticks: Option<Sticks>,
     /// The rotors that the outputs' wires lead to.
@@ -70,6 +72,7 @@ impl Default for Hands {
             below: Face::Belly,
             pressed: [0.0; 4],
             bent: [0.0; 4],
+            height: 0.0,
             sticks: None,
             wiring: MotorMap::M1234,
         };
@@ -128,6 +131,7 @@ impl Hands {
             rate: turn.to_scaled_axis() / STEP,
             pressed: held.pressed,
             bent: held.bent,
+            height: held.height,
             sticks: held.sticks,
         }
     }
@@ -152,6 +156,8 @@ pub struct InHands {
     pub pressed: PerArm<f64>,
     /// Tips up, rad.
     pub bent: PerArm<f64>,
+    /// Above the table, m.
+    pub height: f64,
     sticks: Option<Sticks>,
 }
 

@@ -6,6 +6,7 @@ use sophie_sim::plant::{Plant, STEP};
 use sophie_sim::scenario::Scenario;
 use sophie_sim::sensors::analog::{AMPS_PER_COUNT, BatteryInputs, VOLTS_PER_COUNT};
 use sophie_sim::sensors::arm_imu::{self, ArmImu};
+use sophie_sim::sensors::barometer::Barometer;
 use sophie_sim::sensors::fsr::{FsrBreak, FsrSensor};
 use sophie_sim::sensors::imu::Imu;
 
@@ -27,6 +28,9 @@ pub struct Sensors {
     arms: PerArm<ArmImu>,
     fsr: PerArm<FsrSensor>,
     battery: BatteryInputs,
+    barometer: Barometer,
+    /// Since power-on, ms.
+    ms: u64,
     arm_clock: f64,
     gravity: PerArm<Vec3>,
     /// 12 bits.
@@ -51,6 +55,8 @@ impl Sensors {
             arms,
             fsr,
             battery: BatteryInputs::new(streams),
+            barometer: Barometer::of(scenario),
+            ms: 0,
             arm_clock: 0.0,
             gravity: [Vec3::new(0.0, 0.0, 9.806_65); 4],
             pressure_counts: [0; 4],
@@ -107,6 +113,11 @@ impl Sensors {
             }
         }
         wires.arms = self.gravity.map(|g| g.to_array().map(f64::from));
+        self.ms += 1;
+        let height = hands.map_or(-plant.pose().position.z, |held| held.height);
+        self.barometer.step(height, plant.thrust().iter().sum());
+        let air = self.barometer.measure(self.ms * 1000);
+        wires.air = air.map(|air| (f64::from(air.pascal), f64::from(air.celsius)));
         let volts = |counts: u16| f64::from(counts) * REFERENCE / FULL_SCALE;
         let pressed = hands.map_or([0.0; 4], |held| held.pressed);
         let pressures = plant.pressure().into_iter().zip(pressed);

@@ -14,6 +14,8 @@ pub struct Wires {
     pub imu: Vec<([f64; 3], [f64; 3])>,
     /// Gravity at each arm's sensor, m/s², arm axes (forward, right, down).
     pub arms: PerArm<[f64; 3]>,
+    /// Pressure (Pa) and temperature (°C) at the barometer; `None`: it answers no more.
+    pub air: Option<(f64, f64)>,
     /// Pads of pressure 1 to 4 (V), battery voltage (V) and current (A).
     pub analog: [f64; 6],
     /// Parity, if any, is the top bit.
@@ -124,6 +126,31 @@ pub struct Run {
     pub pins_digest: u64,
     /// Steps with counted instructions.
     pub counted: Counted,
+    /// What was read on the arms' buses.
+    pub reads: Reads,
+}
+
+/// Times at which parts on the arms' buses gave a measurement, ns.
+#[derive(Clone, Debug, Default)]
+pub struct Reads {
+    /// Pressures of the barometer.
+    pub barometer: Vec<u64>,
+    /// Of the sensor of each arm.
+    pub arms: PerArm<Vec<u64>>,
+}
+
+impl Reads {
+    /// Measurements a second of the barometer and of each arm's sensor, between `from` and `to`, s.
+    #[must_use]
+    pub fn rates(&self, from: f64, to: f64) -> (f64, PerArm<f64>) {
+        let rate = |times: &Vec<u64>| {
+            let within = times
+                .iter()
+                .filter(|ns| (from..to).contains(&(**ns as f64 * 1e-9)));
+            within.count() as f64 / (to - from)
+        };
+        (rate(&self.barometer), self.arms.each_ref().map(rate))
+    }
 }
 
 /// An output around resets.

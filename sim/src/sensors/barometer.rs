@@ -11,8 +11,9 @@ use std::collections::VecDeque;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 use sophie_control::air_pressure::AirPressure;
+use sophie_control::math::GRAVITY;
 
-use crate::scenario::BarometerFault;
+use crate::scenario::{BarometerFault, Scenario};
 use crate::streams::Streams;
 
 /// Time of a measurement, µs.
@@ -72,6 +73,14 @@ impl Barometer {
             failure: (0, 0),
             held: None,
         }
+    }
+
+    /// That of the vehicle of `scenario`, which fails as it has it.
+    #[must_use]
+    pub fn of(scenario: &Scenario) -> Self {
+        let s = &scenario.sensors;
+        let sound = Self::new(scenario.streams(), f64::from(scenario.params.mass * GRAVITY));
+        sound.failing(s.barometer_fault, s.pose_fails_at, s.pose_fails_for)
     }
 
     /// The same, with `fault` from `at` s after power-up for `seconds`.

@@ -8,6 +8,7 @@ use rigless::time::VirtualNanos;
 
 use super::chip::{Chip, Options};
 use super::chips::bno055::Bno055;
+use super::chips::dps310::Barometer;
 use super::chips::icm42688p::Imu;
 use super::chips::line::Line;
 use super::edge_probe::Edge;
@@ -20,6 +21,7 @@ pub struct Wired<C> {
     pads: &'static Pads,
     core: rigless::emulator::CoreSpec,
     dividers: [f64; 4],
+    barometer_silent: bool,
 }
 
 impl<C: Chip> Wired<C> {
@@ -36,6 +38,7 @@ impl<C: Chip> Wired<C> {
             pads,
             core,
             dividers: [1.0; 4],
+            barometer_silent: false,
         })
     }
 
@@ -77,7 +80,26 @@ impl<C: Chip> Wired<C> {
 
     pub fn silence_arm(&mut self, arm: usize, silent: bool) {
         if let Some((bus, _)) = self.pads.arms.get(arm) {
-            self.chip.silence_arm(*bus, arm % 2, silent);
+            self.chip.silence_on_bus(*bus, arm % 2, silent);
+        }
+    }
+
+    pub fn barometer(&mut self) -> Option<&mut Barometer> {
+        let (bus, nth) = self.pads.barometer?;
+        self.chip.barometer(bus, nth)
+    }
+
+    /// Puts pressure (Pa) and temperature (°C) on the barometer; `None`: it answers no more.
+    pub fn set_air(&mut self, air: Option<(f64, f64)>) {
+        let Some((bus, nth)) = self.pads.barometer else {
+            return;
+        };
+        if air.is_none() != self.barometer_silent {
+            self.barometer_silent = air.is_none();
+            self.chip.silence_on_bus(bus, nth, air.is_none());
+        }
+        if let (Some((pascal, celsius)), Some(part)) = (air, self.chip.barometer(bus, nth)) {
+            part.feel(pascal, celsius);
         }
     }
 

@@ -8,6 +8,7 @@ use rigless::mcu::Mcu;
 use rigless::time::VirtualNanos;
 
 use super::chips::bno055::Bno055;
+use super::chips::dps310::Barometer;
 use super::chips::icm42688p::Imu;
 use super::chips::line::Line;
 use super::edge_probe::Edge;
@@ -43,8 +44,9 @@ pub trait Chip: Mcu + Debug + Send + 'static {
     /// Flips `mask` in its next word.
     fn flip_imu_word(&mut self, interface: usize, mask: u64);
     fn arm(&mut self, bus: usize, nth: usize) -> Option<&mut Bno055>;
-    /// Disconnects (true) or connects it.
-    fn silence_arm(&mut self, bus: usize, nth: usize, silent: bool);
+    fn barometer(&mut self, bus: usize, nth: usize) -> Option<&mut Barometer>;
+    /// Disconnects (true) or connects the `nth` part of a bus.
+    fn silence_on_bus(&mut self, bus: usize, nth: usize, silent: bool);
     fn set_input(&mut self, channel: u8, millivolts: u32);
     fn line(&mut self, port: usize) -> Option<&mut Line>;
     fn function(&mut self, now: VirtualNanos, pin: At) -> Option<u8>;
@@ -109,6 +111,9 @@ macro_rules! same_on_this_part {
             for (bus, address) in pads.arms {
                 self.i2c(bus).attach(Bno055::new(address));
             }
+            if let Some((bus, _)) = pads.barometer {
+                self.i2c(bus).attach(Barometer::new());
+            }
             for port in [pads.receiver, pads.console, pads.mavlink, pads.ground] {
                 self.inner.usart[port].attach(Line::default());
             }
@@ -133,7 +138,11 @@ macro_rules! same_on_this_part {
             self.i2c(bus).chip_mut(nth)
         }
 
-        fn silence_arm(&mut self, bus: usize, nth: usize, silent: bool) {
+        fn barometer(&mut self, bus: usize, nth: usize) -> Option<&mut Barometer> {
+            self.i2c(bus).chip_mut(nth)
+        }
+
+        fn silence_on_bus(&mut self, bus: usize, nth: usize, silent: bool) {
             let _ = self.i2c(bus).silence(nth, silent);
         }
 

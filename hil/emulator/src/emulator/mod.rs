@@ -48,7 +48,7 @@ use crate::chain::Counted;
 use crate::elf::Firmware;
 use crate::esc::{self, Esc};
 use crate::stored;
-use crate::wires::{BoardFault, Digest, FarEnd, Gap, Hung, Latency, Pins, Run, Wires};
+use crate::wires::{BoardFault, Digest, FarEnd, Gap, Hung, Latency, Pins, Reads, Run, Wires};
 
 const MS: u64 = 1_000_000;
 /// Port registers of both processors (RM0433 table 8, RM0090 table 1).
@@ -224,6 +224,17 @@ fn run<C: Chip>(
         at,
         what,
     }));
+    let board = finished.session.board_mut();
+    let reads = Reads {
+        barometer: board
+            .barometer()
+            .map_or(Vec::new(), |part| std::mem::take(&mut part.read_at)),
+        arms: std::array::from_fn(|arm| {
+            board
+                .arm(arm)
+                .map_or(Vec::new(), |part| std::mem::take(&mut part.read_at))
+        }),
+    };
     let world = finished.driver;
     gaps.extend(world.impossible.iter().map(|fault| Gap {
         kind: "refused",
@@ -247,6 +258,7 @@ fn run<C: Chip>(
         outputs: world.outputs.found,
         servos: world.servos,
         pins_digest: world.digest.0,
+        reads,
         counted: world.counter.map_or_else(Counted::default, Counter::finish),
     })
 }
@@ -537,6 +549,7 @@ impl World {
                 sensor.up = [-x, y, z];
             }
         }
+        board.set_air(wires.air);
         board.set_analog(wires.analog);
         if let Some(line) = board.receiver() {
             line.outgoing.extend(wires.receiver);

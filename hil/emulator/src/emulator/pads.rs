@@ -99,6 +99,8 @@ pub struct Pads {
     pub imu_axes: fn([f64; 3]) -> [f64; 3],
     /// Bus and address, arms 1 to 4.
     pub arms: [(usize, u8); 4],
+    /// Bus of the barometer, and its place on it behind the arms' sensors.
+    pub barometer: Option<(usize, usize)>,
     /// 1 to 4.
     pub pressure: [AnalogPad; 4],
     /// Pad of the battery voltage.

@@ -2,6 +2,7 @@ use sophie_control::mode::Mode;
 use sophie_emulator::compare;
 use sophie_emulator::wires::BoardFault;
 use sophie_sim::record::FlightRecord;
+use sophie_sim::scenario::BarometerFault;
 use sophie_sim::sensors::fsr::FsrBreak;
 use sophie_timing::live::{self, Contact, Line};
 
@@ -159,10 +160,62 @@ fn in_time(flight: &Flight, longest: f64, jitter: f64) {
     assert!(flight.board.resets.is_empty() && flight.board.malformed == 0);
 }
 
+/// The barometer answers no more in these seconds, on sound buses.
+const NO_BAROMETER: [f64; 2] = [3.5, 5.0];
+/// From the repair of the worst buses on: the longest pause of a driver after failures, and its start.
+const REPAIRED: f64 = AIRBORNE + 4.0;
+const BACK: f64 = REPAIRED + 1.5;
+
+/// Requires the barometer's 25 and the arm sensors' 100 measurements a second, the latter also where the barometer on their
+/// bus is missing, and again once clocks were held on it.
+fn shares_its_bus(flight: &Flight) {
+    let reads = &flight.board.run.reads;
+    let [missing, found] = NO_BAROMETER;
+    for (from, to, pressures) in [
+        (2.5, missing, 24.5..25.6),
+        // Reset and set up after a pause of a second at most.
+        (missing + 0.1, found, 0.0..0.1),
+        (found + 1.5, AIRBORNE, 24.5..25.6),
+        (BACK, BACK + 1.0, 23.9..26.1),
+    ] {
+        let (barometer, arms) = reads.rates(from, to);
+        // For docs/timing.md.
+        println!("{from} to {to} s: barometer {barometer:.1} Hz, arms {arms:.1?} Hz");
+        assert!(
+            pressures.contains(&barometer) && arms.iter().all(|rate| (98.0..102.0).contains(rate)),
+            "{from} to {to} s: {barometer} {arms:?}\n{}",
+            log(flight)
+        );
+    }
+    let named = logged_at(flight, missing, "DPS310: ");
+    assert!(named.is_some_and(|t| t < missing + 0.3), "{}", log(flight));
+    // While the buses are sound nothing is late, whoever answers or does not.
+    let late = flight
+        .board
+        .lines
+        .iter()
+        .find(|line| line.text.contains(" overruns in "));
+    assert!(
+        late.is_none_or(|line| line.ms as f64 * 1e-3 > AIRBORNE),
+        "{}",
+        log(flight)
+    );
+}
+
 #[test]
 fn the_flight_level_is_in_time_while_the_background_is_at_its_worst() {
-    let flight = fly(&hover(AIRBORNE + 4.0), 1.0, &background_at_its_worst());
+    let [missing, found] = NO_BAROMETER;
+    let mut scenario = hover(BACK + 1.0);
+    let s = &mut scenario.sensors;
+    (s.barometer_fault, s.pose_fails_at, s.pose_fails_for) =
+        (BarometerFault::Silent, missing, found - missing);
+    let mut troubles = background_at_its_worst();
+    for bus in 0..2 {
+        troubles.push((REPAIRED, Trouble::Board(BoardFault::ClockHeld(bus, 0))));
+    }
+    let flight = fly(&scenario, 1.0, &troubles);
     in_time(&flight, 30.0, 5.0);
+    shares_its_bus(&flight);
 }
 
 #[test]

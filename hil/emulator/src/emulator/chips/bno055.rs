@@ -67,6 +67,8 @@ pub struct Bno055 {
     fused: u64,
     /// Specific force at rest (up), m/s², chip axes.
     pub up: [f64; 3],
+    /// Times at which it was read, ns.
+    pub read_at: Vec<u64>,
 }
 
 store!(Bno055);
@@ -85,6 +87,7 @@ impl Bno055 {
             since: 0,
             fused: 0,
             up: [0.0, 0.0, 9.806_65],
+            read_at: Vec::new(),
         };
         chip.restart(BOOT[0]);
         chip
@@ -213,7 +216,10 @@ impl i2c::Peer for Bno055 {
         true
     }
 
-    fn read(&mut self, _: bool, _: &mut Timeline<'_, '_>) -> u8 {
+    fn read(&mut self, _: bool, c: &mut Timeline<'_, '_>) -> u8 {
+        if (self.page, self.pointer) == (0, reg::GRV_DATA) {
+            self.read_at.push(c.now().0);
+        }
         let value = match (self.page, self.pointer) {
             (page, reg::PAGE_ID) => page,
             (0, register) => self.registers[usize::from(register)],

@@ -37,6 +37,7 @@ use self::i2c::DmaI2c;
 use self::small_timer::{TwoChannels, tim12};
 use super::chip::{CRYSTAL_READY, Chip, Clock, Options, PLL_LOCKED, same_on_this_part};
 use super::chips::bno055::Bno055;
+use super::chips::dps310::Barometer;
 use super::chips::icm42688p::Imu;
 use super::chips::line::Line;
 use super::clock_stretch::ClockStretch;
@@ -85,6 +86,7 @@ pub static PADS: Pads = Pads {
     // Marking up, x forward: the chip's y points left and its z up.
     imu_axes: |[x, y, z]| [x, -y, -z],
     arms: [(0, 0x28), (0, 0x29), (1, 0x28), (1, 0x29)],
+    barometer: None,
     pressure: [
         AnalogPad::bare(At(2, 0), 10),
         AnalogPad::bare(At(2, 1), 11),

@@ -26,6 +26,7 @@ use rigless::time::VirtualNanos;
 use self::watchdog::Watchdog;
 use super::chip::{CRYSTAL_READY, Chip, Clock, Options, PLL_LOCKED, same_on_this_part};
 use super::chips::bno055::Bno055;
+use super::chips::dps310::Barometer;
 use super::chips::icm42688p::Imu;
 use super::chips::line::Line;
 use super::clock_stretch::ClockStretch;
@@ -83,6 +84,7 @@ pub static MATEK: Pads = Pads {
     // On the underside, turned by half a turn about the vertical (ArduPilot's `hwdef.dat`: ROTATION_YAW_180).
     imu_axes: |[x, y, z]| [-x, -y, z],
     arms: [(0, 0x28), (0, 0x29), (1, 0x28), (1, 0x29)],
+    barometer: Some((1, 2)),
     pressure: [S1, S2, RSSI, CU2],
     // 1:11 and 40 A/V.
     battery: AnalogPad::divided(At(2, 0), 10, 11.0),
