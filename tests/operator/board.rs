@@ -19,7 +19,7 @@ use sophie_control::params::{MotorMap, Params};
 use sophie_control::rc::Sticks;
 use sophie_control::vector::Vec3;
 use sophie_control::wrench::{Configuration, PerArm};
-use sophie_fakes::{FakeAnalog, FakeImu, FakeLine, FakeMotors, FakeServos};
+use sophie_fakes::{FakeAnalog, FakeBarometer, FakeImu, FakeLine, FakeMotors, FakeServos};
 use sophie_tasks::links::{Links, RcState};
 use sophie_tasks::mavlink::signing::{Key, Record, Stored};
 use sophie_tasks::mavlink::{self, Lines};
@@ -28,7 +28,9 @@ use sophie_tasks::ports::{
     StorageError,
 };
 use sophie_tasks::shell::{Shell, ShellPort};
-use sophie_tasks::{analog, arms, clamp, commander, console, control, estimator, imu, mixer, motors, servos};
+use sophie_tasks::{
+    analog, arms, barometer, clamp, commander, console, control, estimator, imu, mixer, motors, servos,
+};
 
 use super::wire::Wire;
 
@@ -50,6 +52,8 @@ pub struct Hands {
     pub counts: AnalogFrame,
     /// Tilt of each arm's tip, rad.
     pub tilt: PerArm<f32>,
+    /// What the barometer reads, Pa; `None`: nothing.
+    pub air: Option<f32>,
     /// What the receiver gives at 50 Hz; `None`: nothing.
     pub sticks: Option<Sticks>,
     /// The board takes what is typed and says nothing.
@@ -68,6 +72,8 @@ pub struct Hands {
     pub brown_out_set: bool,
     /// The plug is pulled with the first answer that has this text.
     pub unplugged_at: Option<&'static str>,
+    /// Which board it says it is.
+    pub board: &'static str,
     /// Which image it is said to be.
     pub build: u32,
     /// How the motors are wired.
@@ -95,6 +101,7 @@ impl Default for Hands {
                 battery_current: 0,
             },
             tilt: [0.0; 4],
+            air: None,
             sticks: None,
             mute: false,
             dies_at: None,
@@ -104,6 +111,7 @@ impl Default for Hands {
             forgets: false,
             brown_out_set: true,
             unplugged_at: None,
+            board: "table",
             build: 0x1234_ABCD,
             wiring: MotorMap::M1234,
             real_time: false,
@@ -299,6 +307,7 @@ struct Run {
     frames: Option<Frames>,
     imu: FakeImu,
     analog: FakeAnalog,
+    barometer: FakeBarometer,
     arms: Arms,
     motors: FakeMotors,
     servos: FakeServos,
@@ -331,6 +340,7 @@ impl Run {
             },
             imu: FakeImu::default(),
             analog: FakeAnalog::default(),
+            barometer: FakeBarometer::default(),
             arms: Arms::default(),
             motors: FakeMotors::default(),
             servos: FakeServos::default(),
@@ -355,6 +365,7 @@ impl Run {
         time.spawn(motors::run(links, self.motors.clone()));
         time.spawn(analog::run(links, self.analog.clone()));
         time.spawn(arms::run(links, self.arms.clone()));
+        time.spawn(barometer::run(links, self.barometer.clone()));
         time.spawn(clamp::run(links));
         time.spawn(servos::run(links, self.servos.clone()));
         time.spawn(commander::run(links));
@@ -446,6 +457,8 @@ impl Run {
         });
         self.analog.frame.set(hands.counts);
         self.arms.0.set(hands.tilt);
+        // No number is no pressure.
+        self.barometer.1.set(hands.air.unwrap_or(f32::NAN));
         if let (Some(sticks), 0) = (hands.sticks, ms % 20) {
             let state = RcState {
                 sticks,
@@ -590,7 +603,7 @@ impl Chip for ThisChip {
     fn enter_loader(&mut self) {}
 
     fn board(&self) -> &'static str {
-        "table"
+        self.hands.lock().unwrap().board
     }
 
     fn build(&self) -> u32 {

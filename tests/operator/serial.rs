@@ -69,6 +69,8 @@ fn a_bring_up_goes_over_a_serial_port_and_has_it_alone() {
         builder.at(&format!("Enter keeps {name}"), "");
     }
     builder.step("selftest");
+    builder.step("live-air");
+    builder.hears("no barometer on table");
     builder.at("(live-imu)", "q");
     let (status, said, complaint) = builder.ends();
     assert_eq!((status, &*complaint), (Some(1), ""), "{said}");

@@ -122,7 +122,7 @@ fn a_new_board_is_brought_up_through_all_steps() {
     let said = builder.said();
     assert_eq!(all_passed, Ok(true), "{said}\n{log}");
     let protocol = folder.read();
-    assert_eq!(protocol["state"].as_str(), Some("all 27 steps passed"));
+    assert_eq!(protocol["state"].as_str(), Some("all 28 steps passed"));
     assert!(protocol["firmware"].as_str().unwrap().ends_with(" on matek-h743"));
     assert!(
         protocol["build"].as_str().unwrap().starts_with("build "),
@@ -183,7 +183,7 @@ fn a_new_board_passes_its_first_steps_and_the_rest_is_left_for_later() {
         "{said}"
     );
     let steps = protocol["step"].as_array().unwrap();
-    for (step, id) in steps.iter().zip(["chip", "setup", "selftest"]) {
+    for (step, id) in steps.iter().zip(["chip", "setup", "selftest", "live-air"]) {
         assert_eq!(
             (step["id"].as_str(), step["result"].as_str()),
             (Some(id), Some("passed")),
@@ -192,6 +192,17 @@ fn a_new_board_passes_its_first_steps_and_the_rest_is_left_for_later() {
     }
     assert!(figures(&steps[0]).contains("brown-out level: 3\n"), "{said}");
     assert!(figures(&steps[2]).contains("\n1 of 17 failed"), "{said}");
+    // What the driver makes of the emulated part's coefficients and counts is the pressure of the world.
+    let air = figures(&steps[3]);
+    let number = |begin: &str| {
+        let line = air.lines().find_map(|line| line.strip_prefix(begin));
+        let word = line.and_then(|line| line.split(' ').next());
+        word.and_then(|word| word.parse::<f64>().ok())
+            .unwrap_or_else(|| panic!("{begin}: {air}"))
+    };
+    assert!((number("pressure ") - 101_325.0).abs() < 110.0, "{air}");
+    assert!((0.1..1.0).contains(&number("noise at rest ")), "{air}");
+    assert!((number("up by hand ") + 12.0).abs() < 1.0, "{air}");
     // Two restarts: the brown-out level and the setup.
     assert_eq!(stood.board.resets.len(), 2, "{:?}", stood.board.resets);
     assert_eq!(stood.gaps, []);

@@ -98,6 +98,7 @@ impl Builder {
             changed = before.below != held.below
                 || before.pressed != held.pressed
                 || before.bent != held.bent
+                || before.height != held.height
                 || before.sticks != held.sticks;
         });
         if changed {
@@ -191,6 +192,12 @@ impl Builder {
             self.moves_servo().to_owned()
         } else if begins("Take the weight off") {
             self.does(|held| held.pressed = [0.0; 4]);
+            String::new()
+        } else if begins("Lift it by 1 m") {
+            self.does(|held| held.height = 1.0);
+            String::new()
+        } else if begins("And down again") {
+            self.does(|held| held.height = 0.0);
             String::new()
         } else if begins("Type off") {
             "off".to_owned()

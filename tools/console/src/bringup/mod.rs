@@ -4,6 +4,7 @@
 //! A step that measures also stores: it has passed when the board has restarted with its values in force. What was done
 //! when a run ends, however it ends, is neither lost nor asked for again.
 
+mod air;
 mod calibrate;
 mod checks;
 mod date;
@@ -69,7 +70,7 @@ const SERVO: &str =
     "Tendons off, servos on their own battery. Find the reel's release mark, then its full mark.";
 
 /// All steps, in their order.
-pub const STEPS: [Step; 27] = [
+pub const STEPS: [Step; 28] = [
     step(
         "chip",
         "Chip and image",
@@ -87,6 +88,12 @@ pub const STEPS: [Step; 27] = [
         "Self-test of what is wired",
         "Vehicle at rest, arms open. Receiver and flight battery may still be missing.",
         checks::selftest,
+    ),
+    step(
+        "live-air",
+        "Barometer, live",
+        "Vehicle at rest, out of wind. Then it is lifted by 1 m, and put down again.",
+        air::air,
     ),
     step(
         "live-imu",
