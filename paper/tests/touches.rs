@@ -2,6 +2,7 @@
 
 use sophie_control::grip_fault::GripFault;
 use sophie_control::mode::{Mode, Reason};
+use sophie_control::rc::ArmChoice;
 use sophie_paper::study::touch::{End, STAY, Touch, Touched, fly, fly_as};
 use sophie_sim::parallel;
 use sophie_sim::scenario::Scenario;
@@ -251,6 +252,20 @@ fn a_grip_that_has_slipped_lets_go_without_a_fall() {
 /// Friction falls under a perched vehicle 30 mm beside the crown: the arms tighten, and it stays.
 #[test]
 fn a_slip_is_answered_by_tightening_and_held() {
+    answered_and_held(ArmChoice::All);
+}
+
+/// A pair rocks twice as far before that is a slip; sliding, it is noticed all the same.
+#[test]
+fn so_is_that_of_a_pair() {
+    answered_and_held(ArmChoice::Front);
+}
+
+fn answered_and_held(arms: ArmChoice) {
+    let scenario = Scenario {
+        arms,
+        ..Scenario::default_mission()
+    };
     let touch = Touch {
         offset: 0.03,
         lean: 0.0,
@@ -261,7 +276,7 @@ fn a_slip_is_answered_by_tightening_and_held() {
     };
     let (mut perched, mut before, mut after) = (None, 0.0f64, 0.0f64);
     let mut shown = Vec::new();
-    let touched = fly_as(Scenario::default_mission(), &touch, |t, plant, stack| {
+    let touched = fly_as(scenario, &touch, |t, plant, stack| {
         let Some(status) = stack.links.status.latest().map(|s| s.value) else {
             return;
         };

@@ -5,7 +5,8 @@
 //! every turn of the body is one: arms that press lift much of the weight off the belly, and wind or a push across rocks the
 //! body on its pads, by 0.8° for 1.5 N, and lets it back. The pipe holds the arms meanwhile: they bend by as much on one side
 //! and unbend on the other, and their tips stay as they were in the world. A belly that slides first looks the same, so that
-//! excuses some of a turn that stands, and nothing of one that runs.
+//! excuses some of a turn that stands, and nothing of one that runs. A pair holds the rocking half as stiffly: twice as much
+//! is excused where the turn stands, and what it rocks more than four where it runs.
 
 use super::{Motion, Reason};
 use crate::filter::LowPass;
@@ -20,7 +21,8 @@ const CREEP: (f32, f32) = (deg(0.5), 0.5);
 const DRIFT: f32 = deg(0.005);
 /// Turn and outward rate, rad/s, that are a slip, and their time, s: a lean grows e-fold in 0.16 s once friction gives way.
 const SLIP: (f32, f32, f32) = (deg(1.0), 0.03, 0.03);
-/// Turn that arms which bend against it excuse, rad: a push of 1.5 N in gusts.
+/// Turn that four arms which bend against it excuse where it stands, rad: a push of 1.5 N in gusts. The fewer arms, the less
+/// stiffly they hold the rocking.
 const ROCKS: f32 = deg(0.6);
 /// Cut-off of the arms' bending, rad/s: their sensors' noise of 4 mrad, well within the time of a creep.
 const BEND_CUTOFF: f32 = 10.0;
@@ -34,6 +36,8 @@ pub struct Slip {
     from: Option<[f32; 3]>,
     /// Bending to the right, rad.
     bend: Option<LowPass>,
+    /// Turn that bending excuses where it stands, rad.
+    rocks: f32,
     creeps: Held,
     slips: Held,
     /// Since the last answer, s.
@@ -43,11 +47,12 @@ pub struct Slip {
 }
 
 impl Slip {
-    /// One step of `dt` s with the arms' [`bending`] to the right, while that is known; true where the arms are to tighten,
-    /// which they `may`.
-    pub fn step(&mut self, motion: Motion, bent: Option<f32>, may: bool, dt: f32) -> bool {
+    /// One step of `dt` s with the arms' [`bending`], while that is known; true where the arms are to tighten, which they
+    /// `may`.
+    pub fn step(&mut self, motion: Motion, bent: Option<Bent>, may: bool, dt: f32) -> bool {
         let (roll, pitch, _) = motion.q.to_euler();
-        if let Some(bent) = bent {
+        if let Some(Bent { right: bent, arms }) = bent {
+            self.rocks = ROCKS * 4.0 / clamp(arms, 1.0, 4.0);
             let first = self.bend.is_none();
             let bend = self.bend.get_or_insert(LowPass::at(bent));
             bend.step(bent, BEND_CUTOFF, dt);
@@ -60,9 +65,10 @@ impl Slip {
             *from = slew(*from, now, DRIFT * dt);
         }
         let [rolled, nodded, bent] = [roll - from[0], pitch - from[1], bend - from[2]];
-        let turn = rolled.abs().max(nodded.abs());
-        let rocked = clamp(-bent * sign(rolled), 0.0, ROCKS);
-        let stands = (rolled.abs() - rocked).max(nodded.abs());
+        let against = -bent * sign(rolled);
+        let less = |most: f32| (rolled.abs() - clamp(against, 0.0, most)).max(nodded.abs());
+        // Of a turn that runs bending excuses only what a pair rocks more than four: nothing with four.
+        let (stands, runs) = (less(self.rocks), less((self.rocks - ROCKS).max(0.0)));
         // Body rates are those of roll and pitch near enough for a sign.
         let outward = if rolled.abs() > nodded.abs() {
             motion.rate.x * sign(rolled)
@@ -70,7 +76,7 @@ impl Slip {
             motion.rate.y * sign(nodded)
         };
         self.creeps.step(stands > CREEP.0, dt);
-        self.slips.step(turn > SLIP.0 && outward > SLIP.1, dt);
+        self.slips.step(runs > SLIP.0 && outward > SLIP.1, dt);
         self.since = clamp(self.since + dt, 0.0, 1e3);
         let due = self.creeps.time() >= CREEP.1 || self.slips.time() >= SLIP.2;
         self.helpless = due && !may;
@@ -79,6 +85,7 @@ impl Slip {
             *self = Self {
                 from: Some(now),
                 bend: self.bend,
+                rocks: self.rocks,
                 ..Self::default()
             };
         }
@@ -91,14 +98,26 @@ impl Slip {
     }
 }
 
-/// Mean turn of the tips of the `chosen` arms to the right against the body, rad; `None` while a tilt is unknown.
-pub fn bending(tilts: &PerArm<Option<f32>>, chosen: PerArm<bool>) -> Option<f32> {
+/// How the arms that hold are bent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bent {
+    /// Mean turn of their tips to the right against the body, rad.
+    right: f32,
+    /// Their number.
+    arms: f32,
+}
+
+/// Of the `chosen` arms; `None` while a tilt is unknown.
+pub fn bending(tilts: &PerArm<Option<f32>>, chosen: PerArm<bool>) -> Option<Bent> {
     let (mut sum, mut count) = (0.0, 0.0);
     for ((tilt, side), _) in tilts.iter().zip(SIDE).zip(chosen).filter(|(_, chosen)| *chosen) {
         sum += side * (*tilt)?;
         count += 1.0;
     }
-    (count > 0.0).then(|| sum / count)
+    (count > 0.0).then(|| Bent {
+        right: sum / count,
+        arms: count,
+    })
 }
 
 fn sign(x: f32) -> f32 {
@@ -115,6 +134,11 @@ mod tests {
     /// Turns the body by `turn` ° within `time` s while the arms bend by `share` of it against it, then stands for 2 s; whether
     /// the arms were to tighten.
     fn answered(turn: f32, share: f32, time: f32) -> bool {
+        answered_by([true; 4], turn, share, time)
+    }
+
+    /// With the `chosen` arms.
+    fn answered_by(chosen: PerArm<bool>, turn: f32, share: f32, time: f32) -> bool {
         let mut slip = Slip::default();
         let steps = (time / DT) as u32;
         (0..steps + 300).fold(false, |answered, i| {
@@ -132,7 +156,7 @@ mod tests {
             };
             let bent = deg(turn * share * way);
             let tilts = [-1.0 - bent, -1.3 - bent, -1.4 + bent, -1.1 + bent].map(Some);
-            answered | slip.step(motion, bending(&tilts, [true; 4]), true, DT)
+            answered | slip.step(motion, bending(&tilts, chosen), true, DT)
         })
     }
 
@@ -163,12 +187,32 @@ mod tests {
         assert!(answered(1.09, 1.0, 0.5) && !answered(1.09, 1.0, 2.0));
     }
 
+    /// A push of 1.5 N in wind: the plant's body leans by 1.0 to 1.5° on a pair, at 2 to 8 °/s where the push begins, and the
+    /// arms bend by 0.55 to 1.3 of it.
+    #[test]
+    fn a_pair_rocks_twice_as_far_and_slips_as_soon() {
+        for pair in [[true, false, true, false], [false, true, false, true]] {
+            for turn in [1.2, -1.2, 1.5, -1.5] {
+                assert!(!answered_by(pair, turn, 1.0, 0.5), "{turn} deg");
+                assert!(answered(turn, 1.0, 0.5), "{turn} deg on four");
+            }
+            // Arms that turn with the body, or bend with it, excuse nothing.
+            for share in [0.0, -1.0] {
+                assert!(!answered_by(pair, 0.4, share, 0.5));
+                assert!(answered_by(pair, 0.6, share, 0.5) && answered_by(pair, -0.6, share, 0.5));
+            }
+            // Neither a turn of 1.9° that stands, nor one of 1.68° that runs: what is left is 0.7 and 1.08°.
+            assert!(answered_by(pair, 1.9, 1.0, 5.0));
+            assert!(answered_by(pair, 1.68, 1.0, 0.9) && !answered_by(pair, 1.68, 1.0, 5.0));
+        }
+    }
+
     #[test]
     fn arms_whose_tilt_is_unknown_excuse_nothing() {
         assert_eq!(bending(&[Some(0.1), None, Some(0.1), Some(0.1)], [true; 4]), None);
         let front = [true, false, true, false];
         let bent = bending(&[Some(-1.2), None, Some(-1.0), None], front);
-        assert!(bent.is_some_and(|b| (b + 0.1).abs() < 1e-6));
+        assert!(bent.is_some_and(|b| (b.right + 0.1).abs() < 1e-6 && (b.arms - 2.0).abs() < 1e-6));
         assert_eq!(bending(&[None; 4], [false; 4]), None);
     }
 }

@@ -127,13 +127,16 @@ pub struct Touched {
     pub lean: f64,
     /// Largest true pressure on an arm, Pa.
     pub pressure: f64,
+    /// The same before the arms close, and after they let go, Pa: bumps of open arms.
+    pub bump: f64,
     /// The vehicle left the pipe by itself.
     pub escaped: bool,
     /// The arms began to close.
     pub closed: bool,
     /// The grip was proven.
     pub proven: bool,
-    /// Largest true pressure on an arm while the arms closed, Pa; without the bumps of open arms.
+    /// Largest true pressure on an arm in the last closing, that which ended in proof where one did, Pa; without the bumps
+    /// of open arms.
     pub closing_pressure: f64,
     /// Least distance of a turning propeller from the pipe, m.
     pub clearance: f64,
@@ -281,6 +284,7 @@ pub fn fly_as(
         sticks: Sticks {
             arm_switch: true,
             perch_switch: true,
+            arms: flight.scenario.arms,
             throttle: SET_DOWN as f32,
             ..Sticks::default()
         },
@@ -294,6 +298,7 @@ pub fn fly_as(
         drop: 0.0,
         lean: 0.0,
         pressure: 0.0,
+        bump: 0.0,
         escaped: false,
         closed: false,
         proven: false,
@@ -308,6 +313,9 @@ pub fn fly_as(
         flight.step(&hand.sticks);
         each(f64::from(ms) * 1e-3, &mut flight.plant, &flight.stack);
         let mode = flight.stack.mode();
+        if mode == Mode::Clamping && out.mode != mode {
+            out.closing_pressure = 0.0;
+        }
         if matches!(mode, Mode::Escaping | Mode::Releasing) {
             let status = flight.stack.links.status.latest();
             out.why = status.and_then(|s| s.value.reason).or(out.why);
@@ -316,12 +324,15 @@ pub fn fly_as(
         out.escaped |= mode == Mode::Escaping;
         out.drop = out.drop.max(flight.plant.pose().position.z - height);
         out.lean = out.lean.max(flight.roll().abs());
-        out.pressure = flight.plant.pressure().into_iter().fold(out.pressure, f64::max);
+        let pressure = flight.plant.pressure().into_iter().fold(0.0, f64::max);
+        out.pressure = out.pressure.max(pressure);
+        if matches!(mode, Mode::Flight | Mode::Contact) {
+            out.bump = out.bump.max(pressure);
+        }
         out.closed |= mode == Mode::Clamping;
         out.proven |= mode == Mode::Perched;
         if mode == Mode::Clamping {
-            let now = flight.plant.pressure();
-            out.closing_pressure = now.into_iter().fold(out.closing_pressure, f64::max);
+            out.closing_pressure = out.closing_pressure.max(pressure);
         }
         if ms % CLEARANCE_EVERY == 0 {
             out.clearance = out.clearance.min(flight.plant.propeller_clearance());

@@ -4,6 +4,8 @@ use super::{Flown, GAUGES, Gauge, Outcome};
 
 /// Share of the touches within a half-width that may fail.
 const MISSED: f64 = 0.01;
+/// Offset within which the pressure of closings is limited, m.
+pub const NEAR: f64 = 0.045;
 
 /// Number of `flown` that ended with `outcome`.
 #[must_use]
@@ -66,6 +68,10 @@ pub struct Extremes {
     pub strikes: usize,
     /// Largest true pressure in closings that ended in proof, Pa.
     pub closing_pressure: f64,
+    /// The same of touches within [`NEAR`], Pa.
+    pub near_closing_pressure: f64,
+    /// Largest true pressure on open arms, Pa.
+    pub bump: f64,
     /// Largest true pressure of any touch, Pa.
     pub pressure: f64,
 }
@@ -82,6 +88,12 @@ pub fn extremes(flown: &[Flown]) -> Extremes {
             .filter(|t| t.proven)
             .map(|t| t.closing_pressure)
             .fold(0.0, f64::max),
+        near_closing_pressure: flown
+            .iter()
+            .filter(|f| f.touched.proven && f.planned.touch.offset.abs() <= NEAR)
+            .map(|f| f.touched.closing_pressure)
+            .fold(0.0, f64::max),
+        bump: touched().map(|t| t.bump).fold(0.0, f64::max),
         pressure: touched().map(|t| t.pressure).fold(0.0, f64::max),
     }
 }
@@ -106,6 +118,7 @@ mod tests {
                 drop: 0.0,
                 lean: 0.0,
                 pressure: 0.0,
+                bump: 0.0,
                 escaped: false,
                 closed: true,
                 proven: true,
@@ -153,6 +166,31 @@ mod tests {
         flown.extend((0..60).map(|i| at(1e-6 * f64::from(i), Outcome::Released)));
         let width = half_width(flown.iter(), Outcome::is_held);
         assert!((width - 0.040).abs() < 1e-9, "{width}");
+    }
+
+    #[test]
+    fn pressures_of_near_closings_of_all_and_of_open_arms_stand_apart() {
+        let mut flown = vec![
+            at(-0.044, Outcome::Released),
+            at(0.046, Outcome::Held),
+            at(0.0, Outcome::FlownAway),
+        ];
+        for (f, (closing, bump)) in flown
+            .iter_mut()
+            .zip([(1100.0, 0.0), (1300.0, 0.0), (1400.0, 2000.0)])
+        {
+            (f.touched.closing_pressure, f.touched.bump) = (closing, bump);
+            f.touched.pressure = f64::max(closing, bump);
+        }
+        flown[2].touched.proven = false;
+        let most = extremes(&flown);
+        let found = [
+            most.near_closing_pressure,
+            most.closing_pressure,
+            most.bump,
+            most.pressure,
+        ];
+        assert_eq!(found, [1100.0, 1300.0, 2000.0, 2000.0]);
     }
 
     #[test]

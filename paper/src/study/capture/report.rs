@@ -41,6 +41,8 @@ pub fn json(flown: &[Flown], seed: u64) -> String {
         "propeller_strikes": most.strikes,
         "propeller_clearance_m": metres(most.clearance),
         "closing_pressure_pa": most.closing_pressure.round(),
+        "near_closing_pressure_pa": most.near_closing_pressure.round(),
+        "open_arm_pressure_pa": most.bump.round(),
         "pressure_pa": most.pressure.round(),
     });
     // Numbers and string keys only: cannot fail.
@@ -147,6 +149,13 @@ fn limits(flown: &[Flown]) -> Table {
             0,
             "N/m²",
         ),
+        (
+            "the same, within 45 mm of the crown",
+            most.near_closing_pressure,
+            0,
+            "N/m²",
+        ),
+        ("pressure on open arms", most.bump, 0, "N/m²"),
         ("pressure in any touch", most.pressure, 0, "N/m²"),
     ] {
         t.row([what.into(), num(value, digits), unit.into()]);
