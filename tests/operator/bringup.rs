@@ -498,6 +498,7 @@ fn a_board_that_refuses_fails_the_step() {
     for id in [
         "setup",
         "selftest",
+        "live-air",
         "live-imu",
         "live-arms",
         "live-grip",
