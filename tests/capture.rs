@@ -51,6 +51,35 @@ fn every_touch_is_counted_once_and_the_same_seed_gives_the_same_map() {
 }
 
 #[test]
+fn uncertain_vehicles_meet_the_same_touches_otherwise() {
+    let temp = Temp::new("capture-uncertain");
+    let run = |args: &[&str]| -> Value {
+        let output = sophie(&temp, &[&SMALL[..], &["--json"], args].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+        serde_json::from_str(&text(&output.stdout)).unwrap()
+    };
+    let (alike, drawn) = (run(&[]), run(&["--uncertain"]));
+    assert_eq!(
+        (&alike["uncertain"], &drawn["uncertain"]),
+        (&false.into(), &true.into())
+    );
+    assert_eq!(drawn["touches"], 20);
+    // The largest pressure of a proven grip near the crown, and whose it is: of another touch, or of another value.
+    for map in [&alike, &drawn] {
+        let pressure = map["near_closing_pressure_pa"].as_f64().unwrap();
+        assert!((950.0..1300.0).contains(&pressure), "{map}");
+        assert!(
+            (1..=20).contains(&map["near_closing_seed"].as_u64().unwrap()),
+            "{map}"
+        );
+    }
+    assert_ne!(
+        alike["near_closing_pressure_pa"],
+        drawn["near_closing_pressure_pa"]
+    );
+}
+
+#[test]
 fn options_out_of_range_are_refused_in_one_line() {
     let temp = Temp::new("capture-options");
     for (args, message) in [

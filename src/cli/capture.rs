@@ -1,6 +1,6 @@
 //! `sophie capture`: which touches of the pipe are held.
 
-use sophie_paper::study::capture::{self, Outcome, map, report};
+use sophie_paper::study::capture::{self, Outcome, Request, map, report};
 use sophie_report::terminal::complain;
 
 use super::PROGRAM;
@@ -11,17 +11,29 @@ use super::publish::Publisher;
 pub fn run(args: &CaptureArgs) -> Result<bool, String> {
     let publisher = Publisher::new(&args.out, ["capture.html", "capture.json"], args.json)?;
     publisher.say(&format!(
-        "{} touches of the pipe from seed {}",
-        args.touches, args.seed
+        "{} touches of the pipe from seed {}{}",
+        args.touches,
+        args.seed,
+        if args.uncertain {
+            ", each of another vehicle"
+        } else {
+            ""
+        }
     ));
-    let flown = capture::fly(args.touches, args.seed, args.heading.to_radians())?;
-    let section = report::section(&flown, args.seed);
+    let request = Request {
+        count: args.touches,
+        seed: args.seed,
+        heading: args.heading.to_radians(),
+        uncertain: args.uncertain,
+    };
+    let flown = capture::fly(&request)?;
+    let section = report::section(&flown, &request);
     publisher.show(1, &section);
     publisher.write(
         "Capture map",
         "Touches of the pipe, flown by the whole stack",
         &[section],
-        report::json(&flown, args.seed),
+        report::json(&flown, &request),
     )?;
     let lost = map::count(&flown, Outcome::Lost);
     if lost > 0 {

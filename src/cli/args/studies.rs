@@ -25,6 +25,9 @@ pub struct CaptureArgs {
     /// Largest angle between the vehicle and the pipe, 0 to 45 degrees.
     #[arg(long, value_name = "DEG", value_parser = heading, default_value = "5", allow_negative_numbers = true)]
     pub heading: f64,
+    /// Another vehicle for each: infill 4 to 10 %, K 5 to 8.4, arms 20 % off, tendons that answer 0.5 to 2 times as believed.
+    #[arg(long)]
+    pub uncertain: bool,
     /// Directory for capture.html and capture.json.
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,

@@ -70,6 +70,8 @@ pub struct Extremes {
     pub closing_pressure: f64,
     /// The same of touches within [`NEAR`], Pa.
     pub near_closing_pressure: f64,
+    /// Of that touch; none where no grip was proven.
+    pub near_closing_seed: Option<u64>,
     /// Largest true pressure on open arms, Pa.
     pub bump: f64,
     /// Largest true pressure of any touch, Pa.
@@ -80,6 +82,10 @@ pub struct Extremes {
 #[must_use]
 pub fn extremes(flown: &[Flown]) -> Extremes {
     let touched = || flown.iter().map(|f| f.touched);
+    let near = flown
+        .iter()
+        .filter(|f| f.touched.proven && f.planned.touch.offset.abs() <= NEAR)
+        .max_by(|a, b| a.touched.closing_pressure.total_cmp(&b.touched.closing_pressure));
     Extremes {
         drop: touched().map(|t| t.drop).fold(0.0, f64::max),
         clearance: touched().map(|t| t.clearance).fold(f64::INFINITY, f64::min),
@@ -88,11 +94,8 @@ pub fn extremes(flown: &[Flown]) -> Extremes {
             .filter(|t| t.proven)
             .map(|t| t.closing_pressure)
             .fold(0.0, f64::max),
-        near_closing_pressure: flown
-            .iter()
-            .filter(|f| f.touched.proven && f.planned.touch.offset.abs() <= NEAR)
-            .map(|f| f.touched.closing_pressure)
-            .fold(0.0, f64::max),
+        near_closing_pressure: near.map_or(0.0, |f| f.touched.closing_pressure),
+        near_closing_seed: near.map(|f| f.planned.touch.seed),
         bump: touched().map(|t| t.bump).fold(0.0, f64::max),
         pressure: touched().map(|t| t.pressure).fold(0.0, f64::max),
     }

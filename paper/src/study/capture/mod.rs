@@ -7,8 +7,10 @@
 mod draw;
 pub mod map;
 pub mod report;
+mod vehicle;
 
 use sophie_sim::parallel;
+use sophie_sim::scenario::Scenario;
 
 use super::touch::{self, End, Touched};
 
@@ -81,29 +83,41 @@ pub struct Flown {
     pub outcome: Outcome,
 }
 
-/// Flies `count` touches with the seeds `seed`, `seed` + 1, …, headed up to `heading` (rad) off the pipe; the same arguments
-/// give the same touches.
+/// Which touches are flown, and with which vehicles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Request {
+    /// How many.
+    pub count: u64,
+    /// Of the first; the next have the numbers after it.
+    pub seed: u64,
+    /// Largest heading off the pipe, rad.
+    pub heading: f64,
+    /// Every touch is of another vehicle: stiffness, arms and tendons are drawn. Otherwise all are of the default one.
+    pub uncertain: bool,
+}
+
+/// Flies what `request` asks for; the same request gives the same touches.
 ///
 /// # Errors
 /// One line: a vehicle did not arm.
-pub fn fly(count: u64, seed: u64, heading: f64) -> Result<Vec<Flown>, String> {
-    let planned: Vec<Planned> = (0..count)
-        .map(|i| plan(i, seed.wrapping_add(i), heading))
+pub fn fly(request: &Request) -> Result<Vec<Flown>, String> {
+    let seeds: Vec<(u64, u64)> = (0..request.count)
+        .map(|i| (i, request.seed.wrapping_add(i)))
         .collect();
-    let flown = parallel::each(&planned, |planned| {
-        let touched = touch::fly(&planned.touch)?;
-        Some(Flown {
-            planned: *planned,
+    let flown = parallel::each(&seeds, |&(i, seed)| {
+        let planned = plan(i, seed, request.heading);
+        let vehicle = if request.uncertain {
+            vehicle::draw(seed)?
+        } else {
+            Scenario::default_mission()
+        };
+        let touched = touch::fly_as(vehicle, &planned.touch, |_, _, _| ())
+            .ok_or_else(|| format!("seed {seed}: the vehicle did not arm"))?;
+        Ok(Flown {
+            planned,
             touched,
             outcome: Outcome::of(&touched),
         })
     });
-    flown
-        .into_iter()
-        .zip(&planned)
-        .map(|(flown, planned)| {
-            let seed = planned.touch.seed;
-            flown.ok_or_else(|| format!("seed {seed}: the vehicle did not arm"))
-        })
-        .collect()
+    flown.into_iter().collect()
 }

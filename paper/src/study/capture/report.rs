@@ -3,7 +3,7 @@
 use serde_json::json;
 
 use super::map::{count, extremes, measure};
-use super::{Flown, Outcome};
+use super::{Flown, Outcome, Request};
 use crate::model::{Axis, Chart, Look, Section, Series, Table, num};
 
 /// Width of a bar of the shares, m.
@@ -15,12 +15,13 @@ const COLOURS: [usize; Outcome::ALL.len()] = [2, 0, 4, 5, 1];
 
 /// The map as JSON text, newline-terminated.
 #[must_use]
-pub fn json(flown: &[Flown], seed: u64) -> String {
+pub fn json(flown: &[Flown], request: &Request) -> String {
     let of = |outcome| count(flown, outcome);
     let (measured, most) = (measure(flown), extremes(flown));
     let metres = |value: f64| (value * 1e4).round() / 1e4;
     let value = json!({
-        "seed": seed,
+        "seed": request.seed,
+        "uncertain": request.uncertain,
         "touches": flown.len(),
         "held": of(Outcome::Released) + of(Outcome::Held),
         "released": of(Outcome::Released),
@@ -42,6 +43,7 @@ pub fn json(flown: &[Flown], seed: u64) -> String {
         "propeller_clearance_m": metres(most.clearance),
         "closing_pressure_pa": most.closing_pressure.round(),
         "near_closing_pressure_pa": most.near_closing_pressure.round(),
+        "near_closing_seed": most.near_closing_seed,
         "open_arm_pressure_pa": most.bump.round(),
         "pressure_pa": most.pressure.round(),
     });
@@ -51,7 +53,7 @@ pub fn json(flown: &[Flown], seed: u64) -> String {
 
 /// The map with its pictures.
 #[must_use]
-pub fn section(flown: &[Flown], seed: u64) -> Section {
+pub fn section(flown: &[Flown], request: &Request) -> Section {
     let mut s = Section::new("capture", "Touches of the pipe");
     s.table(outcomes(flown));
     s.table(widths(flown));
@@ -75,9 +77,15 @@ pub fn section(flown: &[Flown], seed: u64) -> Section {
     );
     let paper = measure(flown)[0];
     s.finding = format!(
-        "{} touches from seed {seed}, {} lost; on the paper's pipe 99 % are held within ±{:.0} mm and let go within \
+        "{} touches from seed {}{}, {} lost; on the paper's pipe 99 % are held within ±{:.0} mm and let go within \
          ±{:.0} mm.",
         flown.len(),
+        request.seed,
+        if request.uncertain {
+            ", each of another vehicle"
+        } else {
+            ""
+        },
         count(flown, Outcome::Lost),
         1e3 * paper.held,
         1e3 * paper.releasable
