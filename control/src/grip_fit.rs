@@ -142,6 +142,23 @@ mod tests {
         }
     }
 
+    /// Round pipes of 1.7 and of 0.55 times the diameter: 0.59 and 1.8 times the bend.
+    #[test]
+    fn a_pipe_of_another_thickness_does_not_fit() {
+        let force = [40.0; 4];
+        for (bend, fits) in [
+            (0.59, false),
+            (0.67, true),
+            (1.0, true),
+            (1.65, true),
+            (1.8, false),
+        ] {
+            let tilt = (bend * BEND).to_degrees();
+            let found = of([tilt; 4], force);
+            assert_eq!(found, (!fits).then_some(Misfit::Thickness), "{bend}");
+        }
+    }
+
     /// Degrees of closings in the plant on a pipe of 0.4 m, 19° oblique, before one arm had found it.
     #[test]
     fn an_oblique_pipe_shows_before_every_arm_presses() {
