@@ -10,22 +10,13 @@ use super::publish::Publisher;
 /// Flies and writes the map. True when nothing was lost.
 pub fn run(args: &CaptureArgs) -> Result<bool, String> {
     let publisher = Publisher::new(&args.out, ["capture.html", "capture.json"], args.json)?;
-    publisher.say(&format!(
-        "{} touches of the pipe from seed {}{}",
-        args.touches,
-        args.seed,
-        if args.uncertain {
-            ", each of another vehicle"
-        } else {
-            ""
-        }
-    ));
     let request = Request {
         count: args.touches,
         seed: args.seed,
         heading: args.heading.to_radians(),
         uncertain: args.uncertain,
     };
+    publisher.say(&request.to_string());
     let flown = capture::fly(&request)?;
     let section = report::section(&flown, &request);
     publisher.show(1, &section);

@@ -25,7 +25,7 @@ pub struct CaptureArgs {
     /// Largest angle between the vehicle and the pipe, 0 to 45 degrees.
     #[arg(long, value_name = "DEG", value_parser = heading, default_value = "5", allow_negative_numbers = true)]
     pub heading: f64,
-    /// Another vehicle for each: infill 4 to 10 %, K 5 to 8.4, arms 20 % off, tendons that answer 0.5 to 2 times as believed.
+    /// Another vehicle for each: infill 4 to 10 %, K 5 to 8.4, arms up to 20 % and tendon parameters up to 2 times off.
     #[arg(long)]
     pub uncertain: bool,
     /// Directory for capture.html and capture.json.

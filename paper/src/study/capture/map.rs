@@ -70,7 +70,7 @@ pub struct Extremes {
     pub closing_pressure: f64,
     /// The same of touches within [`NEAR`], Pa.
     pub near_closing_pressure: f64,
-    /// Of that touch; none where no grip was proven.
+    /// Seed of the touch with that pressure; none where no grip was proven within [`NEAR`].
     pub near_closing_seed: Option<u64>,
     /// Largest true pressure on open arms, Pa.
     pub bump: f64,
@@ -194,6 +194,12 @@ mod tests {
             most.pressure,
         ];
         assert_eq!(found, [1100.0, 1300.0, 2000.0, 2000.0]);
+        let seeds = [7, 8, 9];
+        for (f, seed) in flown.iter_mut().zip(seeds) {
+            f.planned.touch.seed = seed;
+        }
+        assert_eq!(extremes(&flown).near_closing_seed, Some(7));
+        assert_eq!(extremes(&flown[1..]).near_closing_seed, None);
     }
 
     #[test]

@@ -9,6 +9,8 @@ pub mod map;
 pub mod report;
 mod vehicle;
 
+use std::fmt;
+
 use sophie_sim::parallel;
 use sophie_sim::scenario::Scenario;
 
@@ -94,6 +96,21 @@ pub struct Request {
     pub heading: f64,
     /// Every touch is of another vehicle: stiffness, arms and tendons are drawn. Otherwise all are of the default one.
     pub uncertain: bool,
+}
+
+impl fmt::Display for Request {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let vehicles = if self.uncertain {
+            ", each of another vehicle"
+        } else {
+            ""
+        };
+        write!(
+            f,
+            "{} touches of the pipe from seed {}{vehicles}",
+            self.count, self.seed
+        )
+    }
 }
 
 /// Flies what `request` asks for; the same request gives the same touches.

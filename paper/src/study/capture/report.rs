@@ -1,6 +1,9 @@
 //! A capture map as a section with its pictures, and as JSON.
 
+use std::collections::BTreeMap;
+
 use serde_json::json;
+use sophie_control::mode::Reason;
 
 use super::map::{count, extremes, measure};
 use super::{Flown, Outcome, Request};
@@ -8,6 +11,8 @@ use crate::model::{Axis, Chart, Look, Section, Series, Table, num};
 
 /// Width of a bar of the shares, m.
 const BIN: f64 = 0.01;
+/// Offset within which a touch that ends without a grip is asked for its reason, m.
+const CENTRED: f64 = 0.025;
 /// Lost touches that are named one by one.
 const NAMED: usize = 20;
 /// Colours of [`Outcome::ALL`].
@@ -58,6 +63,7 @@ pub fn section(flown: &[Flown], request: &Request) -> Section {
     s.table(outcomes(flown));
     s.table(widths(flown));
     s.table(limits(flown));
+    s.table(causes(flown));
     for line in lost(flown) {
         s.text(line);
     }
@@ -77,15 +83,7 @@ pub fn section(flown: &[Flown], request: &Request) -> Section {
     );
     let paper = measure(flown)[0];
     s.finding = format!(
-        "{} touches from seed {}{}, {} lost; on the paper's pipe 99 % are held within ±{:.0} mm and let go within \
-         ±{:.0} mm.",
-        flown.len(),
-        request.seed,
-        if request.uncertain {
-            ", each of another vehicle"
-        } else {
-            ""
-        },
+        "{request}, {} lost; on the paper's pipe 99 % are held within ±{:.0} mm and let go within ±{:.0} mm.",
         count(flown, Outcome::Lost),
         1e3 * paper.held,
         1e3 * paper.releasable
@@ -168,6 +166,33 @@ fn limits(flown: &[Flown]) -> Table {
     ] {
         t.row([what.into(), num(value, digits), unit.into()]);
     }
+    t
+}
+
+fn causes(flown: &[Flown]) -> Table {
+    let mut t = Table::new(
+        &format!(
+            "Why careful touches within {:.0} mm of the crown ended without a grip",
+            1e3 * CENTRED
+        ),
+        &["", "touches"],
+    );
+    let centred = || {
+        let careful = flown.iter().filter(|f| f.planned.gauge.is_some());
+        careful.filter(|f| f.planned.touch.offset.abs() <= CENTRED)
+    };
+    let mut causes = BTreeMap::new();
+    for f in centred().filter(|f| !f.outcome.is_held()) {
+        let why = f.touched.why.map_or("no reason shown", Reason::text);
+        *causes.entry(why).or_insert(0_u32) += 1;
+    }
+    for (why, touches) in causes {
+        t.row([why.into(), num(f64::from(touches), 0)]);
+    }
+    t.row([
+        "of careful touches there".into(),
+        num(centred().count() as f64, 0),
+    ]);
     t
 }
 
