@@ -12,7 +12,8 @@ import sys
 import tempfile
 import time
 
-# Time after which a request is typed again, s: MAVProxy repeats none whose every answer was lost.
+# Time after which a command is typed again, s: MAVProxy repeats none whose answer was lost, sets a parameter three times
+# within three seconds of its own clock alone, and drops what else arrives meanwhile. A busy machine's board is slower.
 AGAIN = 30.0
 
 
@@ -28,17 +29,17 @@ def main() -> int:
         os.set_blocking(proxy.stdout.fileno(), False)
         said = ""
 
-        def until(words, ask=None):
+        def until(words, command=None):
             nonlocal said
             end = time.monotonic() + seconds
-            next_ask = time.monotonic()
+            next_time = time.monotonic()
             while words not in said:
                 if time.monotonic() > end:
                     proxy.kill()
                     raise SystemExit(f"MAVProxy does not say '{words}': {said}")
-                if ask and time.monotonic() >= next_ask:
-                    types(ask)
-                    next_ask += AGAIN
+                if command and time.monotonic() >= next_time:
+                    types(command)
+                    next_time += AGAIN
                 time.sleep(0.05)
                 said += (proxy.stdout.read() or b"").decode("ascii", "replace")
 
@@ -50,17 +51,14 @@ def main() -> int:
         # Its `param set` looks for names in capitals alone; a file is taken as it is, and sent in capitals.
         with open(f"{path}.wanted", "w") as file:
             file.write(f"{name} {value}\n")
-        types(f"param load {path}.wanted")
-        until("Loaded ")
-        types("long COMPONENT_ARM_DISARM 1")
-        until("radio lost")
+        # Forced: also what it has is sent, so that a lost answer comes again.
+        until("parameters stored", f"param forceload {path}.wanted")
+        until("radio lost", "long COMPONENT_ARM_DISARM 1")
         if restarts:
-            until("parameters stored")
             said = ""
-            types("long PREFLIGHT_REBOOT_SHUTDOWN 1")
-            until("CALIBRATING")
+            until("CALIBRATING", "long PREFLIGHT_REBOOT_SHUTDOWN 1")
             # Nothing of before is left.
-            until("Received", ask="param fetch")
+            until("Received", "param fetch")
         types(f"param save {path}")
         until("Saved ")
         proxy.stdin.close()

@@ -146,7 +146,11 @@ fn stand_with(client: impl FnOnce(u16) -> Value + Send + 'static) -> Value {
         || client.is_finished(),
     )
     .unwrap();
-    let said = client.join().unwrap_or_else(|_| panic!("{log}"));
+    let said = client.join().unwrap_or_else(|why| {
+        // What the client missed stands last, below the board's log.
+        println!("{log}");
+        panic!("{}", why.downcast_ref::<String>().map_or("client", String::as_str))
+    });
     assert_eq!(stood.gaps, []);
     for task in FLIGHT_LEVEL {
         let missed = stood.board.overruns.get(task).copied().unwrap_or(0);
