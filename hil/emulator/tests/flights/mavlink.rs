@@ -149,7 +149,10 @@ fn stand_with(client: impl FnOnce(u16) -> Value + Send + 'static) -> Value {
     let said = client.join().unwrap_or_else(|why| {
         // What the client missed stands last, below the board's log.
         println!("{log}");
-        panic!("{}", why.downcast_ref::<String>().map_or("client", String::as_str))
+        panic!(
+            "{}",
+            why.downcast_ref::<String>().map_or("client", String::as_str)
+        )
     });
     assert_eq!(stood.gaps, []);
     for task in FLIGHT_LEVEL {
