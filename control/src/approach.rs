@@ -104,6 +104,8 @@ pub struct Approach {
     legs: u8,
     /// Where the range came onto the pipe, m.
     entered: Option<f32>,
+    /// The middle of what the search has met last, by one of its edges, right, m.
+    met: Option<f32>,
     /// The pipe's crown: right and down, m, half its width, m.
     crown: f32,
     top: f32,
@@ -147,6 +149,7 @@ impl Approach {
             reach: SWEEP,
             legs: 0,
             entered: None,
+            met: None,
             crown: 0.0,
             top: 0.0,
             half: 0.5 * p.pipe_diameter,
@@ -208,6 +211,21 @@ impl Approach {
     /// It has climbed off the pipe.
     pub fn has_left(&self) -> bool {
         self.left
+    }
+
+    /// The level way off the pipe for a vehicle at `position`, length 1, in the estimate's axes: across, to the nearer side.
+    /// `None` while nothing has been met.
+    pub fn off_pipe(&self, position: Vec3) -> Option<Vec3> {
+        let here = self.local(position).y;
+        let off = match (self.phase, self.met) {
+            (Phase::Search, Some(met)) => here - met,
+            // Over something from the beginning: on, as the sweep goes.
+            (Phase::Search, None) if self.origin.z + self.edges.level() < -RAISED => self.side,
+            (Phase::Search, None) => return None,
+            _ => here - self.crown,
+        };
+        let side = if off < 0.0 { -1.0 } else { 1.0 };
+        Some(about_down(Vec3::new(0.0, side, 0.0), self.heading))
     }
 
     /// Origin of the estimate's axes has jumped since the beginning.
@@ -324,6 +342,11 @@ impl Approach {
 
     fn search(&mut self, edge: Option<Edge>, held: Vec3) -> Result<Vec3, Doubt> {
         self.late(SEARCH_TIME, Doubt::NoPipe)?;
+        self.met = match edge {
+            Some(Edge::Onto(at)) => Some(at.y + self.side * self.half),
+            Some(Edge::Off(at)) => Some(at.y - self.side * self.half),
+            None => self.met,
+        };
         if let Some(middle) = self.crossed(edge) {
             self.crown = middle;
             self.along = held.x;

@@ -35,6 +35,7 @@ mod reason;
 mod releasing;
 mod remote;
 mod slip;
+mod spot;
 #[cfg(test)]
 mod tests;
 mod transitions;

@@ -55,6 +55,8 @@ pub const WAY_TIME: f32 = 15.0;
 pub const CENTRE_TIME: f32 = 12.0;
 pub const GATE_WAIT: f32 = 15.0;
 pub const TOUCH_WAIT: f32 = 2.5;
+/// Height over the ground of the take-off from which on what is below may be a pipe, m.
+pub const RAISED: f32 = 0.3;
 /// Age of a range beyond which it is none, s.
 pub const RANGE_AGE: f32 = 0.3;
 /// Change of the level speed asked for, m/s²: the hold follows what turns faster with twice the speed.

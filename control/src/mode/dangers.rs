@@ -3,7 +3,7 @@
 //! | trouble | on the ground | in the air | on the pipe |
 //! |---|---|---|---|
 //! | arm switch off | stop | stop | stop, arms stay closed |
-//! | radio lost | stop | level, sink, stop on what carries | keep closing, keep the grip |
+//! | radio lost | stop | level, over one place if that is known, sink, stop on what carries | keep closing, keep the grip |
 //! | inertial sensor silent | stop | stop | stop, arms stay closed |
 //! | tipped over | stop | stop | stop, arms stay closed |
 //! | battery critical | - | sink, the pilot still steers | reported; release refused |

@@ -87,7 +87,7 @@ pub fn approach(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Approac
     let heading = pipe.map_or(nose, |pipe| math::wrap_pi(pipe - turn));
     step.context.by_itself.begin(heading);
     let law = match from {
-        State::Hold(h) => Some(h.law),
+        State::Hold(h) => Some(h.place.law),
         _ => None,
     };
     Approach::search(law, step)
@@ -249,10 +249,8 @@ pub fn giving_up(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Escapi
 }
 
 /// The failsafe acts for the reason of the transition.
-pub fn failsafe(_: &State, _: &mut Step<'_>, why: Option<Reason>) -> Failsafe {
-    Failsafe {
-        cause: why.unwrap_or(Reason::RADIO_LOST),
-    }
+pub fn failsafe(from: &State, step: &mut Step<'_>, why: Option<Reason>) -> Failsafe {
+    Failsafe::begin(from, step, why.unwrap_or(Reason::RADIO_LOST))
 }
 
 fn present_heading(step: &Step<'_>) -> f32 {

@@ -54,15 +54,38 @@ fn younger(i: &Inputs, age: f32) -> bool {
     i.position.is_some_and(|e| e.age <= age)
 }
 
+/// The law with a position that may go and come back.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    pub law: PositionHold,
+    /// The position is none at present.
+    adrift: bool,
+}
+
+impl Place {
+    pub fn new(law: PositionHold) -> Self {
+        Self { law, adrift: false }
+    }
+
+    /// One step: up to [`COAST_AGE`] of the estimate it holds, then it keeps level, and holds where the vehicle is once there
+    /// is a position again.
+    pub fn step(&mut self, estimate: &Estimate, wish: &Wish, step: &Step<'_>) -> Setpoint {
+        let adrift = estimate.age > COAST_AGE;
+        if self.adrift && !adrift {
+            self.law.anchor_at(estimate);
+        }
+        self.adrift = adrift;
+        self.law.step(estimate, &felt(step), wish, !adrift, step.dt)
+    }
+}
+
 /// See [`super::Mode::Hold`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hold {
-    pub law: PositionHold,
+    pub place: Place,
     wanted: Setpoint,
     /// The throttle was centred since the hold began: until then, where it stands is no wish.
     centred: bool,
-    /// The position is none at present.
-    adrift: bool,
 }
 
 impl Hold {
@@ -85,10 +108,9 @@ impl Hold {
     fn begin(law: PositionHold, centred: bool, step: &mut Step<'_>) -> Self {
         let estimate = step.inputs.position.unwrap_or_default();
         let mut hold = Self {
-            law,
+            place: Place::new(law),
             wanted: Setpoint::Stop,
             centred,
-            adrift: false,
         };
         hold.step(&estimate, step);
         hold
@@ -97,27 +119,23 @@ impl Hold {
     fn step(&mut self, estimate: &Estimate, step: &Step<'_>) {
         let sticks = step.inputs.sticks.unwrap_or_default();
         self.centred |= (sticks.throttle - THROTTLE_CENTRE).abs() <= THROTTLE_ZONE;
-        let adrift = estimate.age > COAST_AGE;
-        if self.adrift && !adrift {
-            self.law.anchor_at(estimate);
-        }
-        self.adrift = adrift;
-        let wish = self.wish(&sticks, step.context);
-        self.wanted = self.law.step(estimate, &felt(step), &wish, !adrift, step.dt);
+        let climb = if self.centred { climb(sticks.throttle) } else { 0.0 };
+        let wish = wished(&sticks, climb, step.context);
+        self.wanted = self.place.step(estimate, &wish, step);
     }
+}
 
-    fn wish(&self, s: &Sticks, context: &Context) -> Wish {
-        let climb = if self.centred { climb(s.throttle) } else { 0.0 };
-        let lean = |stick: f32| GRAVITY * tan(clamp_abs(stick * context.params.stick_angle, 1.0));
-        let yaw_rate = match demand::from_sticks(s, &context.params) {
-            Setpoint::Angle { yaw_rate, .. } => yaw_rate,
-            _ => 0.0,
-        };
-        Wish {
-            velocity: Vec3::new(-s.pitch * SPEED_MAX, s.roll * SPEED_MAX, -climb * CLIMB_MAX),
-            yaw_rate,
-            lean: [-lean(s.pitch), lean(s.roll)],
-        }
+/// What the sticks ask for, `climb` being a share of the fastest one, -1..1.
+pub fn wished(s: &Sticks, climb: f32, context: &Context) -> Wish {
+    let lean = |stick: f32| GRAVITY * tan(clamp_abs(stick * context.params.stick_angle, 1.0));
+    let yaw_rate = match demand::from_sticks(s, &context.params) {
+        Setpoint::Angle { yaw_rate, .. } => yaw_rate,
+        _ => 0.0,
+    };
+    Wish {
+        velocity: Vec3::new(-s.pitch * SPEED_MAX, s.roll * SPEED_MAX, -climb * CLIMB_MAX),
+        yaw_rate,
+        lean: [-lean(s.pitch), lean(s.roll)],
     }
 }
 
@@ -157,7 +175,7 @@ impl Behaviour for Hold {
     }
 
     fn reason(&self, context: &Context, inputs: &Inputs, _: ArmingInhibits) -> Option<Reason> {
-        let stale = self.adrift.then_some(Reason::PositionStale);
+        let stale = self.place.adrift.then_some(Reason::PositionStale);
         stale.or_else(|| context.reason(inputs, true))
     }
 }

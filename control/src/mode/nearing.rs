@@ -10,6 +10,7 @@ use crate::arming::ArmingInhibits;
 use crate::position::Estimate;
 use crate::position_hold::{PositionHold, Wish};
 use crate::support::HINT_FORCE;
+use crate::vector::Vec3;
 
 /// See [`super::Mode::Approach`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -99,6 +100,11 @@ impl Approach {
     /// It has climbed off the pipe.
     pub fn has_left(&self) -> bool {
         self.way.has_left()
+    }
+
+    /// The level way off the pipe for a vehicle at `position`, length 1, in the estimate's axes; `None` where none is known.
+    pub fn off_pipe(&self, position: Vec3) -> Option<Vec3> {
+        self.way.off_pipe(position)
     }
 
     fn step(&mut self, estimate: &Estimate, step: &mut Step<'_>) {

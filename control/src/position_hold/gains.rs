@@ -136,11 +136,22 @@ mod tests {
 
     /// The same where a tilt gives `share` of its acceleration.
     fn left_with(p: &Params, share: f64) -> f64 {
+        left_leaning(p, share, 0.0)
+    }
+
+    /// The same where the arms push by `arms` s² of the tilt's second derivative, which the law takes for a disturbance.
+    fn left_leaning(p: &Params, share: f64, arms: f64) -> f64 {
         let mut m = continuous(p);
-        m[1][2] = share;
+        (m[1][2], m[1][4]) = (share, arms);
         let (a, b) = sampled(&m);
         let step = |x: &Vec<f64>| -> Vec<f64> {
-            let u: f64 = -GAINS.iter().zip(x).map(|(k, x)| f64::from(*k) * x).sum::<f64>();
+            let mut seen = x.clone();
+            seen[7] += arms * x[4];
+            let u: f64 = -GAINS
+                .iter()
+                .zip(&seen)
+                .map(|(k, x)| f64::from(*k) * x)
+                .sum::<f64>();
             let row = |(row, b): (&Vec<f64>, &Vec<f64>)| {
                 row.iter().zip(x).map(|(a, x)| a * x).sum::<f64>() + b[0] * u
             };
@@ -196,5 +207,24 @@ mod tests {
         assert!(left_with(&p, 1.6) < 1e-3, "{}", left_with(&p, 1.6));
         // The attitude far too slow: the law cannot know.
         assert!(left(&Params { attitude_p: 0.7, ..p }) > 1.0);
+    }
+
+    /// A roll acceleration bends the arms of the two sides apart, and their thrusts lean to the side of the roll: I φ'' = 4 d δ
+    /// needs δ on each rotor, and 4 δ d(T sin α)/dT push. The statics are the most; tips with mass bend less.
+    #[test]
+    fn what_the_arms_push_in_a_roll_matters_little() {
+        let p = Params::DEFAULT;
+        let hover = p.mass * crate::math::GRAVITY / 4.0;
+        let arm = crate::deflection::ArmModel::from_params(&p);
+        let lean = |thrust: f32| f64::from(thrust * crate::math::sin(arm.angle(thrust)));
+        let per_thrust = (lean(hover + 0.1) - lean(hover - 0.1)) / 0.2;
+        let g = f64::from(crate::math::GRAVITY);
+        let arms = f64::from(p.inertia_roll) * per_thrust / (f64::from(p.arm_d * p.mass) * g);
+        assert!((arms - 2.3e-3).abs() < 1e-4, "{arms}");
+        for times in [1.0, 20.0] {
+            let left = left_leaning(&p, 1.0, times * arms);
+            assert!(left < 1e-3, "{times}: {left}");
+        }
+        assert!(left_leaning(&p, 1.0, 30.0 * arms) > 1.0);
     }
 }

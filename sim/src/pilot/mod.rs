@@ -102,6 +102,10 @@ pub struct Pilot {
     sticks: StickDynamics,
     wish: StickTarget,
     referee: Referee,
+    /// When the radio is lost for good, s after power-up.
+    radio_lost_at: f64,
+    /// Since power-up, s.
+    now: f64,
 }
 
 impl Pilot {
@@ -123,6 +127,8 @@ impl Pilot {
             sticks: StickDynamics::new(limits.bandwidth, scenario.arms),
             wish: StickTarget::default(),
             referee: Referee::default(),
+            radio_lost_at: scenario.faults.radio_at.unwrap_or(f64::INFINITY),
+            now: 0.0,
         }
     }
 
@@ -132,7 +138,8 @@ impl Pilot {
             step: self.index,
             ..Default::default()
         };
-        if self.mission.transmits() {
+        self.now = seen.t;
+        if self.linked() {
             self.telemetry.take(telemetry_bytes);
         } else {
             self.telemetry.darken();
@@ -150,7 +157,7 @@ impl Pilot {
                 self.think(seen, 1.0 / FRAME_HZ, &mut out);
             }
             let sticks = self.sticks.move_to(&self.wish, 1.0 / FRAME_HZ);
-            if self.mission.transmits() {
+            if self.linked() {
                 out.rc_bytes = Some(rc_frame(&sticks));
                 out.channels = Some(sticks.to_channels());
             }
@@ -161,9 +168,14 @@ impl Pilot {
 
     /// Somebody reads the vehicle's log aloud: with a receiver that has no way back the display shows nothing.
     pub fn hear(&mut self, mode: Mode, reason: &str) {
-        if self.mission.transmits() {
+        if self.linked() {
             self.telemetry.report(mode, reason);
         }
+    }
+
+    /// The transmitter is on, and heard.
+    fn linked(&self) -> bool {
+        self.mission.transmits() && self.now < self.radio_lost_at
     }
 
     /// How the mission ended; `None` before that.

@@ -23,6 +23,8 @@ pub struct Faults {
     pub tilt_offset: PerArm<f64>,
     /// Length of each tendon over its own, m; negative: too short.
     pub tendon_slack: PerArm<f64>,
+    /// When the radio is lost for good, s after power-up.
+    pub radio_at: Option<f64>,
 }
 
 impl Default for Faults {
@@ -35,6 +37,7 @@ impl Default for Faults {
             pressure_gain: [1.0; 4],
             tilt_offset: [0.0; 4],
             tendon_slack: [0.0; 4],
+            radio_at: None,
         }
     }
 }

@@ -522,6 +522,7 @@ pub const KEYS: &[Key] = &[
             &mut s.faults.tendon_slack
         }),
     },
+    optional!("faults.radio_at_s", Range::new(0.0, 3600.0, "s"), faults.radio_at),
     Key {
         name: "expect.accomplished",
         kind: Kind::Flag(|s| &mut s.expect.accomplished),

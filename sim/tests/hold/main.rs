@@ -5,6 +5,7 @@ mod by_itself;
 mod flow;
 mod on_the_way;
 mod pose;
+mod radio;
 
 use std::f64::consts::TAU;
 

@@ -131,6 +131,47 @@ impl World {
     }
 }
 
+/// Without radio it comes down beside the pipe, not on it.
+#[test]
+fn a_radio_lost_over_the_pipe_leads_away_from_it() {
+    type There = fn(&World, f32) -> bool;
+    // Where the approach begins, from the crown, and where the radio is lost.
+    let cases: [(f32, There); 4] = [
+        // Over the crown.
+        (-0.2, |w, off| w.at.z > -2.0 && off.abs() < 0.05),
+        // The beam has just come onto the pipe.
+        (-0.2, |_, off| (-0.13..-0.05).contains(&off)),
+        // Still over the pipe, where it has begun.
+        (0.0, |_, off| off > 0.02),
+        // Just off the pipe again.
+        (0.0, |_, off| off > 0.2),
+    ];
+    for (case, (begins, there)) in cases.into_iter().enumerate() {
+        let mut w = World::holding();
+        w.at.y = RIGHT + begins;
+        w.run(0.1);
+        w.r.sticks().perch_switch = true;
+        w.step();
+        for _ in 0..4000 {
+            w.step();
+            if there(&w, w.at.y - RIGHT) {
+                break;
+            }
+        }
+        let off = w.at.y - RIGHT;
+        assert_eq!(w.r.out.mode, Mode::Approach, "{case}");
+        w.r.inputs.sticks = None;
+        w.run(0.7);
+        assert_eq!(w.r.out.mode, Mode::Failsafe);
+        let [roll, _, _, thrust] = w.r.out.rotors.numbers();
+        assert!(
+            roll * off > 0.0 && roll.abs() > 0.02,
+            "{case}: {off} m beside the crown: {roll} rad"
+        );
+        assert!(thrust > w.r.params.mass * 9.5, "{thrust}");
+    }
+}
+
 /// The pipe's crown as a companion says it, `off` m.
 fn said(off: Vec3) -> Option<PipeTarget> {
     Some(PipeTarget {

@@ -17,4 +17,5 @@ mod reasons;
 mod remote;
 mod restart;
 mod rig;
+mod spot;
 mod trouble;
