@@ -41,12 +41,13 @@ impl Approach {
         Ok(())
     }
 
-    /// Height over the crown by which it comes down, as a range would measure it, m.
+    /// Height over the crown by which it comes down, as a range would measure it, m. A lens above the centre of mass brings it
+    /// no lower: the belly is below.
     pub(super) fn clearance(&self, at: Vec3) -> f32 {
         let surface = if self.given {
             self.top - UNDER + LOWER
         } else {
-            self.edges.level()
+            self.edges.level() - self.lens.z.max(0.0)
         };
         surface - at.z
     }
