@@ -2,6 +2,7 @@
 
 use super::limits::*;
 use super::{Approach, Doubt, Phase, View};
+use crate::math;
 use crate::position::{Estimate, about_down};
 use crate::target::PipeTarget;
 use crate::vector::Vec3;
@@ -47,7 +48,10 @@ impl Approach {
         let surface = if self.given {
             self.top - UNDER + LOWER
         } else {
-            self.edges.level() - self.lens.z.max(0.0)
+            // Beside the crown the beam meets the pipe's round back, by so much below it.
+            let (half, square) = (self.half, self.lens.y * self.lens.y);
+            let fallen = square / (half + math::sqrt(half * half - square));
+            self.edges.level() - fallen - self.lens.z.max(0.0)
         };
         surface - at.z
     }
