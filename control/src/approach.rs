@@ -86,6 +86,8 @@ enum Phase {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Approach {
     diameter: f32,
+    /// Where the range looks down from, of the centre of mass, m: forward, right, down, as the nose is along the pipe.
+    lens: Vec3,
     origin: Vec3,
     heading: f32,
     jumps: u8,
@@ -136,6 +138,7 @@ impl Approach {
     pub fn begin(p: &Params, v: &View, heading: f32, jumps: u8) -> Self {
         let law = Self {
             diameter: p.pipe_diameter,
+            lens: p.flow_lens(),
             origin: v.position,
             heading,
             jumps,
@@ -352,7 +355,7 @@ impl Approach {
             self.along = held.x;
             self.enter(Phase::Over);
         }
-        let target = Vec3::new(0.0, self.side * self.reach, held.z);
+        let target = Vec3::new(0.0, self.side * self.reach - self.lens.y, held.z);
         if (target.y - held.y).abs() < REACHED {
             self.reach += if self.side < 0.0 { SWEEP } else { 0.0 };
             self.side = -self.side;
@@ -402,7 +405,9 @@ impl Approach {
         self.late(WAY_TIME, Doubt::NotCentred)?;
         let fore = self.phase == Phase::Fore;
         let goal = if fore { LOOK } else { -LOOK };
-        let target = Vec3::new(goal, self.crown, self.top - LOW);
+        // The beam goes along the crown, not the vehicle.
+        let Vec3 { x, y, .. } = self.lens;
+        let target = Vec3::new(goal - x, self.crown - y, self.top - LOW);
         // A gust carries the beam off the side as well: what it comes back onto has not ended.
         match edge {
             Some(Edge::Off(at)) => self.fell = Some(at.x),
@@ -416,7 +421,7 @@ impl Approach {
             let end = if sees {
                 None
             } else {
-                Some(self.fell.unwrap_or(held.x))
+                Some(self.fell.unwrap_or(held.x + x))
             };
             let [front, rear] = &mut self.ends;
             *(if fore { front } else { rear }) = end;
@@ -447,7 +452,7 @@ impl Approach {
             self.crown = middle;
         }
         let mut target = self.spot(LOW);
-        target.y += self.side * (self.half + BESIDE);
+        target.y += self.side * (self.half + BESIDE) - self.lens.y;
         if (target.y - held.y).abs() < REACHED {
             self.side = -self.side;
             self.legs = self.legs.saturating_add(1);

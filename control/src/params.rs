@@ -13,6 +13,7 @@ pub use self::choices::{
 pub use self::names::{NAME_MAX, RENAMED, Renamed, check_names};
 pub use self::table::Params;
 use self::table::ROWS;
+use crate::vector::Vec3;
 
 /// One row of the parameter table.
 #[derive(Clone, Copy, Debug)]
@@ -87,6 +88,11 @@ fn find(name: &str) -> Option<(usize, &'static ParamInfo)> {
 }
 
 impl Params {
+    /// Lens of the flow module from the centre of mass, m, body.
+    pub fn flow_lens(&self) -> Vec3 {
+        Vec3::new(self.flow_x, self.flow_y, self.flow_z)
+    }
+
     /// The table's row of the parameter called `name`.
     pub fn row(name: &str) -> Option<&'static ParamInfo> {
         find(name).map(|(_, row)| row)

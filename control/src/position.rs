@@ -217,7 +217,7 @@ impl PositionEstimator {
             motor_tau: p.motor_tau,
             past: Past::default(),
             track: None,
-            sight: Sight::new(p.pipe_diameter),
+            sight: Sight::new(p.pipe_diameter, p.flow_lens()),
             trust: Trust::default(),
             aloft: Aloft::default(),
             seen_us: 0,
@@ -308,7 +308,8 @@ impl PositionEstimator {
             track.take(&mut self.past, &mut self.trust, fix);
         }
         if let Some(at) = looked {
-            track.step_on(&self.past, at, range.map(|(_, distance)| distance));
+            let distance = range.map(|(_, distance)| distance);
+            track.step_on(&self.past, self.sight.lens, at, distance);
         }
         let posed = track.posed && seconds(track.pose_us, at_us) < POSE_FRESH;
         if let Some((at, distance)) = range {
@@ -492,8 +493,8 @@ impl Track {
     }
 
     /// Notes where the beam of a range of `distance` m, measured at `at` µs, has met something.
-    fn step_on(&mut self, past: &Past, at: u64, distance: Option<f32>) {
-        let Some(then) = past.at(at) else {
+    fn step_on(&mut self, past: &Past, lens: Vec3, at: u64, distance: Option<f32>) {
+        let Some(then) = past.at(at).map(|moment| moment.of(lens, self.turn)) else {
             return;
         };
         self.foot.point = distance.map(|d| then.position + beam(then.q, d, self.turn));
@@ -514,6 +515,8 @@ impl Track {
             past.change(at, &[along, across, Change::default()]);
         }
         let earlier = past.at(at.saturating_sub(EDGE_TIME)).unwrap_or(then);
+        // The lever is rigid: what the lens is off, the vehicle is.
+        let [earlier, then] = [earlier, then].map(|moment| moment.of(sight.lens, self.turn));
         let [_, _, axis] = &mut self.axes;
         let Some((innovation, variance)) = sight.height((&earlier, &then), distance, posed, self.turn) else {
             return;
@@ -548,6 +551,8 @@ impl Track {
         let (Some(from), Some(to)) = (past.at(begin), past.at(flow.until_us)) else {
             return;
         };
+        // Between the lens' two places lies the vehicle's way, and what its turning adds.
+        let [from, to] = [from, to].map(|moment| moment.of(sight.lens, self.turn));
         let Some(seen) = sight.velocity(flow, &from, &to, self.turn) else {
             return;
         };

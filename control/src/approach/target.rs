@@ -2,6 +2,7 @@
 
 use super::limits::*;
 use super::{Approach, Doubt, Phase, View};
+use crate::math;
 use crate::position::{Estimate, about_down};
 use crate::target::PipeTarget;
 use crate::vector::Vec3;
@@ -41,12 +42,16 @@ impl Approach {
         Ok(())
     }
 
-    /// Height over the crown by which it comes down, as a range would measure it, m.
+    /// Height over the crown by which it comes down, as a range would measure it, m. A lens above the centre of mass brings it
+    /// no lower: the belly is below.
     pub(super) fn clearance(&self, at: Vec3) -> f32 {
         let surface = if self.given {
             self.top - UNDER + LOWER
         } else {
-            self.edges.level()
+            // Beside the crown the beam meets the pipe's round back, by so much below it.
+            let (half, square) = (self.half, self.lens.y * self.lens.y);
+            let fallen = square / (half + math::sqrt(half * half - square));
+            self.edges.level() - fallen - self.lens.z.max(0.0)
         };
         surface - at.z
     }

@@ -35,6 +35,11 @@ impl World {
         (local.y - self.right, local.x)
     }
 
+    /// What the range sees straight below a lens at `lens` of a vehicle at `p`.
+    fn below_lens(&self, p: Vec3, lens: Vec3) -> Option<Vec3> {
+        self.below(p + about_down(lens, self.heading))
+    }
+
     /// What the range sees straight below `p`.
     fn below(&self, p: Vec3) -> Option<Vec3> {
         let (y, x) = self.beside(p);
@@ -55,7 +60,7 @@ fn flown(world: World, law: Approach) -> (Result<(), Doubt>, Vec3, Approach, f32
     for i in 0..12_000 {
         if i % 2 == 0 {
             foot = Foot {
-                point: world.below(held),
+                point: world.below_lens(held, law.lens),
                 count: foot.count.wrapping_add(1),
                 age: 0.02,
             };
@@ -91,6 +96,10 @@ fn flown(world: World, law: Approach) -> (Result<(), Doubt>, Vec3, Approach, f32
 }
 
 fn begun(world: &World) -> Approach {
+    begun_by(world, &Params::default())
+}
+
+fn begun_by(world: &World, p: &Params) -> Approach {
     let view = View {
         position: Vec3::ZERO,
         velocity: Vec3::ZERO,
@@ -99,7 +108,7 @@ fn begun(world: &World) -> Approach {
         foot: Foot::default(),
         target: None,
     };
-    Approach::begin(&Params::default(), &view, world.heading, 0)
+    Approach::begin(p, &view, world.heading, 0)
 }
 
 #[test]
@@ -117,6 +126,38 @@ fn it_touches_on_the_crown_from_wherever_the_search_begins() {
             assert!(y.abs() < 0.015 && x.abs() < 0.05, "{right} {ground:?}: {y} {x}");
             assert!(seconds < 60.0, "{right} {ground:?}: {seconds} s");
         }
+    }
+}
+
+/// The vehicle comes down over the crown, the beam that finds it beside the vehicle; the ends are looked for with the beam.
+#[test]
+fn with_the_lens_beside_its_centre_it_touches_on_the_crown_as_far_from_the_ends() {
+    for (x, y, z) in [(-0.08, 0.06, 0.05), (0.15, -0.07, -0.05), (0.0, 0.07, 0.1)] {
+        let p = Params {
+            flow_x: x,
+            flow_y: y,
+            flow_z: z,
+            ..Params::default()
+        };
+        for (ends, wanted) in [((-1.0, 1.0), 0.0), ((-1.0, 0.2), -0.1), ((-0.1, 2.0), 0.2)] {
+            let world = World { ends, ..WORLD };
+            let (end, at, law, _) = flown(world, begun_by(&world, &p));
+            let (right, ahead) = world.beside(at);
+            assert_eq!(end, Ok(()), "{x} {y} {z} {ends:?} {law:?}");
+            assert!(
+                right.abs() < 0.015 && (ahead - wanted).abs() < 0.05,
+                "{x} {y} {z} {ends:?}: {right} {ahead}"
+            );
+        }
+        let short = World {
+            ends: (-0.2, 0.25),
+            ..WORLD
+        };
+        assert_eq!(
+            flown(short, begun_by(&short, &p)).0,
+            Err(Doubt::TooShort),
+            "{x} {y} {z}"
+        );
     }
 }
 

@@ -115,6 +115,12 @@ params! {
     flow_mounting: FlowMounting = FlowMounting::Forward, "deg";
     /// Counts of the flow module for each degree that it turns, as INAV's `opflow_scale`. Read by the board at start-up.
     flow_scale = 10.5, "1/deg", 0.5 ..= 200.0;
+    /// Lens of the flow module ahead of the vehicle's centre of mass, measured with a ruler.
+    flow_x = 0.0, "m", -0.3 ..= 0.3;
+    /// Lens of the flow module to the right of the centre of mass.
+    flow_y = 0.0, "m", -0.3 ..= 0.3;
+    /// Lens of the flow module below the centre of mass.
+    flow_z = 0.0, "m", -0.3 ..= 0.3;
     /// Samples per second of the vehicle's inertial sensor; a part that cannot takes its nearest.
     imu_rate: ImuRate = ImuRate::Hz4000, "Hz";
     /// Full scale of the gyroscope.

@@ -1,7 +1,7 @@
 //! Where the vehicle was taken to be: a fix is compared with the time of its measurement.
 
 use super::axis::Change;
-use super::seconds;
+use super::{about_down, seconds};
 use crate::math;
 use crate::vector::{Quat, Vec3};
 
@@ -22,6 +22,14 @@ pub struct Moment {
 }
 
 impl Moment {
+    /// The same moment of the point that lies `lever` m from the centre of mass, body, in axes turned by `turn` rad.
+    pub fn of(self, lever: Vec3, turn: f32) -> Self {
+        Self {
+            position: self.position + about_down(self.q.rotate(lever), turn),
+            ..self
+        }
+    }
+
     /// Heading by the vehicle's own attitude, rad.
     pub fn yaw(&self) -> f32 {
         self.q.to_euler().2

@@ -137,6 +137,8 @@ pub struct Seen {
 pub struct Sight {
     /// Half the width of what the vehicle perches on, m.
     radius: f32,
+    /// Lens from the centre of mass, m, body. Both sensors look from there.
+    pub(super) lens: Vec3,
     /// Newest range with a distance: when, µs, and m.
     range: Option<(u64, f32)>,
     /// When the newest range that was looked at was measured, µs.
@@ -170,10 +172,11 @@ pub struct Sight {
 }
 
 impl Sight {
-    /// Over pipes of `diameter` m.
-    pub fn new(diameter: f32) -> Self {
+    /// Over pipes of `diameter` m, from a `lens` that lies so far from the centre of mass, m, body.
+    pub fn new(diameter: f32, lens: Vec3) -> Self {
         Self {
             radius: 0.5 * diameter,
+            lens,
             ..Self::default()
         }
     }
@@ -228,7 +231,7 @@ impl Sight {
         (!self.range_faulty()).then_some((range.at_us, distance))
     }
 
-    /// Height above the ground with which an estimate may begin, m, at a flow with the attitude `q`.
+    /// Height of the centre of mass above the ground with which an estimate may begin, m, at a flow with the attitude `q`.
     pub fn begin(&mut self, flow: &Flow, q: Quat) -> Option<f32> {
         let cos = q.down_in_body().z;
         let (at, distance) = self.range.filter(|_| !self.range_faulty())?;
@@ -237,11 +240,11 @@ impl Sight {
         let sound = cos >= COS_MIN && flow.quality >= QUALITY_MIN && (least..=most).contains(&distance);
         (self.level, self.base, self.other, self.agreed) = (0.0, 0.0, 0.0, 0);
         self.band = None;
-        (fresh && sound).then_some(distance * cos)
+        (fresh && sound).then_some(distance * cos + q.rotate(self.lens).z)
     }
 
-    /// What the height at `then` is off by a range of `distance`, m, with its variance, m²; `None` while it is not clear
-    /// what is below. Where a pose is fresh the surface follows the height instead. A little `earlier` the beam was on its
+    /// What the height of the lens at `then` is off by a range of `distance`, m, with its variance, m²; `None` while it is not
+    /// clear what is below. Where a pose is fresh the surface follows the height instead. A little `earlier` the beam was on its
     /// way there; the axes are turned by `turn`, rad.
     pub fn height(
         &mut self,
@@ -372,8 +375,8 @@ impl Sight {
         }
     }
 
-    /// What the velocity between `from` and `to`, in axes turned by `turn` rad, is off by `flow`; `None` where it says
-    /// nothing.
+    /// What the velocity of the lens between `from` and `to`, in axes turned by `turn` rad, is off by `flow`; `None` where it
+    /// says nothing.
     pub fn velocity(&mut self, flow: &Flow, from: &Moment, to: &Moment, turn: f32) -> Option<Seen> {
         self.watch_frozen(flow);
         let cos = to.q.down_in_body().z;
@@ -442,7 +445,7 @@ impl Sight {
     }
 }
 
-/// From the vehicle with the attitude `q` to what its range sees `distance` m away, in axes turned by `turn` rad.
+/// From the lens of a vehicle with the attitude `q` to what its range sees `distance` m away, in axes turned by `turn` rad.
 pub fn beam(q: Quat, distance: f32, turn: f32) -> Vec3 {
     about_down(q.rotate(Vec3::new(0.0, 0.0, distance)), turn)
 }

@@ -19,14 +19,28 @@ pub(super) struct Rig {
     range: fn(f32) -> f32,
     /// Height of what is below over the ground, m.
     floor: f32,
+    /// Where its lens is in truth, m, body.
+    lens: Vec3,
     silent: bool,
     pub(super) out: Option<Estimate>,
 }
 
 impl Rig {
     pub(super) fn new() -> Self {
+        Self::with_lens(Vec3::ZERO, Vec3::ZERO)
+    }
+
+    /// Its lens is at `lens`, and is measured to be at `known`, m, body.
+    fn with_lens(lens: Vec3, known: Vec3) -> Self {
+        let p = Params {
+            flow_x: known.x,
+            flow_y: known.y,
+            flow_z: known.z,
+            ..Params::default()
+        };
         Self {
-            estimator: PositionEstimator::new(&Params::default()),
+            estimator: PositionEstimator::new(&p),
+            lens,
             now: 1_000_000,
             spoil: |angle| angle,
             range: |distance| distance,
@@ -58,8 +72,12 @@ impl Rig {
     pub(super) fn view(&self) -> Option<GroundView> {
         let until = (self.now - LATE_US) / FLOW_US * FLOW_US;
         let from = until - FLOW_US;
-        let [[a, ..], [b, ..]] = [from, until].map(Self::truth);
         let (q0, q1) = (Self::q(from), Self::q(until));
+        let place = |us: u64, q: Quat| {
+            let [position, ..] = Self::truth(us);
+            position + q.rotate(self.lens)
+        };
+        let (a, b) = (place(from, q0), place(until, q1));
         let depth = |p: Vec3, q: Quat| (-p.z - self.floor) / q.down_in_body().z;
         let turned = q0.conjugate() * q1;
         let way = q1.rotate_inverse(b - a);
@@ -136,6 +154,55 @@ fn late_flow_of_a_vehicle_that_turns_gives_its_velocity_and_range_its_height() {
     assert_eq!(r.fault(), None);
 }
 
+/// Level velocity and height that an estimator with the lens `known` has of one whose lens is at `lens`: what they are off,
+/// m/s RMS and m at most.
+fn off_by_lever(lens: Vec3, known: Vec3) -> [f32; 2] {
+    let mut r = Rig::with_lens(lens, known);
+    r.run(5.0);
+    let (mut sum, mut most) = (0.0, 0.0f32);
+    for _ in 0..1000 {
+        r.run(0.02);
+        let [_, velocity, _] = Rig::truth(r.now);
+        let off = r.out.expect("an estimate").velocity - velocity;
+        sum += off.x * off.x + off.y * off.y;
+        most = most.max(r.errors()[1]);
+    }
+    assert_eq!(r.fault(), None);
+    [math::sqrt(sum / 1000.0), most]
+}
+
+/// It rolls and pitches by 0.5 and 0.6 rad/s RMS. A lever that is known costs nothing, a mirrored one twice as much as one that
+/// is not.
+#[test]
+fn the_lever_of_the_lens_is_taken_out_by_its_sign() {
+    let axes = [
+        Vec3::new(-0.2, 0.0, 0.0),
+        Vec3::new(0.0, 0.2, 0.0),
+        Vec3::new(0.0, 0.0, 0.2),
+        Vec3::new(-0.08, 0.06, 0.05),
+    ];
+    let [without, high] = off_by_lever(Vec3::ZERO, Vec3::ZERO);
+    assert!(without < 0.003 && high < 0.001, "{without} {high}");
+    for lens in axes {
+        let [known, known_high] = off_by_lever(lens, lens);
+        let [unknown, unknown_high] = off_by_lever(lens, Vec3::ZERO);
+        let [mirrored, mirrored_high] = off_by_lever(lens, -lens);
+        assert!(
+            known < 1.1 * without && known_high < high + 1e-4,
+            "{lens:?}: {known} {known_high}"
+        );
+        assert!(
+            unknown > 10.0 * known && unknown_high > 0.01,
+            "{lens:?}: {unknown} {unknown_high}"
+        );
+        let twice = [mirrored / unknown, mirrored_high / unknown_high];
+        assert!(
+            twice.iter().all(|share| (1.9..2.1).contains(share)),
+            "{lens:?}: {twice:?}"
+        );
+    }
+}
+
 #[test]
 fn a_step_of_what_is_below_changes_neither_height_nor_velocity() {
     let mut r = Rig::new();
@@ -156,7 +223,7 @@ fn a_step_of_what_is_below_changes_neither_height_nor_velocity() {
 /// would make of the true one something narrow, and of each way across it one that is twice as long.
 #[test]
 fn the_ground_is_what_the_beam_falls_back_to() {
-    let mut sight = Sight::new(0.3);
+    let mut sight = Sight::new(0.3, Vec3::ZERO);
     let at = |us: u64, y: f32| Moment {
         at_us: us,
         position: Vec3::new(0.0, y, -1.9),
@@ -179,11 +246,51 @@ fn the_ground_is_what_the_beam_falls_back_to() {
     }
 }
 
+/// Of a leaning vehicle whose lens is 20 cm ahead, 10 cm to the right and 5 cm below: where the beam falls, and the height that
+/// an estimate begins with.
+#[test]
+fn a_beam_falls_where_it_does_below_the_lens() {
+    let lens = Vec3::new(0.2, 0.1, 0.05);
+    let q = Quat::from_euler(0.1, -0.2, 0.7);
+    let mut sight = Sight::new(0.3, lens);
+    let moment = Moment {
+        position: Vec3::new(1.0, 2.0, -1.5),
+        q,
+        ..Moment::default()
+    };
+    let above = 1.5 - q.rotate(lens).z;
+    let distance = above / q.down_in_body().z;
+    let point = moment.of(lens, 0.4).position + beam(q, distance, 0.4);
+    // On the ground, and seen from above the vehicle's axes are turned by 0.4 rad.
+    let wanted = about_down(q.rotate(lens + Vec3::new(0.0, 0.0, distance)), 0.4) + moment.position;
+    assert!(
+        point.z.abs() < 1e-5 && (point - wanted).norm() < 1e-5,
+        "{point:?}"
+    );
+    let view = GroundView {
+        flow: None,
+        range: Some(Range {
+            at_us: 20_000,
+            distance: Some(distance),
+            reach: (0.02, 8.0),
+        }),
+    };
+    assert_eq!(sight.new_range(&view, 30_000), Some((20_000, distance)));
+    let flow = Flow {
+        until_us: 20_000,
+        seconds: 0.02,
+        angle: [0.0; 2],
+        quality: 100,
+    };
+    let height = sight.begin(&flow, q).unwrap();
+    assert!((height - 1.5).abs() < 1e-5, "{height}");
+}
+
 /// Along its own line beyond its end, and a while later, nothing narrow is in the view.
 #[test]
 fn a_pipe_is_left_behind_by_way_and_by_time() {
     for (way, seconds) in [(2.5, 1), (0.0, 25)] {
-        let mut sight = Sight::new(0.3);
+        let mut sight = Sight::new(0.3, Vec3::ZERO);
         let at = |us: u64, x: f32, y: f32| Moment {
             at_us: us,
             position: Vec3::new(x, y, -1.9),
@@ -226,7 +333,7 @@ fn an_agreement_says_nothing_while_its_prediction_is_unsure() {
 fn a_leaning_beam_finds_the_edges_where_they_are() {
     let lean = 0.09f32;
     let q = Quat::from_euler(lean, 0.0, 0.0);
-    let mut sight = Sight::new(0.3);
+    let mut sight = Sight::new(0.3, Vec3::ZERO);
     for step in 0..200u64 {
         let y = 0.005 * step as f32;
         let moment = |y: f32| Moment {

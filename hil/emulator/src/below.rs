@@ -27,7 +27,7 @@ impl Module {
     pub fn look(&mut self, plant: &Plant) {
         let s = self.sensors;
         let new = || {
-            let module = FlowModule::new(self.streams, *plant.pipe());
+            let module = FlowModule::new(self.streams, *plant.pipe(), s.lens());
             module.failing(s.flow_fault, s.pose_fails_at, s.pose_fails_for)
         };
         self.module.get_or_insert_with(new).step(plant.pose());

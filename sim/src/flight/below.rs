@@ -17,6 +17,7 @@ use crate::streams::Streams;
 /// The module and its line.
 pub struct Below {
     streams: Streams,
+    lens: DVec3,
     failure: (crate::scenario::FlowFault, f64, f64),
     /// `None` before the first millisecond, which shows where the pipe is.
     module: Option<FlowModule>,
@@ -32,6 +33,7 @@ impl Below {
         let s = &scenario.sensors;
         Self {
             streams: scenario.streams(),
+            lens: s.lens(),
             failure: (s.flow_fault, s.pose_fails_at, s.pose_fails_for),
             module: None,
             line: Box::leak(Box::new(Line::new())),
@@ -49,10 +51,8 @@ impl Below {
     /// Looks down, each millisecond.
     pub fn look(&mut self, plant: &Plant) {
         let (fault, at, seconds) = self.failure;
-        let module = self
-            .module
-            .get_or_insert_with(|| FlowModule::new(self.streams, *plant.pipe()).failing(fault, at, seconds));
-        module.step(plant.pose());
+        let new = || FlowModule::new(self.streams, *plant.pipe(), self.lens).failing(fault, at, seconds);
+        self.module.get_or_insert_with(new).step(plant.pose());
         self.place = plant.pose().position;
     }
 

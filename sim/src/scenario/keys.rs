@@ -144,6 +144,9 @@ const PIPE_PLACE: Range = Range::new(-20.0, 20.0, "m");
 const PIPE_TOP: Range = Range::new(0.5, 10.0, "m");
 const PIPE_DIAMETER: Range = Range::new(0.15, 0.6, "m");
 
+/// Of the lens of flow and range, as far as the parameters go.
+const LENS: Range = Range::new(-0.3, 0.3, "m");
+
 const DEGREE: f64 = PI / 180.0;
 const PERCENT: f64 = 0.01;
 
@@ -463,6 +466,9 @@ pub const KEYS: &[Key] = &[
         name: "sensors.flow_fault",
         kind: Kind::Choice(FLOW_FAULTS, |s, v| s.sensors.flow_fault = flow_fault(v)),
     },
+    optional!("sensors.flow_x_m", LENS, sensors.flow_place[0]),
+    optional!("sensors.flow_y_m", LENS, sensors.flow_place[1]),
+    optional!("sensors.flow_z_m", LENS, sensors.flow_place[2]),
     Key {
         name: "sensors.pose_fault",
         kind: Kind::Choice(POSE_FAULTS, |s, v| s.sensors.pose_fault = pose_fault(v)),

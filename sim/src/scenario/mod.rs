@@ -23,6 +23,7 @@ pub use faults::Faults;
 pub use load::Overrides;
 pub use steps::{STEPS, StepKind, StepNumber};
 
+use glam::DVec3;
 use sophie_control::params::Params;
 use sophie_control::rc::ArmChoice;
 use sophie_control::wrench::{Configuration, PerArm};
@@ -234,12 +235,23 @@ pub struct Sensors {
     pub pose_fails_for: f64,
     /// How flow and range fail then.
     pub flow_fault: FlowFault,
+    /// Where their lens is, of the centre of mass, m, body; each `None`: where [`Sensors::lens`] has it.
+    pub flow_place: [Option<f64>; 3],
     /// How poses fail then.
     pub pose_fault: PoseFault,
     /// The board carries a barometer.
     pub barometer: bool,
     /// How it fails then.
     pub barometer_fault: BarometerFault,
+}
+
+impl Sensors {
+    /// Where the lens of flow and range is in truth, of the centre of mass, m, body: 2 cm below it, unless said otherwise.
+    #[must_use]
+    pub fn lens(&self) -> DVec3 {
+        let [x, y, z] = self.flow_place;
+        DVec3::new(x.unwrap_or(0.0), y.unwrap_or(0.0), z.unwrap_or(0.02))
+    }
 }
 
 /// How a barometer fails.

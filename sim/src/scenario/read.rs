@@ -206,9 +206,19 @@ pub(super) fn table<'t, 'i>(root: &'t Spanned<DeTable<'i>>, name: &str) -> Optio
     content.get_ref().as_table()
 }
 
-/// The stack's parameters follow the vehicle unless the file has them.
+/// The stack's parameters follow the vehicle unless the file has them. Of a lens whose place the file does not have they
+/// know nothing: it sits within what needs no measuring.
 fn params_from_vehicle(scenario: &mut Scenario) {
-    let Scenario { params, vehicle, .. } = scenario;
+    let Scenario {
+        params,
+        vehicle,
+        sensors,
+        ..
+    } = scenario;
+    let lens = [&mut params.flow_x, &mut params.flow_y, &mut params.flow_z];
+    for (measured, place) in lens.into_iter().zip(sensors.flow_place) {
+        *measured = place.map_or(*measured, |m| m as f32);
+    }
     params.infill = vehicle.infill as f32;
     params.gain_k = vehicle.gain_k as f32;
     let [a1, a2, b1, b2] = vehicle.arm_coefficients.map(|c| c as f32);

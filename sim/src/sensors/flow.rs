@@ -47,8 +47,6 @@ const RANGE_SCALE: f64 = 0.005;
 /// Without a flow, s, and time between two such gaps, s.
 const GAP: (f64, f64) = (0.3, 1.0);
 const BETWEEN: (f64, f64) = (10.0, 40.0);
-/// Where it is, m, body.
-const MOUNTED: DVec3 = DVec3::new(0.0, 0.0, 0.02);
 /// How a module that fails errs: flow, counts of an interval (1.5 rad/s) and range, mm, that jump, the time between two jumps,
 /// ms, and how many times as long its range is.
 const JUMP: i32 = 18;
@@ -64,6 +62,8 @@ const QUALITY: u8 = 120;
 pub struct FlowModule {
     rng: Pcg64Mcg,
     pipe: Pipe,
+    /// Of the centre of mass, m, body: both sensors look from there.
+    lens: DVec3,
     /// Since power-up, ms.
     ms: u64,
     before: Option<(DVec3, DQuat)>,
@@ -83,9 +83,9 @@ pub struct FlowModule {
 }
 
 impl FlowModule {
-    /// A module over the ground and `pipe` with the errors of `streams`.
+    /// A module over the ground and `pipe` with the errors of `streams`, its `lens` so far from the centre of mass, m, body.
     #[must_use]
-    pub fn new(streams: Streams, pipe: Pipe) -> Self {
+    pub fn new(streams: Streams, pipe: Pipe, lens: DVec3) -> Self {
         let mut rng = streams.of("flow");
         let scale = 1.0 + SCALE * normal(&mut rng);
         let range_scale = 1.0 + RANGE_SCALE * normal(&mut rng);
@@ -94,6 +94,7 @@ impl FlowModule {
         Self {
             rng,
             pipe,
+            lens,
             ms: 0,
             before: None,
             angle: [0.0; 2],
@@ -128,7 +129,7 @@ impl FlowModule {
         if !self.ms.is_multiple_of(LOOK_MS) {
             return;
         }
-        let now = (pose.point(MOUNTED), pose.attitude);
+        let now = (pose.point(self.lens), pose.attitude);
         if let Some(before) = self.before.replace(now) {
             match self.flow(before, now) {
                 Some(flow) => self.angle = [self.angle[0] + flow[0], self.angle[1] + flow[1]],
@@ -279,6 +280,7 @@ mod tests {
 
     use super::*;
 
+    const MOUNTED: DVec3 = DVec3::new(0.0, 0.0, 0.02);
     const PIPE: Pipe = Pipe {
         north: 3.0,
         half_length: 1.0,
@@ -290,7 +292,15 @@ mod tests {
 
     /// Mean flow, rad/s, and range, m, in axes of the vehicle, of `seconds` of a motion.
     fn seen(seconds: u64, motion: impl Fn(f64) -> (DVec3, DQuat)) -> ([f64; 2], Option<f64>, usize) {
-        let mut module = FlowModule::new(Streams::new(3), PIPE);
+        seen_by(MOUNTED, seconds, motion)
+    }
+
+    fn seen_by(
+        lens: DVec3,
+        seconds: u64,
+        motion: impl Fn(f64) -> (DVec3, DQuat),
+    ) -> ([f64; 2], Option<f64>, usize) {
+        let mut module = FlowModule::new(Streams::new(3), PIPE, lens);
         let (mut sum, mut ranges, mut flows, mut dark) = ([0.0; 2], vec![], 0, 0);
         for ms in 1..=seconds * 1000 {
             let (position, attitude) = motion(ms as f64 * 1e-3);
@@ -349,6 +359,24 @@ mod tests {
         });
         near(x, 0.1, 0.05);
         near(y, 0.0, 0.05);
+    }
+
+    /// Turning about the centre of mass moves a lens that is beside it: by its lever times the rate.
+    #[test]
+    fn a_lens_beside_the_centre_of_mass_sees_its_own_way_and_what_is_below_itself() {
+        let lens = DVec3::new(-0.2, 0.1, 0.05);
+        let yawing = |t: f64| (DVec3::new(-8.0, 0.0, -1.05), DQuat::from_rotation_z(0.5 * t));
+        // 0.5 rad/s clockwise: omega x r is (-0.05, -0.1, 0) m/s.
+        let ([x, y], range, _) = seen_by(lens, 8, yawing);
+        near(x, 0.1 / 1.05, 0.02);
+        near(y, -0.05 / 1.05, 0.02);
+        near(range.unwrap(), 1.0, 0.02);
+        // Leaning by 0.2 rad to the right: 0.1 m to the right it is lower.
+        let (_, range, _) = seen_by(lens, 1, |_| {
+            (DVec3::new(-8.0, 0.0, -1.05), DQuat::from_rotation_x(0.2))
+        });
+        let (sin, cos) = 0.2f64.sin_cos();
+        near(range.unwrap(), (1.05 - 0.05 * cos - 0.1 * sin) / cos, 0.02);
     }
 
     #[test]
@@ -410,7 +438,7 @@ mod tests {
     #[test]
     fn its_scale_and_mounting_are_found_through_the_driver_by_turning_it() {
         for seed in 1..=4 {
-            let mut module = FlowModule::new(Streams::new(seed), PIPE);
+            let mut module = FlowModule::new(Streams::new(seed), PIPE, MOUNTED);
             let now = FlowFit {
                 scale: 14.0,
                 mounting: FlowMounting::Left,

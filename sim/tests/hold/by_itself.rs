@@ -39,7 +39,7 @@ pub(super) fn mission(seed: u64, sensors: PositionSensor, calm: bool) -> Scenari
 }
 
 /// Offsets across the pipe of the touches, m.
-fn touches(record: &FlightRecord) -> Vec<f64> {
+pub(super) fn touches(record: &FlightRecord) -> Vec<f64> {
     let east = record.scenario.world.pipe_position[1];
     let pairs = record.samples.windows(2);
     pairs
@@ -49,15 +49,20 @@ fn touches(record: &FlightRecord) -> Vec<f64> {
 }
 
 /// Seeds of a campaign, 1 to 100 unless `SOPHIE_SEEDS` says how many.
-fn campaign() -> Vec<u64> {
+pub(super) fn campaign() -> Vec<u64> {
     let count = std::env::var("SOPHIE_SEEDS").map_or(100, |n| n.parse().expect("SOPHIE_SEEDS: a number"));
     (1..=count).collect()
 }
 
 /// Flies `seeds` in wind and gusts: missions begun, those accomplished, and the touches' offsets, m, sorted.
 fn flown(seeds: &[u64], sensors: PositionSensor) -> (usize, usize, Vec<f64>) {
+    flown_of(seeds, |seed| mission(seed, sensors, false))
+}
+
+/// The same of other missions.
+pub(super) fn flown_of(seeds: &[u64], mission: impl Fn(u64) -> Scenario + Sync) -> (usize, usize, Vec<f64>) {
     let flights = sophie_sim::parallel::each(seeds, |&seed| {
-        let record = fly(&mission(seed, sensors, false), &mut Silent);
+        let record = fly(&mission(seed), &mut Silent);
         let touches = touches(&record);
         // By hand the pilot does not always come to the pipe in this wind.
         let begun = record.samples.iter().any(|s| s.mode == Mode::Approach);

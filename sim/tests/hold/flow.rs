@@ -11,14 +11,14 @@ use super::{NEVER_HELD, harmless, held, never_held, settled};
 
 /// What the hold may be: velocity, m/s RMS, level; drift within 10 s, m RMS over all flights; height, m RMS. Wanted are 0.05
 /// m/s: these gusts alone move a vehicle held by poses by 0.08 (docs/hold.md).
-const SPEED_RMS: f64 = 0.14;
-const DRIFT_RMS: f64 = 0.10;
-const HEIGHT_RMS: f64 = 0.03;
+pub(super) const SPEED_RMS: f64 = 0.14;
+pub(super) const DRIFT_RMS: f64 = 0.10;
+pub(super) const HEIGHT_RMS: f64 = 0.03;
 /// Time over which the drift counts, s.
 const DRIFT_TIME: f64 = 10.0;
 
 /// The same hold, 1 m over the ground and away from the pipe, by flow.
-fn by_flow(seed: u64, seconds: f64) -> Scenario {
+pub(super) fn by_flow(seed: u64, seconds: f64) -> Scenario {
     let mut s = held(seed, seconds);
     s.steps[1] = Step::TakeOff { height: 1.0 };
     s.sensors.position = PositionSensor::Flow;
@@ -35,7 +35,7 @@ fn rms(values: impl Iterator<Item = f64>) -> f64 {
 }
 
 /// Level speed, drift from where each window of ten seconds began, and height about its mean; RMS.
-fn errors(samples: &[&Sample]) -> [f64; 3] {
+pub(super) fn errors(samples: &[&Sample]) -> [f64; 3] {
     let level = |v: DVec3| v.truncate().length();
     let speed = rms(samples.iter().map(|s| level(DVec3::from_array(s.velocity))));
     let per_window = samples
@@ -71,7 +71,7 @@ fn judge(seeds: impl Iterator<Item = u64>, seconds: f64) {
     assert!(drift < DRIFT_RMS && wrong.is_empty(), "{drift:.3} {wrong:?}");
 }
 
-fn blamed(record: &FlightRecord) -> bool {
+pub(super) fn blamed(record: &FlightRecord) -> bool {
     let texts = SightFault::ALL.map(SightFault::text);
     record
         .events

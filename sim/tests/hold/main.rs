@@ -3,6 +3,7 @@
 mod barometer;
 mod by_itself;
 mod flow;
+mod lever;
 mod on_the_way;
 mod pose;
 mod radio;

@@ -30,6 +30,8 @@ struct Touch {
 
 /// What is shown: the samples from the beginning to the grip or the end, and the touches.
 struct Way<'a> {
+    /// Where the stack takes the range to look from, m, body.
+    lens: [f64; 3],
     samples: &'a [Sample],
     touches: Vec<Touch>,
 }
@@ -58,7 +60,12 @@ impl<'a> Way<'a> {
                 _ => None,
             })
             .collect();
-        Some(Self { samples, touches })
+        let lens = record.scenario.params.flow_lens();
+        Some(Self {
+            lens: lens.to_array().map(f64::from),
+            samples,
+            touches,
+        })
     }
 }
 
@@ -255,7 +262,8 @@ impl View {
             let (Some(place), Some(range)) = (s.position_estimate, s.range_measured) else {
                 continue;
             };
-            let beam = rows(s.attitude_estimate).map(|row| range * row[2]);
+            let [x, y, z] = way.lens;
+            let beam = rows(s.attitude_estimate).map(|row| row[0] * x + row[1] * y + row[2] * (z + range));
             let foot = (place[1] + beam[1], -place[2] - beam[2]);
             if (east.0..=east.1).contains(&foot.0) && (up.0..=up.1).contains(&foot.1) {
                 let (x, y) = self.at(foot.0, foot.1);

@@ -119,6 +119,13 @@ fn the_stack_knows_the_vehicle_unless_params_say_otherwise() {
         (p.inertia_roll, p.inertia_pitch, p.inertia_yaw, p.motor_tau),
         (0.03, 0.05, 0.07, 0.06)
     );
+    // The lens that no file has measured is 2 cm below, and the stack takes it for the centre.
+    let s = parse("[sensors]\nflow_x_m = -0.08\nflow_y_m = 0.06\n[params]\nflow_y = 0.05").unwrap();
+    assert_eq!(s.sensors.lens().to_array(), [-0.08, 0.06, 0.02]);
+    assert_eq!(
+        (s.params.flow_x, s.params.flow_y, s.params.flow_z),
+        (-0.08, 0.05, 0.0)
+    );
     let s = parse("[vehicle]\ninfill = 8\n[params]\ninfill = 6\nrate_p = 9").unwrap();
     assert_eq!(
         (s.vehicle.infill, s.params.infill, s.params.rate_p),

@@ -106,7 +106,13 @@ pub(super) fn flow(walk: &mut Walk<'_>, _: &Step) -> Judged {
         return Ok(Verdict::of(true, vec![none.to_owned()]));
     }
     walk.ready()?;
-    calibrated(walk, "calibrate flow")
+    let mut places = Vec::new();
+    for place in ["flow_x", "flow_y", "flow_z"] {
+        places.extend(walk.session.command(&format!("get {place}"))?);
+    }
+    let mut verdict = calibrated(walk, "calibrate flow")?;
+    verdict.figures.extend(places);
+    Ok(verdict)
 }
 
 pub(super) fn battery(walk: &mut Walk<'_>, _: &Step) -> Judged {

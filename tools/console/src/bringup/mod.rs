@@ -146,7 +146,8 @@ pub const STEPS: [Step; 28] = [
     step(
         "flow",
         "Flow and range module",
-        "Turned by hand over a floor with a pattern, 0.5 m and 1.5 m high; a vehicle without one has nothing to do.",
+        "Turned by hand over a floor with a pattern, 0.5 m and 1.5 m high; where its lens is, a ruler shows \
+         (flow_x, flow_y, flow_z); a vehicle without one has nothing to do.",
         calibrate::flow,
     ),
     step(
