@@ -36,6 +36,13 @@ pub const NEAR: f32 = 0.25;
 pub const NEAR_OFF: f32 = 0.06;
 /// Range at which it waits to be over the crown, m: the last at which flow is seen with some margin.
 pub const GATE: f32 = 0.10;
+/// Speed back up to it, m/s, and the time in which a sinking is ended, s: half of [`DESCENT`] over the change of a wish.
+pub const BACK_SPEED: f32 = 0.15;
+pub const STOP_TIME: f32 = 0.15;
+/// Age of the newest flow or pose beyond which it does not sink on from there, s, and the range at which it waits for flow then,
+/// m: a touch within [`LAST_TIME`] is still short of what ends an approach.
+pub const BLIND: f32 = 0.3;
+pub const SEEING: f32 = 0.16;
 /// Speed of the last bit, m/s, and time from there to the touch, s: each tenth of a second costs half a centimetre in gusts.
 pub const LAST_SPEED: f32 = 0.3;
 pub const LAST_TIME: f32 = 0.45;

@@ -48,10 +48,15 @@ fn touches(record: &FlightRecord) -> Vec<f64> {
         .collect()
 }
 
-/// Seeds of a campaign, 1 to 100 unless `SOPHIE_SEEDS` says how many.
+/// Seeds of a campaign, 1 to 100 unless `SOPHIE_SEEDS` says how many, or which: `20`, `101-200`, `41,366,421`.
 fn campaign() -> Vec<u64> {
-    let count = std::env::var("SOPHIE_SEEDS").map_or(100, |n| n.parse().expect("SOPHIE_SEEDS: a number"));
-    (1..=count).collect()
+    let asked = std::env::var("SOPHIE_SEEDS").unwrap_or_else(|_| "100".to_owned());
+    let number = |n: &str| n.parse::<u64>().expect("SOPHIE_SEEDS: numbers");
+    match asked.split_once('-') {
+        Some((first, last)) => (number(first)..=number(last)).collect(),
+        None if asked.contains(',') => asked.split(',').map(number).collect(),
+        None => (1..=number(&asked)).collect(),
+    }
 }
 
 /// Flies `seeds` in wind and gusts: missions begun, those accomplished, and the touches' offsets, m, sorted.

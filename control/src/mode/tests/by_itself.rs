@@ -352,6 +352,25 @@ fn after_a_slide_it_climbs_and_tries_again_a_bounded_number_of_times() {
     w.expect(2.0, Mode::Hold);
 }
 
+/// An escape carries the vehicle farther than a search about where it ends reaches.
+#[test]
+fn after_a_slide_it_searches_about_where_the_pipe_was() {
+    for aside in [-2.0, 2.0] {
+        let mut w = World::touched();
+        w.r.carried = false;
+        w.expect(0.5, Mode::Escaping);
+        w.at.y += aside;
+        w.expect(1.0, Mode::Approach);
+        for _ in 0..8000 {
+            if w.r.out.mode != Mode::Approach {
+                break;
+            }
+            w.step();
+        }
+        assert_eq!(w.r.out.mode, Mode::Contact, "{aside}: {:?}", w.r.out.reason);
+    }
+}
+
 #[test]
 fn without_a_pipe_or_a_range_it_is_handed_back_with_a_reason() {
     let mut w = World::searching();
