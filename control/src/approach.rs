@@ -96,6 +96,8 @@ pub struct Approach {
     since: f32,
     /// It only climbs, to be left there.
     leaves: bool,
+    /// It comes back from another try.
+    returns: bool,
     /// Height to climb to, m.
     up: f32,
     edges: Edges,
@@ -143,6 +145,7 @@ impl Approach {
             phase: Phase::Search,
             since: 0.0,
             leaves: false,
+            returns: false,
             up: -RISE,
             edges: Edges::default(),
             seen: v.foot.count,
@@ -178,6 +181,7 @@ impl Approach {
         Self {
             phase: Phase::Climb,
             leaves,
+            returns: true,
             up: if leaves { -HIGH } else { -RISE },
             ..Self::begin(p, v, heading, jumps)
         }

@@ -78,6 +78,8 @@ pub const HEADING_GAIN: f32 = 1.0;
 pub const YAW_RATE_MAX: f32 = 0.3;
 /// Farthest that a place of the pipe may be level, and below the vehicle, m: the hold begins within a metre of it.
 pub const TARGET_REACH: f32 = 1.5;
+/// The same where it comes back: an escape has thrown it two metres off the pipe.
+pub const TARGET_RETURN: f32 = 3.0;
 pub const TARGET_BELOW: (f32, f32) = (0.0, 1.5);
 /// Change of that place that is a jump, m, and the time over which its noise is smoothed, s.
 pub const TARGET_STEP: f32 = 0.12;

@@ -283,6 +283,7 @@ impl Sight {
             // Where the beam passes its height: the ground is met farther off.
             let at = |top: f32| then.position + beam(then.q, (top - then.position.z) / cos, turn);
             self.band = self.band.map(|band| band.bounded(at(band.top), raised));
+            self.band = self.band.filter(|band| raised || !band.is_mistaken());
             if !raised {
                 return Some((off, RANGE_NOISE * RANGE_NOISE));
             }

@@ -166,6 +166,29 @@ fn where_a_companion_says_the_pipe_is_it_comes_down_without_a_range() {
     assert!(w.r.out.reason.is_none());
 }
 
+/// An escape from the crown ends two metres beside it, and first it is no higher than that.
+#[test]
+fn after_a_slide_it_comes_back_from_farther_than_it_may_begin() {
+    let mut w = told();
+    for _ in 0..2000 {
+        w.step();
+        if w.r.out.mode == Mode::Contact {
+            break;
+        }
+    }
+    w.r.carried = false;
+    w.expect(0.5, Mode::Escaping);
+    w.at += Vec3::new(0.0, -2.0, 0.1);
+    w.expect(1.0, Mode::Approach);
+    for _ in 0..4000 {
+        w.step();
+        if w.r.out.mode != Mode::Approach {
+            break;
+        }
+    }
+    assert_eq!(w.r.out.mode, Mode::Contact, "{:?}", w.r.out.reason);
+}
+
 #[test]
 fn a_place_of_the_pipe_that_is_stale_far_or_jumps_ends_it_by_its_name() {
     for (target, reason) in [
