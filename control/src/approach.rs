@@ -54,6 +54,8 @@ pub struct View {
     pub heading: f32,
     /// The point that is held, m.
     pub held: Vec3,
+    /// Age of the newest fix or flow, s.
+    pub age: f32,
     /// Where the range sees something.
     pub foot: Foot,
     /// Where the pipe is said to be; with it no range is asked.
@@ -96,11 +98,14 @@ pub struct Approach {
     since: f32,
     /// It only climbs, to be left there.
     leaves: bool,
+    /// It comes back from another try.
+    returns: bool,
     /// Height to climb to, m.
     up: f32,
     edges: Edges,
     seen: u8,
-    /// Side of the present leg, half the sweep's width, m, and legs flown.
+    /// Middle of the sweeps, forward and right, m; side of the present leg, half the sweep's width, m, and legs flown.
+    middle: Vec3,
     side: f32,
     reach: f32,
     legs: u8,
@@ -145,9 +150,11 @@ impl Approach {
             phase: Phase::Search,
             since: 0.0,
             leaves: false,
+            returns: false,
             up: -RISE,
             edges: Edges::default(),
             seen: v.foot.count,
+            middle: Vec3::ZERO,
             side: 1.0,
             reach: SWEEP,
             legs: 0,
@@ -180,9 +187,29 @@ impl Approach {
         Self {
             phase: Phase::Climb,
             leaves,
+            returns: true,
             up: if leaves { -HIGH } else { -RISE },
             ..Self::begin(p, v, heading, jumps)
         }
+    }
+
+    /// Climbs to where it crosses `crown`, the place at which it was last taken to be, and sweeps about it: an escape has
+    /// carried the vehicle a metre or two away.
+    pub fn back_to(crown: Vec3, p: &Params, v: &View, heading: f32, jumps: u8) -> Self {
+        let law = Self::again(p, v, heading, jumps, false);
+        let off = law.local(crown);
+        Self {
+            up: clamp(off.z - HIGH, -2.0 * HIGH, 0.0),
+            middle: Vec3::new(off.x, off.y, 0.0),
+            side: if off.y > 0.0 { 1.0 } else { -1.0 },
+            ..law
+        }
+    }
+
+    /// Where the crown is taken to be on the way down, in the estimate's axes, m.
+    pub fn crown(&self) -> Option<Vec3> {
+        let crown = about_down(self.spot(0.0), self.heading) + self.origin;
+        self.committed().then_some(crown)
     }
 
     /// Another try from the top: over the crown where that is known.
@@ -259,7 +286,7 @@ impl Approach {
             Phase::Fore | Phase::Aft => self.look_along(edge, held, dt)?,
             Phase::Cross => self.cross(edge, held)?,
             Phase::Centre => self.centre(edge, at, held)?,
-            Phase::Descend => self.descend(edge, at, velocity, held, dt)?,
+            Phase::Descend => self.descend(edge, (at, velocity, held), v.age, dt)?,
             Phase::Commit => self.commit(at, held)?,
         };
         self.speed = Vec3::new(
@@ -355,7 +382,10 @@ impl Approach {
             self.along = held.x;
             self.enter(Phase::Over);
         }
-        let target = Vec3::new(0.0, self.side * self.reach - self.lens.y, held.z);
+        // A pipe that has been come onto is crossed to its end.
+        let beyond = self.entered.map_or(0.0, |_| self.diameter);
+        let across = self.side * (self.reach + beyond) - self.lens.y;
+        let target = self.middle + Vec3::new(0.0, across, held.z);
         if (target.y - held.y).abs() < REACHED {
             self.reach += if self.side < 0.0 { SWEEP } else { 0.0 };
             self.side = -self.side;
@@ -404,7 +434,8 @@ impl Approach {
     fn look_along(&mut self, edge: Option<Edge>, held: Vec3, dt: f32) -> Result<Vec3, Doubt> {
         self.late(WAY_TIME, Doubt::NotCentred)?;
         let fore = self.phase == Phase::Fore;
-        let goal = if fore { LOOK } else { -LOOK };
+        let middle = self.middle.x;
+        let goal = middle + if fore { LOOK } else { -LOOK };
         // The beam goes along the crown, not the vehicle.
         let Vec3 { x, y, .. } = self.lens;
         let target = Vec3::new(goal - x, self.crown - y, self.top - LOW);
@@ -429,12 +460,12 @@ impl Approach {
                 self.enter(Phase::Aft);
             } else {
                 let [front, rear] = self.ends;
-                let most = front.map_or(LOOK, |end| end - END);
-                let least = rear.map_or(-LOOK, |end| end + END);
+                let most = front.map_or(middle + LOOK, |end| end - END);
+                let least = rear.map_or(middle - LOOK, |end| end + END);
                 if most < least {
                     return Err(Doubt::TooShort);
                 }
-                self.along = clamp(0.0, least, most);
+                self.along = clamp(middle, least, most);
                 self.looked = true;
                 self.turn_across();
             }
@@ -496,9 +527,8 @@ impl Approach {
     fn descend(
         &mut self,
         edge: Option<Edge>,
-        at: Vec3,
-        velocity: Vec3,
-        held: Vec3,
+        (at, velocity, held): (Vec3, Vec3, Vec3),
+        age: f32,
         dt: f32,
     ) -> Result<Vec3, Doubt> {
         self.late(GATE_WAIT, Doubt::NotCentred)?;
@@ -514,18 +544,21 @@ impl Approach {
         self.slow += gained * dt / (dt + SLOW_TIME);
         let ahead = off + LAST_TIME * (velocity.y + LAST_TIME / (4.0 * SLOW_TIME) * gained);
         let over = off.abs() < CONTENT && ahead.abs() < within && velocity.y.abs() < GATE_SPEED;
-        let at_gate = range < 1.3 * GATE;
-        if self.settled.step(at_gate && over, dt) >= GATE_TIME {
+        let blind = age > BLIND;
+        // Where it would stop: what sinks on past the gate must not do so before it is known to touch on the crown.
+        let stops = range - STOP_TIME * velocity.z;
+        let at_gate = stops < 1.3 * GATE;
+        if self.settled.step(at_gate && over && !blind, dt) >= GATE_TIME {
             self.enter(Phase::Commit);
         }
         let mut way = Self::way(held, self.spot(LOW), CORRECT_SPEED, DESCENT);
         let waits = off.abs() > NEAR_OFF;
+        let goal = if blind && !self.given { SEEING } else { GATE };
+        let braked = HEIGHT_GAIN * (self.clearance(held).min(stops) - goal);
         way.z = if waits && range < NEAR {
             0.0
-        } else if over {
-            DESCENT
         } else {
-            clamp(HEIGHT_GAIN * (range - GATE), -CORRECT_SPEED, DESCENT)
+            clamp(braked, -BACK_SPEED, DESCENT)
         };
         Ok(way)
     }

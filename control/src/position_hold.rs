@@ -83,13 +83,13 @@ impl Course {
         );
         let level = |v: Vec3| Vec3::new(v.x, v.y, 0.0);
         let per_second = if dt > 0.0 { 1.0 / dt } else { 0.0 };
-        self.asked = level(self.wished - before) * per_second;
+        self.asked = (self.wished - before) * per_second;
         let per = 1.0 / (COURSE_STAGE + dt);
         self.turning = level(self.wished - self.between) * per;
         self.between += self.turning * dt;
         self.gained = level(self.between - self.speed) * per;
         self.speed += self.gained * dt;
-        // The height's law has no such lag.
+        // The height's law has no such lag: its acceleration is what is asked for.
         self.speed.z = self.wished.z;
     }
 
@@ -180,6 +180,7 @@ impl PositionHold {
             &height::State {
                 error: self.anchor.z - e.position.z,
                 wished: speed.z,
+                gained: self.course.asked.z,
                 velocity: e.velocity.z,
                 disturbance: e.disturbance.z,
                 landing: felt.carried && wish.velocity.z > 0.0,

@@ -36,6 +36,13 @@ pub const NEAR: f32 = 0.25;
 pub const NEAR_OFF: f32 = 0.06;
 /// Range at which it waits to be over the crown, m: the last at which flow is seen with some margin.
 pub const GATE: f32 = 0.10;
+/// Speed back up to it, m/s, and the time in which a sinking is ended, s: half of [`DESCENT`] over the change of a wish.
+pub const BACK_SPEED: f32 = 0.15;
+pub const STOP_TIME: f32 = 0.15;
+/// Age of the newest flow or pose beyond which it does not sink on from there, s, and the range at which it waits for flow then,
+/// m: a touch within [`LAST_TIME`] is still short of what ends an approach.
+pub const BLIND: f32 = 0.3;
+pub const SEEING: f32 = 0.16;
 /// Speed of the last bit, m/s, and time from there to the touch, s: each tenth of a second costs half a centimetre in gusts.
 pub const LAST_SPEED: f32 = 0.3;
 pub const LAST_TIME: f32 = 0.45;
@@ -73,6 +80,8 @@ pub const HEADING_GAIN: f32 = 1.0;
 pub const YAW_RATE_MAX: f32 = 0.3;
 /// Farthest that a place of the pipe may be level, and below the vehicle, m: the hold begins within a metre of it.
 pub const TARGET_REACH: f32 = 1.5;
+/// The same where it comes back: an escape has thrown it two metres off the pipe.
+pub const TARGET_RETURN: f32 = 3.0;
 pub const TARGET_BELOW: (f32, f32) = (0.0, 1.5);
 /// Change of that place that is a jump, m, and the time over which its noise is smoothed, s.
 pub const TARGET_STEP: f32 = 0.12;

@@ -10,7 +10,7 @@ use crate::vector::Vec3;
 impl Approach {
     /// `target` is near the vehicle, and below it.
     pub fn reaches(target: &PipeTarget, e: &Estimate) -> bool {
-        near(target.crown - e.position)
+        near(target.crown - e.position, TARGET_REACH)
     }
 
     /// The way to `target`, from where the try began.
@@ -29,7 +29,9 @@ impl Approach {
     /// Follows the newest place of the pipe, as it comes: its noise is smoothed, and the poses' axes may drift.
     pub(super) fn follow(&mut self, v: &View, dt: f32) -> Result<(), Doubt> {
         let target = v.target.ok_or(Doubt::TargetStale)?;
-        if !near(target.crown - v.position) {
+        let reach = if self.returns { TARGET_RETURN } else { TARGET_REACH };
+        // It climbs from beside the pipe, or from under its crown.
+        if self.phase != Phase::Climb && !near(target.crown - v.position, reach) {
             return Err(Doubt::TargetFar);
         }
         let known = Vec3::new(self.along, self.crown, self.top);
@@ -57,9 +59,9 @@ impl Approach {
     }
 }
 
-/// What is `off` from the vehicle can be flown to.
-fn near(off: Vec3) -> bool {
+/// What is `off` from the vehicle can be flown to within `reach` m.
+fn near(off: Vec3, reach: f32) -> bool {
     let (least, most) = TARGET_BELOW;
     let level = off.x * off.x + off.y * off.y;
-    level <= TARGET_REACH * TARGET_REACH && (least..=most).contains(&off.z)
+    level <= reach * reach && (least..=most).contains(&off.z)
 }

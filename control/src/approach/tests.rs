@@ -70,6 +70,7 @@ fn flown(world: World, law: Approach) -> (Result<(), Doubt>, Vec3, Approach, f32
             velocity: speed,
             heading: world.heading,
             held,
+            age: 0.0,
             foot,
             target: None,
         };
@@ -105,6 +106,7 @@ fn begun_by(world: &World, p: &Params) -> Approach {
         velocity: Vec3::ZERO,
         heading: world.heading,
         held: Vec3::ZERO,
+        age: 0.0,
         foot: Foot::default(),
         target: None,
     };
@@ -171,6 +173,7 @@ fn it_sinks_no_faster_than_it_may_and_only_over_the_crown() {
             velocity: Vec3::ZERO,
             heading: world.heading,
             held,
+            age: 0.0,
             foot: Foot {
                 point: world.below(held),
                 count: (i % 256) as u8,
@@ -239,6 +242,7 @@ fn without_a_range_and_where_nothing_is_touched_it_gives_up() {
         velocity: Vec3::ZERO,
         heading: 0.4,
         held: Vec3::ZERO,
+        age: 0.0,
         foot: Foot {
             age: RANGE_AGE - 0.01,
             ..Foot::default()
@@ -270,6 +274,7 @@ fn another_try_climbs_before_it_searches_and_leaving_only_climbs() {
         velocity: Vec3::ZERO,
         heading: world.heading,
         held: Vec3::new(0.0, 0.0, 0.5),
+        age: 0.0,
         foot: Foot::default(),
         target: None,
     };
@@ -281,4 +286,120 @@ fn another_try_climbs_before_it_searches_and_leaving_only_climbs() {
     let (end, at, ..) = flown(world, law);
     assert_eq!(end, Ok(()));
     assert!(world.beside(at).0.abs() < 0.015, "{at:?}");
+}
+
+/// Over the crown on the way down: at `range` m, sinking at `sinks` m/s, the newest flow `age` s old.
+fn descending(range: f32, sinks: f32, age: f32) -> (Approach, View) {
+    let world = World { right: 0.0, ..WORLD };
+    let place = Vec3::new(0.0, 0.0, world.crown - range);
+    let view = View {
+        position: place,
+        velocity: Vec3::new(0.0, 0.0, sinks),
+        heading: world.heading,
+        held: place,
+        age,
+        foot: Foot {
+            point: world.below(place),
+            count: 1,
+            age: 0.0,
+        },
+        target: None,
+    };
+    let mut law = begun(&world);
+    (law.phase, law.top) = (Phase::Descend, world.crown);
+    (law, view)
+}
+
+/// What the law asks for after a tenth of a second there, m/s down, and in which part of the way it is then.
+fn asks_at(range: f32, sinks: f32, age: f32) -> (f32, Phase) {
+    let (mut law, view) = descending(range, sinks, age);
+    let wish = (0..10).map(|_| law.step(&view, DT)).last();
+    (wish.unwrap().unwrap().velocity.z, law.phase)
+}
+
+/// From where a gust carries it aside, nearer than 8 cm flow would see nothing.
+#[test]
+fn it_stops_at_the_gate_where_it_is_not_known_to_touch_on_the_crown() {
+    for gust in [0.30, 0.20, 0.17, 0.15, 0.13, 0.11] {
+        let (mut law, mut view) = descending(LOW, 0.0, 0.02);
+        let (mut speed, mut nearest) = (0.0, f32::MAX);
+        for i in 1..800u32 {
+            let range = WORLD.crown - view.position.z;
+            nearest = nearest.min(range);
+            view.velocity.y = if range < gust { 2.0 * GATE_SPEED } else { 0.0 };
+            view.foot.count = (i % 256) as u8;
+            view.foot.point = Some(Vec3::new(0.0, 0.0, WORLD.crown));
+            let wish = law.step(&view, DT).unwrap();
+            if law.phase == Phase::Commit {
+                break;
+            }
+            // The held point as the hold moves it, the vehicle a fifth of a second behind.
+            speed = math::slew(speed, wish.velocity.z, DT);
+            view.held.z += speed * DT;
+            view.velocity.z += (speed - view.velocity.z) * (DT / 0.2);
+            view.position.z += view.velocity.z * DT;
+        }
+        assert!(nearest > 0.085, "{gust}: {nearest} m");
+        let stands = (WORLD.crown - view.position.z - GATE).abs() < 0.01;
+        assert!(stands || law.phase == Phase::Commit, "{gust}: {view:?}");
+    }
+}
+
+#[test]
+fn what_flow_does_not_see_is_not_committed_to_but_waited_for_higher_up() {
+    // Over the crown at the gate it goes on; sinking, before it could no longer stop.
+    assert_eq!(asks_at(1.2 * GATE, 0.0, 0.02).1, Phase::Commit);
+    assert_eq!(asks_at(1.5 * GATE, DESCENT, 0.02).1, Phase::Commit);
+    assert_eq!(asks_at(1.5 * GATE, 0.0, 0.02).1, Phase::Descend);
+    // Without flow it climbs to where flow sees again, faster than it comes down, and stays there.
+    let (down, phase) = asks_at(0.06, 0.0, BLIND + 0.1);
+    assert!(
+        phase == Phase::Descend && down <= -BACK_SPEED + 1e-3,
+        "{down} {phase:?}"
+    );
+    let (down, phase) = asks_at(SEEING, 0.0, BLIND + 0.1);
+    assert!(phase == Phase::Descend && down.abs() < 0.01, "{down} {phase:?}");
+}
+
+#[test]
+fn a_search_about_where_the_pipe_was_finds_it_from_where_an_escape_ends() {
+    let world = World {
+        right: -2.3,
+        crown: 0.2,
+        ground: Some(1.7),
+        ..WORLD
+    };
+    let view = View {
+        position: Vec3::ZERO,
+        velocity: Vec3::ZERO,
+        heading: world.heading,
+        held: Vec3::ZERO,
+        age: 0.0,
+        foot: Foot::default(),
+        target: None,
+    };
+    let p = Params::default();
+    assert_eq!(
+        flown(world, Approach::again(&p, &view, world.heading, 0, false)).0,
+        Err(Doubt::NoPipe)
+    );
+    // The flow has drifted by as much as 0.6 m meanwhile.
+    for drift in [-0.6, 0.0, 0.6] {
+        let crown = about_down(Vec3::new(0.1, world.right + drift, world.crown), world.heading);
+        let law = Approach::back_to(crown, &p, &view, world.heading, 0);
+        let (end, at, law, seconds) = flown(world, law);
+        assert_eq!(end, Ok(()), "{drift}: {law:?}");
+        let (y, x) = world.beside(at);
+        assert!(y.abs() < 0.015 && (x - 0.1).abs() < 0.05, "{drift}: {y} {x}");
+        assert!(seconds < 60.0, "{drift}: {seconds} s");
+    }
+}
+
+#[test]
+fn a_pipe_whose_edge_is_met_at_the_end_of_the_last_sweep_is_crossed() {
+    let right = SWEEP_MAX - 0.03;
+    let world = World { right, ..WORLD };
+    let (end, at, law, _) = flown(world, begun(&world));
+    assert_eq!(end, Ok(()), "{law:?}");
+    assert!(world.beside(at).0.abs() < 0.015);
 }

@@ -3,6 +3,7 @@
 use super::holding::{THROTTLE_CENTRE, THROTTLE_ZONE};
 use super::{Inputs, Mode};
 use crate::rc::Sticks;
+use crate::vector::Vec3;
 
 /// Tries after which the vehicle is handed back.
 pub const TRIES: u8 = 5;
@@ -23,6 +24,8 @@ pub struct ByItself {
     pub tries: u8,
     /// Heading at the first one, which is the pipe's, by the vehicle's own attitude, rad.
     pub heading: f32,
+    /// Where the crown was taken to be on the last way down, in the estimate's axes, m, and how often these had jumped.
+    pub crown: Option<(Vec3, u8)>,
 }
 
 impl ByItself {

@@ -58,8 +58,13 @@ impl Approach {
 
     /// Climbs, for another search or to be `left` there.
     pub fn climb(step: &mut Step<'_>, left: bool) -> Self {
+        let crown = step.context.by_itself.crown.filter(|_| !left);
         Self::begin(None, step, |step, view, e| {
-            Law::again(&step.context.params, view, heading(step, e), e.jumps, left)
+            let (params, heading) = (&step.context.params, heading(step, e));
+            match crown {
+                Some((crown, jumps)) if jumps == e.jumps => Law::back_to(crown, params, view, heading, jumps),
+                _ => Law::again(params, view, heading, e.jumps, left),
+            }
         })
     }
 
@@ -114,6 +119,8 @@ impl Approach {
         } else {
             self.way.step(&seen, step.dt)
         };
+        let crown = self.way.crown().map(|crown| (crown, estimate.jumps));
+        step.context.by_itself.crown = crown.or(step.context.by_itself.crown);
         let wish = result.unwrap_or_else(|doubt| {
             self.again(reason(doubt), &seen, estimate, step);
             Wish::default()
@@ -150,6 +157,7 @@ fn view(law: &PositionHold, e: &Estimate, step: &Step<'_>) -> View {
         velocity: e.velocity,
         heading: heading + e.turn,
         held: law.held(),
+        age: e.age,
         foot: e.foot,
         target: step.inputs.target,
     }

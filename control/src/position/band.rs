@@ -40,6 +40,8 @@ pub struct Band {
     pub top: f32,
     /// The beam has met it where it should since an edge was seen: it is narrow.
     sure: bool,
+    /// How far the ground was met where it should be since then, m.
+    pushed: f32,
 }
 
 impl Band {
@@ -62,6 +64,7 @@ impl Band {
             middle: foot + across * half,
             across,
             sure: true,
+            pushed: 0.0,
             ..known
         }
     }
@@ -75,6 +78,7 @@ impl Band {
             radius,
             top,
             sure: false,
+            pushed: 0.0,
         }
     }
 
@@ -90,8 +94,14 @@ impl Band {
         Self {
             middle: self.middle + self.across * (over * sign),
             sure: self.sure && over <= 0.0,
+            pushed: self.pushed + (-over).max(0.0),
             ..self
         }
+    }
+
+    /// The ground was met all across where it should be: it is not there, but on the other side of the edge.
+    pub fn is_mistaken(&self) -> bool {
+        self.pushed > 2.0 * self.radius
     }
 
     /// How far its back has fallen at `foot` from its top, m, and by how much that is in doubt with the place. Where it may be
@@ -264,6 +274,21 @@ mod tests {
         let turned = Band::below(foot(1.0), core::f32::consts::FRAC_PI_2, 0.15, -1.5);
         assert!((turned.side(Vec3::new(-0.1, 1.0, 0.0)) - 0.1).abs() < 1e-6);
         assert!(RIGHT.dot(turned.across).abs() < 1e-6);
+    }
+
+    /// In a throw off the pipe the beam leans against the way: the edge was taken for the other one, and the band, pushed ahead
+    /// of the vehicle, halved its speed for as long as it moved on.
+    #[test]
+    fn a_band_that_the_ground_pushes_by_more_than_its_width_is_mistaken() {
+        let pushed = |way: f32| {
+            let steps = (way * 100.0) as u8;
+            (0..=steps).fold(band(), |band, i| {
+                band.bounded(foot(0.9 + 0.01 * f32::from(i)), false)
+            })
+        };
+        assert!(!pushed(0.2).is_mistaken() && pushed(0.5).is_mistaken());
+        // An edge that is seen says where it is.
+        assert!(!Band::at_edge(pushed(0.5), foot(1.5), true, RIGHT, 0.0).is_mistaken());
     }
 
     #[test]

@@ -1,9 +1,9 @@
 //! Optical flow and range: the velocity over the ground and the height above it, and whether they can be used.
 
-use super::about_down;
 use super::agreement::Agreement;
 use super::band::{Band, Depth};
 use super::past::Moment;
+use super::{about_down, seconds};
 use crate::ground::{Flow, GroundView, Range};
 use crate::math;
 use crate::vector::{Quat, Vec3};
@@ -31,9 +31,12 @@ const STEP_RANGES: u32 = 3;
 const SAME: f32 = 0.08;
 /// Share by which the height of what is narrow follows each range while its flank alone was seen.
 const FLANK_SHARE: f32 = 0.2;
-/// Steps within [`STEPS_TIME`] from which on the range is not used: two edges of a pipe, swept across, come each second.
-const STEPS_MAX: u32 = 10;
-const STEPS_TIME: u64 = 5_000_000;
+/// Ranges for which it does, half a second at 50 Hz: where height and surface both follow, nothing gives either.
+const FLANK_RANGES: u32 = 25;
+/// Steps a second that are no fault, and how many more than these are one: the beam of a vehicle that swings in gusts beside
+/// the edge of a pipe crosses it 11 times in 4.3 s, a range that jumps each 0.3 s does so 12 times in 3.3 s.
+const STEPS_RATE: f32 = 2.0;
+const STEPS_MAX: f32 = 5.0;
 /// For how long the range is left out then, µs.
 const DISTRUST: u64 = 5_000_000;
 /// Equal values in a row of a sensor that stands still: ranges and flows of which none is zero.
@@ -150,15 +153,15 @@ pub struct Sight {
     /// Step that ranges agree on, m, and how many do.
     step: f32,
     agreed: u32,
-    /// Steps since `window_us`, and until when the range is not used, µs.
-    steps: u32,
-    window_us: u64,
+    /// Steps beyond [`STEPS_RATE`], when the last one was, and until when the range is not used, µs.
+    steps: f32,
+    stepped_us: u64,
     distrusted_us: u64,
     /// Where the last range of the present surface fell, and where the edge of a step is.
     foot: Vec3,
     stepped_at: Vec3,
-    /// The height of what is narrow below is not known yet: its flank was seen alone.
-    flank: bool,
+    /// Ranges for which the height of what is narrow below is not known yet: its flank was seen alone.
+    flank: u32,
     /// What is narrow, where its edge was seen; when it was met below last, µs, and where.
     pub(super) band: Option<Band>,
     met: (u64, Vec3),
@@ -283,6 +286,7 @@ impl Sight {
             // Where the beam passes its height: the ground is met farther off.
             let at = |top: f32| then.position + beam(then.q, (top - then.position.z) / cos, turn);
             self.band = self.band.map(|band| band.bounded(at(band.top), raised));
+            self.band = self.band.filter(|band| raised || !band.is_mistaken());
             if !raised {
                 return Some((off, RANGE_NOISE * RANGE_NOISE));
             }
@@ -290,10 +294,10 @@ impl Sight {
             band.top = self.level;
             let (drop, doubt) = band.drop(foot);
             let back = surface - drop;
-            if self.flank {
+            if self.flank > 0 {
                 self.level += FLANK_SHARE * (back - self.level);
                 self.other = self.level;
-                self.flank = doubt > RANGE_NOISE;
+                self.flank = if doubt > RANGE_NOISE { self.flank - 1 } else { 0 };
             }
             return Some((self.level - back, RANGE_NOISE * RANGE_NOISE + doubt * doubt));
         }
@@ -316,7 +320,7 @@ impl Sight {
             let heading = then.yaw() + turn;
             self.band = Some(Band::at_edge(band, self.stepped_at, onto, way, heading));
             self.foot = foot;
-            self.flank = onto && !known;
+            self.flank = if onto && !known { FLANK_RANGES } else { 0 };
         }
         None
     }
@@ -336,13 +340,11 @@ impl Sight {
         } else {
             self.other = self.level;
         }
-        if now.saturating_sub(self.window_us) > STEPS_TIME {
-            (self.window_us, self.steps) = (now, 0);
-        }
-        self.steps += 1;
+        let faded = STEPS_RATE * seconds(self.stepped_us, now);
+        (self.steps, self.stepped_us) = ((self.steps - faded).max(0.0) + 1.0, now);
         if self.steps > STEPS_MAX {
             self.distrusted_us = now.saturating_add(DISTRUST);
-            self.steps = 0;
+            self.steps = 0.0;
         }
         again.is_some()
     }
@@ -405,7 +407,7 @@ impl Sight {
         let predicted = [turned[0] - way.y / depth, turned[1] + way.x / depth];
         let per = 1.0 / flow.seconds;
         let pairs = self.agreements.iter_mut().zip(angle).zip(predicted);
-        if self.agreed > 0 || self.flank || distance < JUDGED {
+        if self.agreed > 0 || self.flank > 0 || distance < JUDGED {
             self.unsure_us = flow.until_us;
         }
         let sure = flow.until_us.saturating_sub(self.unsure_us) > UNSURE_TIME;

@@ -24,6 +24,8 @@ pub struct State {
     pub error: f32,
     /// Wished velocity, m/s.
     pub wished: f32,
+    /// Change of the wished velocity, m/s²: without it the vehicle falls behind the held height and then overtakes it.
+    pub gained: f32,
     /// Velocity, m/s.
     pub velocity: f32,
     /// Acceleration that the rotors do not explain, m/s².
@@ -60,7 +62,7 @@ impl Height {
         if !s.landing {
             self.trim = math::clamp_abs(self.trim + TRIM_GAIN * short * dt, TRIM_MAX);
         }
-        CLIMB_GAIN * short + self.trim + math::clamp_abs(s.disturbance, DISTURBANCE_MAX)
+        CLIMB_GAIN * short + self.trim + math::clamp_abs(s.disturbance, DISTURBANCE_MAX) - s.gained
     }
 
     /// Share of the thrust to give, 0..1.

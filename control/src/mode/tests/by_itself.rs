@@ -207,6 +207,29 @@ fn where_a_companion_says_the_pipe_is_it_comes_down_without_a_range() {
     assert!(w.r.out.reason.is_none());
 }
 
+/// An escape from the crown ends two metres beside it, and first it is no higher than that.
+#[test]
+fn after_a_slide_it_comes_back_from_farther_than_it_may_begin() {
+    let mut w = told();
+    for _ in 0..2000 {
+        w.step();
+        if w.r.out.mode == Mode::Contact {
+            break;
+        }
+    }
+    w.r.carried = false;
+    w.expect(0.5, Mode::Escaping);
+    w.at += Vec3::new(0.0, -2.0, 0.1);
+    w.expect(1.0, Mode::Approach);
+    for _ in 0..4000 {
+        w.step();
+        if w.r.out.mode != Mode::Approach {
+            break;
+        }
+    }
+    assert_eq!(w.r.out.mode, Mode::Contact, "{:?}", w.r.out.reason);
+}
+
 #[test]
 fn a_place_of_the_pipe_that_is_stale_far_or_jumps_ends_it_by_its_name() {
     for (target, reason) in [
@@ -391,6 +414,25 @@ fn after_a_slide_it_climbs_and_tries_again_a_bounded_number_of_times() {
     w.expect(1.0, Mode::Hold);
     assert_eq!(w.r.out.reason, Some(Reason::SlidesOff));
     w.expect(2.0, Mode::Hold);
+}
+
+/// An escape carries the vehicle farther than a search about where it ends reaches.
+#[test]
+fn after_a_slide_it_searches_about_where_the_pipe_was() {
+    for aside in [-2.0, 2.0] {
+        let mut w = World::touched();
+        w.r.carried = false;
+        w.expect(0.5, Mode::Escaping);
+        w.at.y += aside;
+        w.expect(1.0, Mode::Approach);
+        for _ in 0..8000 {
+            if w.r.out.mode != Mode::Approach {
+                break;
+            }
+            w.step();
+        }
+        assert_eq!(w.r.out.mode, Mode::Contact, "{aside}: {:?}", w.r.out.reason);
+    }
 }
 
 #[test]
