@@ -9,8 +9,8 @@ use sophie_sim::scenario::Scenario;
 
 /// docs/results.md has a longer run.
 const COUNT: u64 = 1000;
-/// Deepest fall of an escape, m; 0.5 is wanted, and one in a thousand falls 0.52.
-const DROP_MAX: f64 = 0.53;
+/// Deepest fall of an escape, m; 0.5 is wanted.
+const DROP_MAX: f64 = 0.3;
 
 #[test]
 fn no_touch_ends_on_the_ground() {
@@ -328,9 +328,10 @@ fn a_grip_that_has_slipped_lets_go_without_a_fall() {
             .expect("the vehicle arms");
             let what = format!("{offset} m, friction {least}, seed {seed}: {touched:?} {shown:?}");
             assert!(touched.proven && touched.end == End::Released, "{what}");
-            // What was tightened leaves at once, and says so; what first slides as the rotors spool up falls further.
+            // What was tightened leaves at once, and says so; the others slide as the rotors spool up, 0.67 m deep before the
+            // escape made up for what had fallen.
             let answered = shown.contains(&Reason::TightensOnce);
-            assert!(touched.drop < if answered { 0.3 } else { 0.75 }, "{what}");
+            assert!(touched.drop < 0.2, "{what}");
             assert!(
                 !answered || touched.escaped && shown.contains(&Reason::LiftsOff),
                 "{what}"
