@@ -328,8 +328,7 @@ fn a_grip_that_has_slipped_lets_go_without_a_fall() {
             .expect("the vehicle arms");
             let what = format!("{offset} m, friction {least}, seed {seed}: {touched:?} {shown:?}");
             assert!(touched.proven && touched.end == End::Released, "{what}");
-            // What was tightened leaves at once, and says so; the others slide as the rotors spool up, 0.67 m deep before the
-            // escape made up for what had fallen.
+            // What was tightened leaves at once, and says so; the others slide as the rotors spool up, and once fell 0.67 m.
             let answered = shown.contains(&Reason::TightensOnce);
             assert!(touched.drop < 0.2, "{what}");
             assert!(
