@@ -69,7 +69,8 @@ fn uncertain_vehicles_meet_the_same_touches_otherwise() {
         let pressure = map["near_closing_pressure_pa"].as_f64().unwrap();
         assert!((950.0..1300.0).contains(&pressure), "{map}");
         assert!(
-            (1..=20).contains(&map["near_closing_seed"].as_u64().unwrap()),
+            (1..=20).contains(&map["near_closing_seed"].as_u64().unwrap())
+                && (1..=20).contains(&map["deepest_seed"].as_u64().unwrap()),
             "{map}"
         );
     }

@@ -20,6 +20,7 @@ mod disarmed;
 mod entries;
 mod escaping;
 mod failsafe;
+mod fall;
 mod flight;
 mod guards;
 mod hold;

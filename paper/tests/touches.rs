@@ -9,8 +9,8 @@ use sophie_sim::scenario::Scenario;
 
 /// docs/results.md has a longer run.
 const COUNT: u64 = 1000;
-/// Deepest fall of an escape, m; 0.5 is wanted, and one in a thousand falls 0.52.
-const DROP_MAX: f64 = 0.53;
+/// Deepest fall of an escape, m; 0.5 is wanted.
+const DROP_MAX: f64 = 0.3;
 
 #[test]
 fn no_touch_ends_on_the_ground() {
@@ -99,6 +99,99 @@ fn a_closing_that_is_called_off_in_a_slide_leaves_at_once() {
         touched.escaped && touched.end == End::Away && touched.drop < 0.3,
         "{touched:?}"
     );
+}
+
+/// Once 0.37 to 0.58 m deep, or with a propeller in the pipe. The first four fell beside it under the pilot's throttle (in the
+/// third and fourth the switch was off already, the fifth got his throttle back only within 0.5 s); the last two slid off
+/// with arms bent by 90 to 106°, which carry nothing until they are open.
+#[test]
+fn what_falls_beside_the_pipe_is_caught_with_its_propellers_clear() {
+    for (offset, lean, sink, sideways, heading, diameter, friction, gust, throttle, cancel, seed, drop) in [
+        (
+            -0.1389, -24.11f64, 0.113, -0.218, 2.94f64, 0.390, 0.784, 0.088, 0.236, 1.480, 1891, 0.15,
+        ),
+        (
+            -0.1035,
+            -20.27,
+            0.071,
+            -0.172,
+            4.88,
+            0.216,
+            0.358,
+            0.083,
+            0.282,
+            f64::INFINITY,
+            767,
+            0.15,
+        ),
+        (
+            0.1124, 11.67, 0.082, 0.238, -4.32, 0.322, 0.615, 0.006, 0.256, 0.147, 579, 0.2,
+        ),
+        (
+            -0.1010, -4.82, 0.131, 0.179, -4.36, 0.296, 0.525, 0.078, 0.189, 0.272, 1073, 0.2,
+        ),
+        (
+            0.1048,
+            -18.99,
+            0.180,
+            -0.202,
+            -2.69,
+            0.319,
+            0.300,
+            0.041,
+            0.341,
+            f64::INFINITY,
+            1543,
+            0.25,
+        ),
+        (
+            0.0747,
+            2.35,
+            0.081,
+            0.009,
+            3.35,
+            0.400,
+            0.600,
+            0.1,
+            0.300,
+            f64::INFINITY,
+            1200,
+            0.3,
+        ),
+        (
+            0.0345,
+            -1.88,
+            0.092,
+            0.001,
+            -4.98,
+            0.200,
+            0.600,
+            0.1,
+            0.300,
+            f64::INFINITY,
+            708,
+            0.15,
+        ),
+    ] {
+        let touch = Touch {
+            offset,
+            lean: lean.to_radians(),
+            sink,
+            sideways,
+            yaw: heading.to_radians(),
+            diameter,
+            friction,
+            gust,
+            throttle,
+            cancel,
+            ..central(seed)
+        };
+        let touched = fly(&touch).expect("the vehicle arms");
+        assert!(
+            touched.end == End::Away && touched.drop < drop && touched.clearance > 0.0,
+            "seed {seed}: {touched:?}"
+        );
+    }
 }
 
 /// Headed 12 to 19° off the pipe: touches that once ended on the ground, for the lean watch knew roll alone (the first), and for
@@ -235,9 +328,9 @@ fn a_grip_that_has_slipped_lets_go_without_a_fall() {
             .expect("the vehicle arms");
             let what = format!("{offset} m, friction {least}, seed {seed}: {touched:?} {shown:?}");
             assert!(touched.proven && touched.end == End::Released, "{what}");
-            // What was tightened leaves at once, and says so; what first slides as the rotors spool up falls further.
+            // What was tightened leaves at once, and says so; the others slide as the rotors spool up, and once fell 0.67 m.
             let answered = shown.contains(&Reason::TightensOnce);
-            assert!(touched.drop < if answered { 0.3 } else { 0.75 }, "{what}");
+            assert!(touched.drop < 0.2, "{what}");
             assert!(
                 !answered || touched.escaped && shown.contains(&Reason::LiftsOff),
                 "{what}"

@@ -2,7 +2,7 @@
 
 use super::context::{Context, Step};
 use super::demand::HAND_OVER_TIME;
-use super::{ClampCommand, Inputs, Reason, Setpoint};
+use super::{ClampCommand, Inputs, Mode, Reason, Setpoint};
 use crate::arming::ArmingInhibits;
 use crate::grip_memory::GripMemory;
 
@@ -31,8 +31,8 @@ pub trait Behaviour {
         context.reason(inputs, true)
     }
 
-    /// Hand-over time of the collective from the previous state, s.
-    fn hand_over_time(&self) -> f32 {
+    /// Hand-over time of the collective `from` the state before, s.
+    fn hand_over_time(&self, _from: Mode) -> f32 {
         HAND_OVER_TIME
     }
 }

@@ -3,7 +3,7 @@
 use super::behaviour::Behaviour;
 use super::context::{Context, Step};
 use super::hold::Hold;
-use super::{Inputs, Reason, Setpoint};
+use super::{Inputs, Mode, Reason, Setpoint};
 use crate::arming::ArmingInhibits;
 
 /// Time on the pipe before the tendons close, s.
@@ -28,7 +28,7 @@ impl Behaviour for Contact {
         self.hold.rotors(context.set_down_thrust())
     }
 
-    fn hand_over_time(&self) -> f32 {
+    fn hand_over_time(&self, _: Mode) -> f32 {
         SET_DOWN_TIME
     }
 

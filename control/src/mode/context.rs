@@ -5,6 +5,7 @@ use super::by_itself::ByItself;
 use super::crown::Crown;
 use super::dangers::Dangers;
 use super::demand::Collective;
+use super::fall::Fall;
 use super::hold::held;
 use super::lean::Lean;
 use super::power_up_grip::PowerUpGripCheck;
@@ -17,7 +18,7 @@ use crate::math::clamp;
 use crate::params::Params;
 use crate::rc::Sticks;
 use crate::remote::RemoteOrder;
-use crate::support::{Felt, Support};
+use crate::support::{Felt, Held, Support};
 
 /// Time constant of learning gravity at rest, s, and bounds, m/s²: a part's bias of some 40 mg.
 const GRAVITY_TIME: f32 = 0.5;
@@ -43,6 +44,8 @@ pub struct PerchSwitch {
     pub seen_on: bool,
     /// On since power-up: its position is no wish of the pilot.
     pub left_on: bool,
+    /// Time since it was turned off, s.
+    pub off: Held,
 }
 
 impl PerchSwitch {
@@ -73,6 +76,7 @@ pub struct Context {
     pub hold_seen_off: bool,
     pub power_up_grip: PowerUpGripCheck,
     pub lean: Lean,
+    pub fall: Fall,
     pub crown: Crown,
     /// Acceleration along world down, m/s².
     pub sinking: f32,
@@ -104,10 +108,12 @@ impl Context {
                 seen_off: false,
                 seen_on: false,
                 left_on: true,
+                off: Held::default(),
             },
             hold_seen_off: false,
             power_up_grip: PowerUpGripCheck::default(),
             lean: Lean::new(params),
+            fall: Fall::default(),
             crown: Crown::default(),
             sinking: 0.0,
             collective: Collective::default(),
@@ -134,6 +140,7 @@ impl Context {
             self.hold_seen_off |= !s.hold_switch;
             let perch = &mut self.perch_switch;
             perch.seen_off |= !s.perch_switch;
+            perch.off.step(!s.perch_switch, dt);
             perch.left_on &= s.perch_switch;
             perch.seen_on |= s.perch_switch && !perch.left_on;
         }
@@ -152,6 +159,7 @@ impl Context {
         self.support.step(felt, dt);
         self.crown.step(i, &self.support, dt);
         self.sinking = felt.map_or(0.0, |f| f.down);
+        self.fall.step(self.sinking, &self.support, dt);
         self.lean.step(i.motion, &self.support, self.collective.now(), dt);
         self.dangers.step(i, &self.params, dt);
     }

@@ -8,7 +8,7 @@ use super::behaviour::Behaviour;
 use super::context::{Context, Step};
 use super::holding::fresh;
 use super::releasing::release_thrust;
-use super::{ClampCommand, Inputs, Reason, Setpoint};
+use super::{ClampCommand, Inputs, Mode, Reason, Setpoint};
 use crate::arming::ArmingInhibits;
 use crate::grip_memory::GripMemory;
 use crate::math::{clamp, clamp_abs, deg};
@@ -16,6 +16,10 @@ use crate::support::HINT_FORCE;
 
 /// Collective without climb, share of the weight: 3.4 m/s² upwards.
 pub const LIFT_SHARE: f32 = 1.35;
+/// Largest collective, share of the weight: of a vehicle that sinks.
+const MOST_SHARE: f32 = 1.7;
+/// Least cosine of its tilt for which the collective makes up.
+const UPRIGHT_MIN: f32 = 0.7;
 /// Least collective, share of the weight.
 const LEAST_SHARE: f32 = 0.9;
 /// Share of the weight per m/s of missing climb rate.
@@ -55,7 +59,7 @@ pub struct Escaping {
     from: Option<f32>,
     /// Time since the collective began to rise, s.
     rise: f32,
-    /// Climb rate since then, m/s.
+    /// Climb rate, m/s, from what was gained before.
     climb: f32,
     opening: bool,
 }
@@ -121,6 +125,10 @@ impl Behaviour for Escaping {
         }
         // From the stand, and the first step on: a rise that has begun does not end.
         if self.rise > 0.0 || self.rises(context) {
+            if self.rise <= 0.0 {
+                // A touch harder than was seen coming looks like a climb.
+                self.climb = -clamp(context.fall.speed(), 0.0, 10.0);
+            }
             self.rise = clamp(self.rise + step.dt, 0.0, 1e3);
             self.climb -= context.sinking * step.dt;
         }
@@ -151,8 +159,10 @@ impl Behaviour for Escaping {
     fn rotors(&self, context: &Context, inputs: &Inputs) -> Setpoint {
         let clear = self.clear(context);
         let wanted = if clear { 0.0 } else { CLIMB_RATE };
-        let share = clamp(1.0 + CLIMB_GAIN * (wanted - self.climb), LEAST_SHARE, LIFT_SHARE);
-        let goal = share * context.support.weight();
+        let share = clamp(1.0 + CLIMB_GAIN * (wanted - self.climb), LEAST_SHARE, MOST_SHARE);
+        // Leaning rotors lift less.
+        let upright = inputs.motion.map_or(1.0, |m| m.q.down_in_body().z);
+        let goal = share * context.support.weight() / clamp(upright, UPRIGHT_MIN, 1.0);
         let thrust = self.from.map_or(goal, |from| {
             let risen = clamp(self.rise / STAND_RAMP, 0.0, 1.0);
             from + (goal - from) * risen
@@ -182,7 +192,7 @@ impl Behaviour for Escaping {
         }
     }
 
-    fn hand_over_time(&self) -> f32 {
+    fn hand_over_time(&self, _: Mode) -> f32 {
         SLIDE_RAMP
     }
 }

@@ -3,7 +3,12 @@
 use super::behaviour::Behaviour;
 use super::context::{Context, Step};
 use super::descent::descent;
-use super::{Inputs, Reason, Setpoint, demand, holding};
+use super::{Inputs, Mode, Reason, Setpoint, demand, holding};
+
+/// Time for the throttle to follow the perch switch, s.
+const SWITCH_FIRST: f32 = 1.0;
+/// Hand-over time of the collective to a pilot who calls a touch off, s: he may see it slide.
+const CALL_OFF_TIME: f32 = 0.1;
 
 /// See [`super::Mode::Flight`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,6 +20,15 @@ impl Flight {
         let most = step.context.params.perch_thr_max;
         let wanted = |s: crate::rc::Sticks| s.perch_switch && s.throttle <= most;
         step.inputs.motion.is_some() && step.inputs.sticks.is_some_and(wanted)
+    }
+
+    /// The same, or the switch has just been turned off: until the throttle follows, the vehicle still comes down.
+    pub fn sets_down(step: &Step<'_>) -> bool {
+        let context = &step.context;
+        let most = context.params.perch_thr_max;
+        let recent = context.perch_switch.off.time() < SWITCH_FIRST;
+        let down = |s: crate::rc::Sticks| recent && s.throttle <= most;
+        step.inputs.motion.is_some() && step.inputs.sticks.is_some_and(down)
     }
 
     /// Friction holds the vehicle while the arms close.
@@ -47,6 +61,14 @@ impl Behaviour for Flight {
             Some(s) => demand::from_sticks(&s, &context.params),
             // Unused: without radio the failsafe flies.
             None => descent(context, None),
+        }
+    }
+
+    fn hand_over_time(&self, from: Mode) -> f32 {
+        if from == Mode::Contact {
+            CALL_OFF_TIME
+        } else {
+            demand::HAND_OVER_TIME
         }
     }
 }

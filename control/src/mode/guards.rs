@@ -91,7 +91,11 @@ guards! {
     };
 
     MEANS_TO_PERCH = "perch switch on, throttle down", |_, s| Flight::means_to_perch(s);
+    SETS_DOWN = "perch switch on or just turned off, throttle down", |_, s| Flight::sets_down(s);
     SWITCH_TURNED = "perch switch was off since the last try", |_, s| s.context.perch_switch.seen_off;
+    FALLS_BESIDE = "falls, leaning where no touch would be held", |_, s| {
+        s.context.fall.falls() && s.context.lean.beyond_seats()
+    };
     SLIDES_AT_TOUCH = "leans where it feels the pipe", |_, s| s.context.lean.slides_at_touch();
     TOUCHED = "feels the pipe", |_, s| s.context.support.touched();
     LIFTED = "nothing carries it any more", |_, s| s.context.support.lifted();

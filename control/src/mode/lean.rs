@@ -17,6 +17,8 @@ use crate::support::{Held, LEAVING_FORCE, RESTING_FORCE, Support};
 const LEVELLING_RATE: f32 = 0.2;
 /// Lean too large for closing arms whatever the friction, rad: they touch after 1.3 s, a slide reaches the flank in 0.35 s.
 const HOPELESS_LEAN: f32 = deg(25.0);
+/// Lean of a fall beside the pipe, rad: seats on 0.2 to 0.4 m hold 10 to 17° while the arms close, so nothing was to come of it.
+const FALL_LEAN: f32 = deg(18.0);
 /// Rate of a growing lean, rad/s.
 const GROWING_RATE: f32 = 0.3;
 /// Growth of the lean since the arms began to close, rad, and its rate, rad/s, that mean less friction than the parameter's: on 0.3
@@ -132,6 +134,11 @@ impl Lean {
     /// Friction holds the vehicle once the rotors stand.
     pub fn may_stay(&self) -> bool {
         self.seat.holds(self.lean, 0.0)
+    }
+
+    /// No seat holds such a lean while the arms close.
+    pub fn beyond_seats(&self) -> bool {
+        self.lean > FALL_LEAN
     }
 
     /// The lean is or will be beyond closing arms.

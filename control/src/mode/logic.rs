@@ -71,7 +71,7 @@ impl ModeLogic {
                     let by_itself = self.context.by_itself.active;
                     let dropped = self.context.remote.enters(self.state.mode(), by_itself);
                     self.context.perch_switch.forget(dropped);
-                    let time = self.state.behaviour().hand_over_time();
+                    let time = self.state.behaviour().hand_over_time(before);
                     self.context.collective.hand_over(time);
                 }
             }

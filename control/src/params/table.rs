@@ -290,7 +290,7 @@ params! {
     /// gain_k and tendon_bend, then from the bending measured in the closing.
     clamp_approach = 0.7, "rad/s", 0.05 ..= 3.0;
     /// Fastest fall of the tendon force on release: an escape waits for it.
-    clamp_release = 240.0, "N/s", 5.0 ..= 500.0;
+    clamp_release = 500.0, "N/s", 5.0 ..= 500.0;
     /// Trim of servo 1 against its reel's release mark; moves both ends of its travel.
     servo_trim_1 = 0.0, "us", -50.0 ..= 50.0;
     /// Trim of servo 2.

@@ -88,7 +88,7 @@ fn tendons_go_slack_together_however_tight_each_was() {
             );
         }
     }
-    assert!(close(time, 107.0 / 240.0, 0.03), "{time}");
+    assert!(close(time, 107.0 / cfg.release_rate, 0.03), "{time}");
 }
 
 #[test]

@@ -177,7 +177,7 @@ fn release_falls_at_its_rate_and_ends_free() {
         time += DT;
         assert!(time < 5.0);
     }
-    assert!(close(time, from / 240.0, 0.03));
+    assert!(close(time, from / cfg.release_rate, 0.03));
     // Pressed; light and wound back.
     for (pressure, state) in [(500.0, ArmState::Releasing), (0.0, ArmState::Free)] {
         let mut grip = ArmGrip::default();

@@ -643,3 +643,87 @@ fn arms_that_have_no_force_left_are_not_tightened() {
         assert_eq!(r.out.tendons, ClampCommand::Close { arms: ArmChoice::All });
     }
 }
+
+/// Set down beside the pipe at 20° of lean, where no support is ever felt: the throttle of a set-down would let it fall.
+#[test]
+fn a_vehicle_that_falls_beside_the_pipe_is_caught() {
+    for (degrees, switch, caught) in [
+        (20.0, true, true),
+        (-20.0, true, true),
+        // The switch is off again before the throttle follows.
+        (20.0, false, true),
+        // What leans less may still be coming down.
+        (8.0, true, false),
+    ] {
+        let mut r = Rig::flying();
+        r.leans(degrees, 0.0);
+        r.sticks().perch_switch = true;
+        r.expect(0.1, Mode::Flight);
+        r.sticks().throttle = 0.3;
+        r.sticks().perch_switch = switch;
+        let mode = r.run(0.3);
+        assert_eq!(mode == Mode::Escaping, caught, "{degrees} deg: {mode:?}");
+    }
+    // A switch that has been off for long means no pipe.
+    let mut r = Rig::flying();
+    r.sticks().perch_switch = true;
+    r.expect(0.1, Mode::Flight);
+    r.sticks().perch_switch = false;
+    r.expect(1.1, Mode::Flight);
+    r.leans(20.0, 0.0);
+    r.sticks().throttle = 0.3;
+    r.expect(0.5, Mode::Flight);
+}
+
+/// Called off at the touch while it slides: until the throttle follows, that is a slide like any other.
+#[test]
+fn a_touch_called_off_in_a_slide_is_left_at_once() {
+    let mut r = Rig::touched();
+    r.sticks().perch_switch = false;
+    r.leans(12.0, 0.8);
+    r.expect(0.02, Mode::Flight);
+    r.leans(18.0, 0.8);
+    r.expect(0.1, Mode::Escaping);
+}
+
+/// What it fell before counts: the collective is what stops it, and it ends in a climb.
+#[test]
+fn an_escape_of_a_falling_vehicle_stops_the_fall() {
+    let mut r = Rig::flying();
+    r.leans(20.0, 0.0);
+    r.sticks().perch_switch = true;
+    r.expect(0.1, Mode::Flight);
+    r.sticks().throttle = 0.25;
+    while r.run(DT) == Mode::Flight {}
+    assert_eq!(r.out.mode, Mode::Escaping);
+    let fallen = r.falling;
+    let most = (0..10).fold(0.0, |most: f32, _| {
+        r.step();
+        most.max(r.out.rotors.thrust())
+    });
+    // Level and from rest it would be 1.35 of the weight.
+    assert!(
+        fallen > 0.25 && most > 1.5 * r.weight() && most < 1.7 * r.weight() / deg(20.0).cos(),
+        "{fallen} m/s: {most} N"
+    );
+    r.leans(0.0, 0.0);
+    let least = (0..60).fold(f32::MAX, |least, _| {
+        r.step();
+        least.min(r.falling)
+    });
+    assert!(least < -0.3, "{least} m/s downwards");
+}
+
+/// He may see it slide: his throttle is there within 0.1 s.
+#[test]
+fn a_pilot_who_calls_off_has_his_throttle_soon() {
+    let mut r = Rig::touched();
+    r.run(0.1);
+    r.sticks().throttle = 0.9;
+    r.expect(0.12, Mode::Flight);
+    assert!(
+        (r.out.rotors.thrust() - 0.9 * 33.2).abs() < 0.01,
+        "{:?}",
+        r.out.rotors
+    );
+}

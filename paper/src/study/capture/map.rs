@@ -62,6 +62,8 @@ pub fn measure(flown: &[Flown]) -> [Measured; GAUGES.len()] {
 pub struct Extremes {
     /// Deepest below the height of the touch, m.
     pub drop: f64,
+    /// Seed of that touch.
+    pub deepest_seed: Option<u64>,
     /// Least distance of a turning propeller from the pipe, m.
     pub clearance: f64,
     /// Touches in which one reached the pipe.
@@ -86,8 +88,12 @@ pub fn extremes(flown: &[Flown]) -> Extremes {
         .iter()
         .filter(|f| f.touched.proven && f.planned.touch.offset.abs() <= NEAR)
         .max_by(|a, b| a.touched.closing_pressure.total_cmp(&b.touched.closing_pressure));
+    let deepest = flown
+        .iter()
+        .max_by(|a, b| a.touched.drop.total_cmp(&b.touched.drop));
     Extremes {
-        drop: touched().map(|t| t.drop).fold(0.0, f64::max),
+        drop: deepest.map_or(0.0, |f| f.touched.drop),
+        deepest_seed: deepest.map(|f| f.planned.touch.seed),
         clearance: touched().map(|t| t.clearance).fold(f64::INFINITY, f64::min),
         strikes: touched().filter(|t| t.clearance <= 0.0).count(),
         closing_pressure: touched()
@@ -200,6 +206,9 @@ mod tests {
         }
         assert_eq!(extremes(&flown).near_closing_seed, Some(7));
         assert_eq!(extremes(&flown[1..]).near_closing_seed, None);
+        flown[1].touched.drop = 0.3;
+        assert_eq!(extremes(&flown).deepest_seed, Some(8));
+        assert!((extremes(&flown).drop - 0.3).abs() < 1e-12);
     }
 
     #[test]

@@ -44,6 +44,7 @@ pub fn json(flown: &[Flown], request: &Request) -> String {
             "half_width_releasable_m": metres(m.releasable),
         })),
         "deepest_drop_m": metres(most.drop),
+        "deepest_seed": most.deepest_seed,
         "propeller_strikes": most.strikes,
         "propeller_clearance_m": metres(most.clearance),
         "closing_pressure_pa": most.closing_pressure.round(),
