@@ -29,7 +29,8 @@ fn holding() -> Rig {
     r
 }
 
-fn angles(r: &Rig) -> [f32; 4] {
+/// Roll, pitch, yaw rate, thrust.
+pub(super) fn angles(r: &Rig) -> [f32; 4] {
     assert!(
         matches!(r.out.rotors, Setpoint::Angle { .. }),
         "{:?}",

@@ -1,5 +1,6 @@
 //! The failsafe with a position: straight down, beside the pipe where it has just left it, and by the pilot's sticks.
 
+use super::holding::angles;
 use super::rig::Rig;
 use crate::grip::ArmState;
 use crate::math::deg;
@@ -23,16 +24,6 @@ fn sinking(age: f32) -> Rig {
     r.inputs.sticks = None;
     r.expect(0.01, Mode::Failsafe);
     r
-}
-
-/// Roll, pitch, yaw rate, thrust.
-fn angles(r: &Rig) -> [f32; 4] {
-    assert!(
-        matches!(r.out.rotors, Setpoint::Angle { .. }),
-        "{:?}",
-        r.out.rotors
-    );
-    r.out.rotors.numbers()
 }
 
 #[test]
