@@ -93,8 +93,11 @@ impl Spot {
         })
     }
 
-    /// One step, steered at the velocities that the sticks of the `pilot` ask for.
+    /// One step, steered at the velocities that the sticks of the `pilot` ask for: where he steers, no way off is flown.
     pub fn step(&mut self, pilot: Option<Sticks>, step: &mut Step<'_>) {
+        if pilot.is_some() {
+            self.aside = None;
+        }
         let estimate = step.inputs.position.unwrap_or_default();
         let wish = match self.way_off(&estimate, step) {
             Some(wish) => wish,

@@ -131,6 +131,23 @@ impl World {
     }
 }
 
+/// With an empty battery the pilot steers: nothing is flown aside against his sticks.
+#[test]
+fn an_empty_battery_over_the_pipe_leaves_the_way_to_the_pilot() {
+    let mut w = World::searching();
+    w.r.inputs.battery = Some(10.0);
+    for _ in 0..200 {
+        w.step();
+        if w.r.out.mode == Mode::Failsafe {
+            break;
+        }
+    }
+    w.run(0.6);
+    assert_eq!(w.r.out.mode, Mode::Failsafe);
+    let thrust = w.r.out.rotors.thrust();
+    assert!(thrust < w.r.params.mass * 9.75, "{thrust}");
+}
+
 /// Without radio it comes down beside the pipe, not on it.
 #[test]
 fn a_radio_lost_over_the_pipe_leads_away_from_it() {
