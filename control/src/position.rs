@@ -14,6 +14,9 @@ mod fit;
 #[cfg(test)]
 mod fit_tests;
 mod past;
+mod scale;
+#[cfg(test)]
+mod scale_tests;
 mod sight;
 #[cfg(test)]
 mod sight_fuzz;
@@ -259,9 +262,21 @@ impl PositionEstimator {
         if !(felt.q.is_finite() && felt.accel.is_finite() && lift.is_finite()) {
             return None;
         }
+        let flies = lift > FLIES * GRAVITY * self.mass;
+        let down = felt.q.rotate(felt.accel).z + GRAVITY;
+        self.sight.scale.feel(at_us, flies.then_some(down));
+        // A scaled range gives no height; how it changes may say that it is right again.
+        let range = match range {
+            Some((at, distance)) if self.sight.scale.wrong() => {
+                if let Some(then) = self.past.at(at) {
+                    self.sight.watch_scaled(then.q, distance);
+                }
+                None
+            }
+            range => range,
+        };
         let swing = self.trust.feel(felt);
         if let Some(fix) = new {
-            let flies = lift > FLIES * GRAVITY * self.mass;
             self.trust.look(fix, self.past.at(fix.at_us).as_ref(), flies);
         }
         let left_out = self.trust.fault().is_some();
@@ -318,7 +333,7 @@ impl PositionEstimator {
         if let Some(flow) = flow {
             track.take_flow(&mut self.past, &mut self.sight, &flow, posed);
         }
-        let misled = self.sight.flow_disagrees() && !posed;
+        let misled = self.sight.misleads() && !posed;
         if misled && !track.misled {
             track.taint();
         }
@@ -327,7 +342,7 @@ impl PositionEstimator {
             self.aloft.forget();
         }
         if let Some(at) = self.aloft.news(at_us)
-            && lift > FLIES * GRAVITY * self.mass
+            && flies
         {
             track.take_pressure(&mut self.past, &mut self.aloft, at);
         }

@@ -23,7 +23,7 @@ pub enum Warning {
 
 impl Warning {
     /// Every warning.
-    pub const ALL: [Self; 20] = [
+    pub const ALL: [Self; 21] = [
         Self::ArmTilt,
         Self::Restarted(StartCause::BrownOut),
         Self::Restarted(StartCause::Watchdog),
@@ -35,6 +35,7 @@ impl Warning {
         Self::Position(Fault::Sight(SightFault::FlowDisagrees)),
         Self::Position(Fault::Sight(SightFault::RangeFrozen)),
         Self::Position(Fault::Sight(SightFault::RangeJumps)),
+        Self::Position(Fault::Sight(SightFault::RangeScaled)),
         Self::Position(Fault::Pressure(PressureFault::Frozen)),
         Self::Position(Fault::Pressure(PressureFault::Jumps)),
         Self::Position(Fault::Pressure(PressureFault::Disagrees)),

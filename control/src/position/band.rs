@@ -130,6 +130,11 @@ impl Band {
         }
     }
 
+    /// How far its middle lies aside of `place`, m.
+    pub fn aside(&self, place: Vec3) -> f32 {
+        -self.side(place)
+    }
+
     /// Of its middle, in its direction across, m.
     fn side(&self, place: Vec3) -> f32 {
         (place - self.middle).dot(self.across)

@@ -3,6 +3,7 @@
 use super::agreement::Agreement;
 use super::band::{Band, Depth};
 use super::past::Moment;
+use super::scale::{Below, RangeScale};
 use super::{about_down, seconds};
 use crate::ground::{Flow, GroundView, Range};
 use crate::math;
@@ -48,6 +49,8 @@ const FROZEN_MIN: f32 = 0.1;
 const COS_MIN: f32 = 0.77;
 /// Way, m, and time, µs, since what is narrow was met below, after which it is elsewhere: a pipe has ends.
 const LEFT_BEHIND: (f32, u64) = (2.0, 20_000_000);
+/// Widths of what the vehicle perches on that a surface must reach aside to be a floor.
+const WIDE: f32 = 1.2;
 /// Range below which flow is not judged, m: there the noise of the estimated velocity is as much as a slow turn.
 const JUDGED: f32 = 0.45;
 /// Time after a step of the range for which it is not, µs: three of the time constants of what is slow.
@@ -64,15 +67,18 @@ pub enum SightFault {
     RangeFrozen,
     /// The range jumps more often than ground does.
     RangeJumps,
+    /// The range changes by more or less than the vehicle rises or sinks.
+    RangeScaled,
 }
 
 impl SightFault {
     /// Every fault.
-    pub const ALL: [Self; 4] = [
+    pub const ALL: [Self; 5] = [
         Self::FlowFrozen,
         Self::FlowDisagrees,
         Self::RangeFrozen,
         Self::RangeJumps,
+        Self::RangeScaled,
     ];
 
     /// For the pilot's display: at most 40 ASCII characters.
@@ -82,6 +88,7 @@ impl SightFault {
             Self::FlowDisagrees => "flow mirrored or scaled, left out",
             Self::RangeFrozen => "range frozen, left out",
             Self::RangeJumps => "range jumps, left out",
+            Self::RangeScaled => "range scaled, left out",
         }
     }
 }
@@ -144,8 +151,14 @@ pub struct Sight {
     pub(super) lens: Vec3,
     /// Newest range with a distance: when, µs, and m.
     range: Option<(u64, f32)>,
-    /// When the newest range that was looked at was measured, µs.
+    /// When the newest range that was looked at was measured, and when that was, µs.
     range_us: u64,
+    now_us: u64,
+    /// Whether it is as long as it says.
+    pub(super) scale: RangeScale,
+    /// Where the first range fell of a surface that was met with nothing before; it may be what the vehicle has risen from.
+    /// `None` once that has shown to be wide, or was left for one that is deeper by what the vehicle perches on is thick.
+    unproven: Option<Vec3>,
     /// Surface below, the lowest one known and the other one that was, along the estimate's down axis, m.
     level: f32,
     base: f32,
@@ -189,15 +202,16 @@ impl Sight {
         let faults = [
             (self.same_ranges >= FROZEN_RANGES, SightFault::RangeFrozen),
             (self.distrusted_us > self.range_us, SightFault::RangeJumps),
+            (self.scale.wrong(), SightFault::RangeScaled),
             (self.same_flows >= FROZEN_FLOWS, SightFault::FlowFrozen),
             (self.disagrees, SightFault::FlowDisagrees),
         ];
         faults.iter().find(|(holds, _)| *holds).map(|(_, fault)| *fault)
     }
 
-    /// The flow does not follow the vehicle.
-    pub fn flow_disagrees(&self) -> bool {
-        self.disagrees
+    /// Flow or range have gone another way than the vehicle, and so has what was estimated by them.
+    pub fn misleads(&self) -> bool {
+        self.disagrees || self.scale.wrong()
     }
 
     /// When the newest range that was looked at was measured, µs.
@@ -211,16 +225,16 @@ impl Sight {
     }
 
     fn range_faulty(&self) -> bool {
-        self.same_ranges >= FROZEN_RANGES || self.distrusted_us > self.range_us
+        self.same_ranges >= FROZEN_RANGES || self.distrusted_us > self.range_us || self.scale.wrong()
     }
 
-    /// The distance of a range that was not looked at before, m, and when it was measured, µs.
+    /// The distance of a range that was not looked at before, m, and when it was measured, µs; a scaled one too.
     pub fn new_range(&mut self, view: &GroundView, now: u64) -> Option<(u64, f32)> {
         let range = view.range.and_then(Range::checked)?;
         if range.at_us <= self.range_us || range.at_us > now {
             return None;
         }
-        self.range_us = range.at_us;
+        (self.range_us, self.now_us) = (range.at_us, now);
         let distance = range.distance?;
         let same = self
             .range
@@ -231,7 +245,23 @@ impl Sight {
             0
         };
         self.range = Some((range.at_us, distance));
-        (!self.range_faulty()).then_some((range.at_us, distance))
+        let used = self.scale.wrong() || !self.range_faulty();
+        used.then_some((range.at_us, distance))
+    }
+
+    /// Watches a range of `distance` m, measured with the attitude `q`, that is left out as scaled.
+    pub fn watch_scaled(&mut self, q: Quat, distance: f32) {
+        let cos = q.down_in_body().z;
+        if cos >= COS_MIN {
+            self.look_at_scale(distance * cos, q, Below::Plain);
+        }
+    }
+
+    /// Compares the share down of the newest range, `height` m, with what is felt.
+    fn look_at_scale(&mut self, height: f32, q: Quat, below: Below) {
+        let lag = seconds(self.range_us, self.now_us);
+        // Of the centre of mass: what its lever adds is no motion, and an error of it no scale.
+        self.scale.look(height + q.rotate(self.lens).z, lag, below);
     }
 
     /// Height of the centre of mass above the ground with which an estimate may begin, m, at a flow with the attitude `q`.
@@ -270,7 +300,13 @@ impl Sight {
         // The range's own place is that of a surface at `level`.
         let off = self.level - surface;
         let raised = self.raised();
-        let below = Band::below(foot, then.yaw() + turn, self.radius, self.level);
+        let heading = then.yaw() + turn;
+        let below = Band::below(foot, heading, self.radius, self.level);
+        if !self.scale.begun() {
+            self.unproven = Some(foot);
+        }
+        let wide = WIDE * 2.0 * self.radius;
+        self.unproven = self.unproven.filter(|first| below.aside(*first).abs() <= wide);
         if raised {
             self.met = (then.at_us, foot);
         } else {
@@ -288,18 +324,31 @@ impl Sight {
             self.band = self.band.map(|band| band.bounded(at(band.top), raised));
             self.band = self.band.filter(|band| raised || !band.is_mistaken());
             if !raised {
+                let below = if self.unproven.is_some() {
+                    Below::Narrow
+                } else {
+                    Below::Plain
+                };
+                self.look_at_scale(distance * cos, then.q, below);
                 return Some((off, RANGE_NOISE * RANGE_NOISE));
             }
             let band = self.band.get_or_insert(below);
             band.top = self.level;
             let (drop, doubt) = band.drop(foot);
             let back = surface - drop;
+            let below = if self.flank > 0 {
+                Below::Known
+            } else {
+                Below::Narrow
+            };
             if self.flank > 0 {
                 self.level += FLANK_SHARE * (back - self.level);
                 self.other = self.level;
                 self.flank = if doubt > RANGE_NOISE { self.flank - 1 } else { 0 };
             }
-            return Some((self.level - back, RANGE_NOISE * RANGE_NOISE + doubt * doubt));
+            let off = self.level - back;
+            self.look_at_scale(distance * cos - drop, then.q, below);
+            return Some((off, RANGE_NOISE * RANGE_NOISE + doubt * doubt));
         }
         self.agreed = if (off - self.step).abs() <= SAME {
             self.agreed + 1
@@ -312,12 +361,15 @@ impl Sight {
         if self.agreed >= STEP_RANGES {
             let (before, onto) = (self.level, off > 0.0);
             let known = self.change_level(surface, then.at_us);
+            let fell = self.scale.begun() && self.level - before > 2.0 * self.radius;
+            self.unproven = self.unproven.filter(|_| !fell);
+            let seen = if known { Below::Known } else { Below::New };
+            self.look_at_scale(distance * cos, then.q, seen);
             let mut band = self.band.unwrap_or(below);
             band.top = self.level.min(before);
             let reach = band.top - then.position.z;
             let at = |m: &Moment| m.position + beam(m.q, reach, turn);
             let way = at(then) - at(earlier);
-            let heading = then.yaw() + turn;
             self.band = Some(Band::at_edge(band, self.stepped_at, onto, way, heading));
             self.foot = foot;
             self.flank = if onto && !known { FLANK_RANGES } else { 0 };

@@ -660,3 +660,26 @@ proptest! {
         }
     }
 }
+
+/// It rises and sinks by 3 cm. What was estimated by it counts no longer, and a sound one is taken again.
+#[test]
+fn a_scaled_range_is_named_left_out_and_taken_again() {
+    for range in [(|d| 1.6 * d) as fn(f32) -> f32, |d| 0.6 * d] {
+        let mut r = Rig::new();
+        r.run(10.0);
+        r.range = range;
+        let named = (0..80).find(|_| {
+            r.run(0.5);
+            r.fault() == Some(SightFault::RangeScaled)
+        });
+        assert!(named.is_some(), "{:?}", r.fault());
+        assert!(r.out.is_none_or(|e| e.age > 1.3), "{:?}", r.out);
+        r.run(20.0);
+        assert_eq!(r.fault(), Some(SightFault::RangeScaled));
+        r.range = |d| d;
+        r.run(20.0);
+        assert_eq!(r.fault(), None);
+        let [v, _] = r.errors();
+        assert!(v < 0.05, "{v}");
+    }
+}

@@ -35,6 +35,9 @@ fn to_do(warning: Warning) -> &'static str {
         Warning::Position(Fault::Sight(SightFault::RangeJumps)) => {
             "Steer it away from what is rough below; look at the lens."
         }
+        Warning::Position(Fault::Sight(SightFault::RangeScaled)) => {
+            "Steer it, land; the module's unit of length. It counts again once it has climbed as far as the vehicle."
+        }
         Warning::Position(Fault::Pressure(_)) => {
             "Go on: it counts where pose or range are lost alone. Foam over the barometer, or a new board."
         }
