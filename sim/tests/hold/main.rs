@@ -7,6 +7,7 @@ mod lever;
 mod on_the_way;
 mod pose;
 mod radio;
+mod scaled;
 
 use std::f64::consts::TAU;
 
