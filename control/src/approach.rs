@@ -212,9 +212,20 @@ impl Approach {
         self.committed().then_some(crown)
     }
 
-    /// Another try from the top: over the crown where that is known.
+    /// Up and away from where the range is not to be believed, to be left there.
+    pub fn cleared(p: &Params, v: &View, heading: f32, jumps: u8) -> Self {
+        Self {
+            up: -CLEAR,
+            ..Self::again(p, v, heading, jumps, true)
+        }
+    }
+
+    /// Another try from the top, over the crown where that is known; what leaves goes on doing so.
     pub fn retried(&self, p: &Params, v: &View, heading: f32, jumps: u8) -> Self {
-        let again = Self::again(p, v, heading, jumps, false);
+        let again = Self::again(p, v, heading, jumps, self.leaves);
+        if self.leaves {
+            return again;
+        }
         let known = !matches!(self.phase, Phase::Climb | Phase::Search);
         let over = self.origin.z + self.top - HIGH - v.position.z;
         Self {
@@ -236,6 +247,11 @@ impl Approach {
     /// It is on its way up.
     pub fn climbs(&self) -> bool {
         self.phase == Phase::Climb
+    }
+
+    /// It only climbs.
+    pub fn leaves(&self) -> bool {
+        self.leaves
     }
 
     /// It has climbed off the pipe.

@@ -35,6 +35,7 @@ mod probe;
 mod reason;
 mod releasing;
 mod remote;
+mod rise;
 mod slip;
 mod spot;
 #[cfg(test)]

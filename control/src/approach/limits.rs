@@ -21,6 +21,8 @@ pub const WIDTH: (f32, f32) = (0.7, 1.35);
 /// Heights over the crown, m: to which it climbs for another try, and of the crossings.
 pub const HIGH: f32 = 0.6;
 pub const LOW: f32 = 0.4;
+/// Climb from where the range does not fit the motion, m: of a scale of 1.6 it is still [`HIGH`].
+pub const CLEAR: f32 = 1.0;
 /// Climb where no crown is known, m.
 pub const RISE: f32 = 0.4;
 /// Fastest climb between tries, and fastest way down, m/s.

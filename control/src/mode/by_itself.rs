@@ -22,6 +22,8 @@ pub struct ByItself {
     pub taken: bool,
     /// Tries begun.
     pub tries: u8,
+    /// One has ended because the range did not fit the motion.
+    pub misfit: bool,
     /// Heading at the first one, which is the pipe's, by the vehicle's own attitude, rad.
     pub heading: f32,
     /// Where the crown was taken to be on the last way down, in the estimate's axes, m, and how often these had jumped.

@@ -11,6 +11,7 @@ use super::lean::Lean;
 use super::power_up_grip::PowerUpGripCheck;
 use super::probe::Probe;
 use super::remote::Remote;
+use super::rise::Rise;
 use super::{ClampCommand, Inputs, Reason, remote};
 use crate::arming::{ArmingInhibit, ArmingInhibits, Checks, Gesture, GestureWatch};
 use crate::grip_memory::GripMemory;
@@ -80,6 +81,8 @@ pub struct Context {
     pub crown: Crown,
     /// Acceleration along world down, m/s².
     pub sinking: f32,
+    /// The same summed, beside the estimate's speed.
+    pub rise: Rise,
     pub collective: Collective,
     pub probe: Probe,
     /// How often the arms have tightened since they closed.
@@ -116,6 +119,7 @@ impl Context {
             fall: Fall::default(),
             crown: Crown::default(),
             sinking: 0.0,
+            rise: Rise::default(),
             collective: Collective::default(),
             probe: Probe::default(),
             tightened: 0,

@@ -40,6 +40,11 @@ impl ModeLogic {
         &self.state
     }
 
+    #[cfg(test)]
+    pub(super) fn forget_rise(&mut self) {
+        self.context.rise = super::rise::Rise::default();
+    }
+
     /// One step, `dt` s after the last.
     pub fn step(&mut self, inputs: &Inputs, dt: f32) -> Outputs {
         let dt = clamp(dt, 0.0, STEP_MAX);
@@ -50,6 +55,9 @@ impl ModeLogic {
         let refused = remote.and_then(|request| self.weigh(request.order, &inputs, dt));
         let inputs = &self.context.remote.apply(inputs);
         self.context.observe(inputs, rotors_locked(before), dt);
+        let sinking = self.context.sinking;
+        self.context.rise.step(before, sinking, inputs, dt);
+        let inputs = &self.context.rise.apply(inputs);
         let table = Table::new(before, self.state.behaviour().grip_memory(), inputs);
         self.context.bench.step(inputs.bench, &table, dt);
         if let (Some(request), None) = (remote, refused) {

@@ -20,6 +20,8 @@ pub struct Approach {
     wanted: Setpoint,
     /// Why no other try follows.
     pub given_up: Option<Reason>,
+    /// The same, once it has climbed.
+    gives_up: Option<Reason>,
     /// The try ends at a touch.
     astray: bool,
 }
@@ -81,6 +83,7 @@ impl Approach {
             way,
             wanted: Setpoint::Stop,
             given_up: None,
+            gives_up: None,
             astray: false,
         };
         approach.step(&estimate, step);
@@ -114,11 +117,17 @@ impl Approach {
 
     fn step(&mut self, estimate: &Estimate, step: &mut Step<'_>) {
         let seen = view(&self.law, estimate, step);
+        if step.context.rise.misfit() && !self.way.leaves() {
+            self.misfit(&seen, estimate, step);
+        }
         let result = if self.way.jumped(estimate.jumps) {
             Err(Doubt::NotCentred)
         } else {
             self.way.step(&seen, step.dt)
         };
+        if self.way.has_left() {
+            self.given_up = self.gives_up;
+        }
         let crown = self.way.crown().map(|crown| (crown, estimate.jumps));
         step.context.by_itself.crown = crown.or(step.context.by_itself.crown);
         let wish = result.unwrap_or_else(|doubt| {
@@ -126,6 +135,16 @@ impl Approach {
             Wish::default()
         });
         self.wanted = self.law.step(estimate, &felt(step), &wish, true, step.dt);
+    }
+
+    /// Another try, once; then up and away.
+    fn misfit(&mut self, view: &View, e: &Estimate, step: &mut Step<'_>) {
+        let before = core::mem::replace(&mut step.context.by_itself.misfit, true);
+        self.again(Reason::RangeMisfit, view, e, step);
+        if before && !self.astray {
+            (self.given_up, self.gives_up) = (None, Some(Reason::RangeMisfit));
+            self.way = Law::cleared(&step.context.params, view, heading(step, e), e.jumps);
+        }
     }
 
     /// Another try, or none.

@@ -76,6 +76,8 @@ reasons! {
     TouchedEarly = "touched before the crown: climbing",
     /// Perching by itself: the range is missing.
     RangeStale = "range stale",
+    /// Perching by itself: the height by the range goes another way than the vehicle.
+    RangeMisfit = "range does not fit the motion",
     /// Perching by itself: another computer no longer says where the pipe is.
     TargetStale = "pipe target stale",
     /// Perching by itself: where the pipe is said to be it cannot be.

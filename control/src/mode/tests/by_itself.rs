@@ -24,6 +24,10 @@ struct World {
     pipe: bool,
     /// There is a range.
     ranged: bool,
+    /// Speed that the estimate has too much, down, m/s, where what is felt goes with it; `None` where the two have nothing to
+    /// do with one another, and neither counts. How often its origin has jumped.
+    bent: Option<f32>,
+    jumps: u8,
 }
 
 impl World {
@@ -35,6 +39,8 @@ impl World {
             count: 0,
             pipe: true,
             ranged: true,
+            bent: None,
+            jumps: 0,
         };
         w.see();
         w.r.sticks().hold_switch = true;
@@ -79,6 +85,9 @@ impl World {
     }
 
     fn see(&mut self) {
+        if self.bent.is_none() {
+            self.r.logic.forget_rise();
+        }
         let y = self.at.y - RIGHT;
         let on = self.pipe && y.abs() < 0.15;
         let flank = 0.15 - crate::math::sqrt((0.0225 - y * y).max(0.0));
@@ -91,6 +100,8 @@ impl World {
         };
         self.r.inputs.position = Some(Estimate {
             position: self.at,
+            velocity: Vec3::new(0.0, 0.0, self.bent.map_or(0.0, |bent| self.r.falling + bent)),
+            jumps: self.jumps,
             age: 0.02,
             foot: if self.ranged { foot } else { Foot::default() },
             ..Estimate::default()
@@ -485,6 +496,51 @@ fn without_a_pipe_or_a_range_it_is_handed_back_with_a_reason() {
         r.run(0.02);
         assert_eq!((r.out.mode, r.out.reason), (Mode::Hold, Some(why)));
     }
+}
+
+#[test]
+fn a_range_that_does_not_fit_the_motion_ends_a_try_and_the_second_time_the_approach() {
+    let mut w = World::searching();
+    w.run(0.5);
+    w.r.falling = 0.0;
+    for last in [false, true] {
+        w.bent = Some(0.0);
+        w.expect(5.0, Mode::Approach);
+        let before = w.at.z;
+        w.bent = Some(-0.4);
+        w.expect(0.15, Mode::Approach);
+        assert_eq!(w.r.out.reason, Some(Reason::RangeMisfit));
+        w.bent = Some(0.0);
+        let mut highest = before;
+        for _ in 0..500 {
+            w.step();
+            highest = highest.min(w.at.z);
+        }
+        // By then over the crown, or from where it was.
+        let wanted = if last { before - 0.9 } else { -CROWN - 0.5 };
+        assert!(highest < wanted, "{last}: {before} {highest}");
+    }
+    assert_eq!(
+        (w.r.out.mode, w.r.out.reason),
+        (Mode::Hold, Some(Reason::RangeMisfit))
+    );
+}
+
+/// It used to search for the pipe that it was leaving.
+#[test]
+fn an_origin_that_jumps_on_the_way_off_leaves_it_climbing() {
+    let mut w = World::perched();
+    w.r.sticks().perch_switch = false;
+    w.run(2.0);
+    w.r.grip(false, true, ArmState::Free, 0.0);
+    w.expect(0.4, Mode::Escaping);
+    w.r.carried = false;
+    w.pipe = false;
+    w.expect(1.0, Mode::Approach);
+    let height = w.at.z;
+    w.jumps = 1;
+    w.expect(4.0, Mode::Hold);
+    assert!(w.at.z < height - 0.4, "{:?}", w.at);
 }
 
 #[test]
