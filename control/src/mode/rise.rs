@@ -19,7 +19,7 @@ const SPEED_MAX: f32 = 20.0;
 /// Age of the newest flow beyond which, with no range in reach, nothing gives the height, s.
 const BLIND_AGE: f32 = 0.1;
 /// Difference of the two speeds from which on the felt one counts, m/s: where nothing gives the height, where a range does, and
-/// where that has just begun. Sound modules come to 0.22 on the way to the pipe, and to 0.37 off it.
+/// where that has just begun. On the first way to the pipe sound modules come to 0.22; on a later one, one came beyond 0.25.
 const BENT: f32 = 0.06;
 const BROKEN: f32 = 0.25;
 const UNLEARNT: f32 = 0.45;
