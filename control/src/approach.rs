@@ -569,12 +569,17 @@ impl Approach {
         }
         let mut way = Self::way(held, self.spot(LOW), CORRECT_SPEED, DESCENT);
         let waits = off.abs() > NEAR_OFF;
-        let goal = if blind && !self.given { SEEING } else { GATE };
+        // Flow sees again from a little higher. A pose comes back or not: what drifts must not do so beside the pipe.
+        let (goal, back) = match (blind, self.given) {
+            (false, _) => (GATE, BACK_SPEED),
+            (true, false) => (SEEING, BACK_SPEED),
+            (true, true) => (LOW, CLIMB_SPEED),
+        };
         let braked = HEIGHT_GAIN * (self.clearance(held).min(stops) - goal);
-        way.z = if waits && range < NEAR {
+        way.z = if waits && range < NEAR && !blind {
             0.0
         } else {
-            clamp(braked, -BACK_SPEED, DESCENT)
+            clamp(braked, -back, DESCENT)
         };
         Ok(way)
     }

@@ -361,6 +361,28 @@ fn what_flow_does_not_see_is_not_committed_to_but_waited_for_higher_up() {
     assert!(phase == Phase::Descend && down.abs() < 0.01, "{down} {phase:?}");
 }
 
+/// A pose that is left out comes back elsewhere, or not at all: at the gate a gust would carry it onto the pipe.
+#[test]
+fn without_a_pose_it_climbs_from_the_pipe() {
+    for (aside, age, climbs) in [
+        (0.0, BLIND - 0.1, false),
+        (0.0, BLIND + 0.1, true),
+        (2.0 * NEAR_OFF, BLIND + 0.1, true),
+    ] {
+        let (mut law, mut view) = descending(1.5 * GATE, 0.0, age);
+        view.position.y += aside;
+        let target = PipeTarget {
+            crown: Vec3::new(0.0, 0.0, WORLD.crown),
+            ..PipeTarget::default()
+        };
+        (law, view.target) = (law.to(&target), Some(target));
+        law.phase = Phase::Descend;
+        let wish = (0..10).map(|_| law.step(&view, DT)).last().unwrap().unwrap();
+        let up = -wish.velocity.z;
+        assert_eq!(up > 0.3, climbs, "{aside} {age}: {up}");
+    }
+}
+
 #[test]
 fn a_search_about_where_the_pipe_was_finds_it_from_where_an_escape_ends() {
     let world = World {
