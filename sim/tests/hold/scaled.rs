@@ -100,7 +100,8 @@ fn a_sound_range_is_never_called_scaled() {
         s.sensors.position = PositionSensor::Flow;
         s
     };
-    let kinds: [(&str, fn(u64) -> Scenario); 4] = [
+    type Kind = (&'static str, fn(u64) -> Scenario);
+    let kinds: [Kind; 4] = [
         ("held", |seed| by_flow(seed, 60.0)),
         ("climbing", climbs),
         ("by itself", |seed| mission(seed, PositionSensor::Flow, false)),
