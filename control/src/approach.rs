@@ -212,7 +212,7 @@ impl Approach {
         self.committed().then_some(crown)
     }
 
-    /// Up and away from where the range is not to be believed, to be left there.
+    /// Up and away from where the range misleads, to be left there.
     pub fn cleared(p: &Params, v: &View, heading: f32, jumps: u8) -> Self {
         Self {
             up: -CLEAR,

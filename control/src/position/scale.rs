@@ -25,7 +25,7 @@ const SHOCK: f32 = 4.0;
 const GAP: f32 = 0.5;
 /// Nearest range that counts, m: nearer the vehicle may stand.
 const NEAREST: f32 = 0.1;
-/// Departure that is a step of what is below, m, where nobody else looks for it.
+/// Departure that is a step of what is below, m, where no other law looks for it.
 const STEP: f32 = 0.25;
 /// Time over which it is judged, s, and the ranges before.
 const WINDOW: f32 = 10.0;
@@ -125,7 +125,7 @@ impl RangeScale {
         let then = |[height, rate, _]: Run| height - rate * lag;
         let seen = height - then(self.seen);
         let felt = then(self.felt);
-        // While it is left out nobody else looks for steps.
+        // While it is left out no other law looks for steps.
         let stepped = self.wrong && (seen - felt).abs() > STEP;
         if !self.anchored || stepped || matches!(below, Below::Known | Below::New) {
             if stepped || below == Below::New {
