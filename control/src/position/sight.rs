@@ -156,6 +156,8 @@ pub struct Sight {
     now_us: u64,
     /// Whether it is as long as it says.
     pub(super) scale: RangeScale,
+    /// Surfaces were met by a range that was found to be scaled.
+    mistaken: bool,
     /// Where the first range fell of a surface that was met with nothing before; it may be what the vehicle has risen from.
     /// `None` once that has shown to be wide, or was left for one that is deeper by what the vehicle perches on is thick.
     unproven: Option<Vec3>,
@@ -251,6 +253,7 @@ impl Sight {
 
     /// Watches a range of `distance` m, measured with the attitude `q`, that is left out as scaled.
     pub fn watch_scaled(&mut self, q: Quat, distance: f32) {
+        self.mistaken = true;
         let cos = q.down_in_body().z;
         if cos >= COS_MIN {
             self.look_at_scale(distance * cos, q, Below::Plain);
@@ -291,7 +294,13 @@ impl Sight {
             return None;
         }
         let surface = then.position.z + distance * cos;
-        if posed {
+        // What a scaled range has met is nowhere: over a ground that it had put too deep the true one would seem raised.
+        let anew = core::mem::take(&mut self.mistaken);
+        if anew {
+            // Nor has flow with that depth said anything.
+            (self.agreements, self.unsure_us) = (Default::default(), then.at_us);
+        }
+        if posed || anew {
             (self.level, self.base, self.other) = (surface, surface, surface);
             self.band = None;
             return None;

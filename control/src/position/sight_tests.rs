@@ -683,3 +683,26 @@ fn a_scaled_range_is_named_left_out_and_taken_again() {
         assert!(v < 0.05, "{v}");
     }
 }
+
+/// Else the true ground seems raised over one that it has put 0.6 m deeper, and the flow reads too fast.
+#[test]
+fn what_a_scaled_range_has_met_is_forgotten_with_it() {
+    let mut r = Rig::new();
+    r.run(10.0);
+    r.range = |d| 1.6 * d;
+    r.run(1.0);
+    while r.fault().is_none() {
+        assert!(r.now < 60_000_000);
+        r.run(0.5);
+    }
+    r.range = |d| d;
+    while r.fault().is_some() {
+        assert!(r.now < 80_000_000 && r.estimator.track.is_some());
+        r.run(0.1);
+    }
+    r.run(3.0);
+    assert_eq!(r.fault(), None);
+    assert!(!r.estimator.sight.raised());
+    let [v, _] = r.errors();
+    assert!(v < 0.05, "{v}");
+}
