@@ -30,7 +30,7 @@ const STEP: f32 = 0.25;
 /// Time over which it is judged, s, and the ranges before.
 const WINDOW: f32 = 10.0;
 const RANGES_MIN: f32 = 25.0;
-/// Square of the deviations by which the scale must differ from one: 3.5. Sound ranges came to 3.1 in 250 flights.
+/// Square of the deviations by which the scale must differ from one: 3.5.
 const DIFFERS: f32 = 12.0;
 /// Scales that are tolerated, and the largest that is one: what changes more is the ground.
 const BORNE: (f32, f32) = (0.8, 1.25);
