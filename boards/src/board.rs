@@ -8,6 +8,7 @@ mod chosen;
 
 #[cfg(not(family = "f4"))]
 pub(crate) use chosen::DATA_CACHE;
+pub(crate) use chosen::FIRST_LEVELS;
 pub use chosen::{
     AnalogPort, ArmsPort, BarometerPort, ImuPort, LightsPort, MotorsPort, NAME, ServosPort, StoragePort,
     WIRING, WatchdogPort, start_levels, stop_motors, take,

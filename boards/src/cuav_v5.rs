@@ -42,9 +42,9 @@ use sophie_drivers::ms5611::{self, Ms5611};
 use crate::Board;
 use crate::cortex_m::{enable_caches, levels_on};
 use crate::stm32::{
-    AnalogInputs, ArmBus, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, PlainChip, ReadyLine,
-    ReadyStamp, Selected, ServoPairs, ThisChip, Tone, UsbPort, Wiring, console_lines, drive, ground_line,
-    hold, i2c_bus, load_parameters, look, mavlink_lines, pad, receiver_line, spi_config,
+    AnalogInputs, ArmBus, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, PlainChip, PortLevels,
+    ReadyLine, ReadyStamp, Selected, ServoPairs, ThisChip, Tone, UsbPort, Wiring, console_lines, drive,
+    ground_line, hold, i2c_bus, load_parameters, look, mavlink_lines, pad, receiver_line, spi_config,
 };
 
 /// Name in the log.
@@ -245,7 +245,7 @@ assign_resources! {
 
 /// Starts the clocks, loads the parameters and builds every port as they say. Called once.
 pub async fn take() -> Board {
-    let p = crate::stm32::start(clocks(), pac::TIM5, first_levels);
+    let p = crate::stm32::start(clocks(), pac::TIM5);
     enable_caches(DATA_CACHE);
     let parts = split_resources!(p);
     rails(parts.rails).await;
@@ -354,25 +354,27 @@ fn motors(p: MotorParts, params: &Params) -> MotorsPort {
     EscTimer::new(p.timer, pins, p.dma, Irqs, EscProtocol::from_params(params))
 }
 
+const MOTORS_LOW: [PortLevels; 2] = [
+    PortLevels::new(pac::GPIOE, &[9, 11, 14], &[]),
+    PortLevels::new(pac::GPIOA, &[10], &[]),
+];
+
 /// The motors' pins low, whatever drives them: the last resort of a fault handler.
 pub fn stop_motors() {
-    drive(pac::GPIOE, &[9, 11, 14], Level::Low);
-    drive(pac::GPIOA, &[10], Level::Low);
+    drive(&MOTORS_LOW);
 }
 
 /// What the outputs are until their ports take them: motors, servos and sounder low, no chip selected, every supply on,
 /// as they were before a restart.
-fn first_levels() {
-    stop_motors();
-    drive(pac::GPIOD, &[13, 14], Level::Low);
-    drive(pac::GPIOH, &[6, 9], Level::Low);
-    drive(pac::GPIOE, &[5], Level::Low);
-    drive(pac::GPIOF, &[2, 3, 4, 5, 10], Level::High);
-    drive(pac::GPIOG, &[10], Level::High);
-    drive(pac::GPIOE, &[3], Level::High);
-    drive(pac::GPIOG, &[4], Level::Low);
-    drive(pac::GPIOF, &[12], Level::Low);
-}
+pub const FIRST_LEVELS: [PortLevels; 7] = [
+    MOTORS_LOW[0],
+    MOTORS_LOW[1],
+    PortLevels::new(pac::GPIOD, &[13, 14], &[]),
+    PortLevels::new(pac::GPIOH, &[6, 9], &[]),
+    PortLevels::new(pac::GPIOE, &[5], &[3]),
+    PortLevels::new(pac::GPIOF, &[12], &[2, 3, 4, 5, 10]),
+    PortLevels::new(pac::GPIOG, &[4], &[10]),
+];
 
 fn servos(p: ServoParts, params: &Params) -> ServosPort {
     ServoPairs::new(

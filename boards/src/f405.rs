@@ -41,9 +41,9 @@ use sophie_drivers::spi_imu::SpiImu;
 use crate::Board;
 use crate::cortex_m::levels_on;
 use crate::stm32::{
-    AnalogInputs, ArmBus, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, ParamFlash, ReadyLine,
-    ReadyStamp, Selected, ServoPairs, ThisChip, UsbPort, Wiring, accelerator, console_lines, drive,
-    ground_line, i2c_bus, load_parameters, look, mavlink_lines, pad, receiver_line, spi_config,
+    AnalogInputs, ArmBus, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, ParamFlash, PortLevels,
+    ReadyLine, ReadyStamp, Selected, ServoPairs, ThisChip, UsbPort, Wiring, accelerator, console_lines,
+    drive, ground_line, i2c_bus, load_parameters, look, mavlink_lines, pad, receiver_line, spi_config,
 };
 
 /// Name in the log.
@@ -212,7 +212,7 @@ assign_resources! {
 
 /// Starts the clocks, loads the parameters and builds every port as they say. Called once.
 pub async fn take() -> Board {
-    let p = crate::stm32::start(clocks(), pac::TIM5, first_levels);
+    let p = crate::stm32::start(clocks(), pac::TIM5);
     accelerator::enable();
     let parts = split_resources!(p);
     let mut storage = storage(parts.storage);
@@ -304,18 +304,19 @@ fn motors(p: MotorParts, params: &Params) -> MotorsPort {
     EscTimer::new(p.timer, pins, p.dma, Irqs, EscProtocol::from_params(params))
 }
 
+const MOTORS_LOW: [PortLevels; 1] = [PortLevels::new(pac::GPIOC, &[6, 7, 8, 9], &[])];
+
 /// The motors' pins low, whatever drives them: the last resort of a fault handler.
 pub fn stop_motors() {
-    drive(pac::GPIOC, &[6, 7, 8, 9], Level::Low);
+    drive(&MOTORS_LOW);
 }
 
 /// What the outputs are until their ports take them: motors, servos and buzzer low, the inertial sensor not selected.
-fn first_levels() {
-    stop_motors();
-    drive(pac::GPIOB, &[6, 7, 14, 15], Level::Low);
-    drive(pac::GPIOA, &[8], Level::Low);
-    drive(pac::GPIOA, &[4], Level::High);
-}
+pub const FIRST_LEVELS: [PortLevels; 3] = [
+    MOTORS_LOW[0],
+    PortLevels::new(pac::GPIOB, &[6, 7, 14, 15], &[]),
+    PortLevels::new(pac::GPIOA, &[8], &[4]),
+];
 
 fn servos(p: ServoParts, params: &Params) -> ServosPort {
     ServoPairs::new(

@@ -41,9 +41,9 @@ use static_cell::StaticCell;
 use crate::Board;
 use crate::cortex_m::{enable_caches, levels_on};
 use crate::stm32::{
-    AnalogInputs, ArmBus, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, ParamFlash, ReadyLine,
-    ReadyStamp, Selected, ServoTimer, ThisChip, UsbPort, Wiring, console_lines, drive, ground_line, i2c_bus,
-    load_parameters, look, mavlink_lines, pad, receiver_line, spi_config,
+    AnalogInputs, ArmBus, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, ParamFlash, PortLevels,
+    ReadyLine, ReadyStamp, Selected, ServoTimer, ThisChip, UsbPort, Wiring, console_lines, drive,
+    ground_line, i2c_bus, load_parameters, look, mavlink_lines, pad, receiver_line, spi_config,
 };
 
 /// Name in the log.
@@ -218,7 +218,7 @@ assign_resources! {
 
 /// Starts the clocks, loads the parameters and builds every port as they say. Called once.
 pub async fn take() -> Board {
-    let p = crate::stm32::start(clocks(), pac::TIM2, first_levels);
+    let p = crate::stm32::start(clocks(), pac::TIM2);
     enable_caches(DATA_CACHE);
     let parts = split_resources!(p);
     let mut storage = storage(parts.storage);
@@ -332,17 +332,19 @@ fn motors(p: MotorParts, params: &Params) -> MotorsPort {
     EscTimer::new(p.timer, pins, p.dma, Irqs, EscProtocol::from_params(params))
 }
 
+const MOTORS_LOW: [PortLevels; 1] = [PortLevels::new(pac::GPIOD, &[12, 13, 14, 15], &[])];
+
 /// The motors' pins low, whatever drives them: the last resort of a fault handler.
 pub fn stop_motors() {
-    drive(pac::GPIOD, &[12, 13, 14, 15], Level::Low);
+    drive(&MOTORS_LOW);
 }
 
 /// What the outputs are until their ports take them: motors, servos and buzzer low, the inertial sensor not selected.
-fn first_levels() {
-    stop_motors();
-    drive(pac::GPIOA, &[0, 1, 2, 3, 15], Level::Low);
-    drive(pac::GPIOC, &[15], Level::High);
-}
+pub const FIRST_LEVELS: [PortLevels; 3] = [
+    MOTORS_LOW[0],
+    PortLevels::new(pac::GPIOA, &[0, 1, 2, 3, 15], &[]),
+    PortLevels::new(pac::GPIOC, &[], &[15]),
+];
 
 fn servos(p: ServoParts, params: &Params) -> ServosPort {
     ServoTimer::new(p.timer, (p.servo_1, p.servo_2, p.servo_3, p.servo_4), params)

@@ -21,7 +21,7 @@ const OF_THE_COPY: &str = "-copy";
 const ORIGINAL: &str = "matek-h743";
 
 /// In the board file: old and new.
-const CHANGES: [(&str, &str); 9] = [
+const CHANGES: [(&str, &str); 10] = [
     (
         "pub const NAME: &str = \"matek-h743\"",
         "pub const NAME: &str = \"own-h743\"",
@@ -49,8 +49,13 @@ const CHANGES: [(&str, &str); 9] = [
          EscTimer::second(p.second, p.more_dma, Irqs, protocol).motor(1, p.motor_2).motor(2, p.motor_3),\n    )\n",
     ),
     (
-        "    drive(pac::GPIOD, &[12, 13, 14, 15], Level::Low);\n",
-        "    drive(pac::GPIOD, &[12, 15], Level::Low);\n    drive(pac::GPIOC, &[8, 9], Level::Low);\n",
+        "const MOTORS_LOW: [PortLevels; 1] = [PortLevels::new(pac::GPIOD, &[12, 13, 14, 15], &[])];\n",
+        "const MOTORS_LOW: [PortLevels; 2] = [\n    PortLevels::new(pac::GPIOD, &[12, 15], &[]),\n    \
+         PortLevels::new(pac::GPIOC, &[8, 9], &[]),\n];\n",
+    ),
+    (
+        "pub const FIRST_LEVELS: [PortLevels; 3] = [\n    MOTORS_LOW[0],\n",
+        "pub const FIRST_LEVELS: [PortLevels; 4] = [\n    MOTORS_LOW[0],\n    MOTORS_LOW[1],\n",
     ),
     (
         "    motors: MotorParts {",

@@ -31,10 +31,9 @@ pub fn micros() -> u64 {
     }
 }
 
-/// Sets the outputs' first levels, starts the watchdog, then the clocks of `config`; `timer` is embassy-time's. If the
+/// Starts the watchdog, then the clocks of `config`; `timer` is embassy-time's. If the
 /// crystal or a PLL fails, the watchdog resets, and the next start reports which. Called once.
-pub fn start(config: Config, timer: TimGp32, first_levels: fn()) -> Peripherals {
-    first_levels();
+pub fn start(config: Config, timer: TimGp32) -> Peripherals {
     watchdog::start();
     if let Some(crystal) = config.rcc.hse {
         start_crystal(crystal.freq.0 / 1_000_000);

@@ -59,7 +59,7 @@ pub use i2c_bus::{ArmBus, BusParts, i2c_config, set_fast_mode};
 pub use lights::{Lamp, Lights};
 pub use loader::{enter_loader_if_asked, leave_for_loader};
 pub use pads::{Pad, Pupdr, Taken, Wiring, pad};
-pub use rails::{drive, hold};
+pub use rails::{PortLevels, drive, hold};
 pub use reset::take_reset_cause;
 pub use serial::{
     BufferedInput, BufferedOutput, GroundLine, MAVLINK_BYTES_PER_SECOND, ReceiverLine, TelemetryLine,
