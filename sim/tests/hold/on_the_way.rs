@@ -209,6 +209,23 @@ fn a_range_that_becomes_too_long_is_not_flown_by() {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
+/// Touched across the pipe, an arm pressed by 1,581 and 1,761 N/m², or were followed for six seconds, while the vehicle turned
+/// with the heading of the poses.
+#[test]
+fn a_heading_that_turns_is_not_flown_by() {
+    let cases = [
+        (1, Part::Touch, 25.329_789_777),
+        (3, Part::Touch, 26.794_111_526),
+        (7, Part::Approach, 28.317_039_866),
+    ];
+    let turned = Fault::Pose(PoseFault::Turned);
+    let wrong: Vec<_> = cases
+        .into_iter()
+        .filter_map(|(seed, part, at)| flown(seed, turned, part, at))
+        .collect();
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
 /// Every other one too long.
 #[test]
 #[ignore = "forty missions: .ci/campaign flies them"]
