@@ -298,6 +298,23 @@ fn axes_that_turn_with_the_way_are_taken_once_it_agrees() {
         e.jumps,
         e.turn
     );
+    // They are what the next turn is told from.
+    r.spoil = turned;
+    assert!(until(&mut r, 0.2, |r| fault(r) == Some(PoseFault::Jumps)).is_some());
+}
+
+#[test]
+fn axes_that_have_turned_in_a_silence_are_taken_at_once() {
+    let mut r = Rig::new();
+    (r.spoil, r.turn) = (noisy, 0.7);
+    r.run(12.0);
+    r.silent = true;
+    r.run(1.1);
+    (r.silent, r.turn) = (false, 1.5);
+    r.run(0.1);
+    let e = r.out.unwrap();
+    assert_eq!((fault(&r), e.jumps), (None, 1));
+    assert!((e.turn - 1.5).abs() < 0.05, "{}", e.turn);
 }
 
 /// A pipe does not let it move: only the heading can say that it is sound again.
