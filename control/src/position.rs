@@ -36,7 +36,7 @@ use self::past::{Moment, Past};
 pub use self::sight::{FLOW_HEIGHT, SightFault, SightLimit};
 use self::sight::{Sight, beam};
 pub use self::trust::PoseFault;
-use self::trust::Trust;
+use self::trust::{TURN_STEP, Trust};
 use crate::air_pressure::AirPressure;
 use crate::ground::{Flow, GroundView};
 use crate::math::{self, GRAVITY};
@@ -461,8 +461,10 @@ impl Track {
         let close = |((axis, y), r): ((&Axis, f32), f32)| axis.accepts(y, r);
         let pairs = self.axes.iter().zip(innovation.to_array());
         let accepted = pairs.zip(variance.to_array()).all(close);
+        let off = math::wrap_pi(fix.heading - yaw - self.turn);
         let unknown = self.left_out || seconds(self.pose_us, fix.at_us) > UNKNOWN_AGE;
-        if !self.posed || fix.resets != self.resets || (unknown && !accepted) {
+        let elsewhere = !accepted || off.abs() > TURN_STEP;
+        if !self.posed || fix.resets != self.resets || (unknown && elsewhere) {
             past.clear();
             self.jump(yaw, fix);
         } else if accepted {
@@ -475,7 +477,6 @@ impl Track {
             }
             past.change(fix.at_us, &changes);
             let gain = math::clamp(1.0 / (1.0 + self.fixes as f32), TURN_GAIN, 1.0);
-            let off = math::wrap_pi(fix.heading - yaw - self.turn);
             self.turn = math::wrap_pi(self.turn + gain * off);
             self.count();
         } else {

@@ -1,11 +1,12 @@
-//! Whether poses can be trusted: they change, do not step, and go the way that the inertial sensor feels.
+//! Whether poses can be trusted: they change, do not step, turn as the vehicle does and go the way that the inertial sensor
+//! feels.
 //!
 //! The two ways are compared in a band of s³ω/(s+ω)⁴, m, to which the specific force comes as sω/(s+ω)⁴: slower, an error
 //! of the attitude passes for a way; faster, the pose's noise. docs/hold.md has limits and times.
 
 use super::past::Moment;
-use super::{Fix, Inertial, about_down, seconds};
-use crate::math::GRAVITY;
+use super::{Fix, Inertial, TAINTED_AGE, TURN_GAIN, UNKNOWN_AGE, about_down, seconds};
+use crate::math::{self, GRAVITY};
 use crate::vector::Vec3;
 
 /// Corner of the band, rad/s.
@@ -22,6 +23,9 @@ const EQUAL: f32 = 1e-6;
 const STEP: f32 = 0.15;
 /// Beyond the noise of three poses, of which it is made: four deviations, squared, for each pose's variance.
 const NOISE: f32 = 16.0 * 6.0;
+/// Change of the heading less the vehicle's own that is a step, rad: five deviations of 3°, or a turn at 2 rad/s with a time
+/// that is 0.12 s wrong.
+pub const TURN_STEP: f32 = 0.25;
 /// Weights of a refused and of a taken pose, and their sum that is a source that jumps: three refused in a row, or every other.
 const REFUSED: u32 = 2;
 const REFUSED_MAX: u32 = 6;
@@ -92,6 +96,14 @@ struct Departure {
 }
 
 impl Departure {
+    /// Wrong until the ways have agreed.
+    fn doubted() -> Self {
+        Self {
+            wrong: true,
+            ..Self::default()
+        }
+    }
+
     /// Takes the way that was `seen` with `variance`, m², and that was `felt`, m, `dt` s after the last.
     fn step(&mut self, seen: Vec3, felt: Vec3, variance: f32, dt: f32) {
         let keep = WINDOW / (WINDOW + dt);
@@ -100,10 +112,7 @@ impl Departure {
         let floor = WINDOW * (FLOOR * FLOOR + variance);
         if !self.wrong {
             if self.off > BORNE * self.way + floor {
-                *self = Self {
-                    wrong: true,
-                    ..Self::default()
-                };
+                *self = Self::doubted();
             }
         } else if self.off > BORNE * self.way + floor {
             // What follows is judged alone.
@@ -140,6 +149,12 @@ pub struct Trust {
     before: Option<Before>,
     level: Departure,
     down: Departure,
+    /// Heading less the vehicle's own, rad; `None` before the first pose.
+    turn: Option<f32>,
+    /// Weight of the poses that are off it, and since when they are doubted, µs: until the heading is back, or the level way
+    /// agrees with the new one.
+    turns: u32,
+    turned_us: Option<u64>,
     same: u32,
     /// The pose before was a step away from the one before it.
     stepped: bool,
@@ -224,23 +239,57 @@ impl Trust {
             (self.same, self.stepped) = (0, false);
             sound &= self.fault.is_none();
         }
+        if let Some(then) = then.filter(|_| self.same == 0) {
+            // Of a vehicle that is carried, after a silence and in new axes it may be any.
+            let anew = !flies || announced || self.before.is_none_or(|b| seconds(b.at_us, at) > UNKNOWN_AGE);
+            self.face(math::wrap_pi(fix.heading - then.yaw()), at, anew);
+        }
         self.before = Some(Before {
             at_us: at,
             position: fix.position,
             heading: fix.heading,
             speed,
         });
+        let turned = self
+            .turned_us
+            .is_some_and(|since| at.saturating_sub(since) < TAINTED_AGE);
         let found = if self.same >= FROZEN_FIXES && flies {
             Some(PoseFault::Frozen)
-        } else if self.level.wrong || self.down.wrong {
+        } else if self.down.wrong || (self.level.wrong && !turned) {
             Some(PoseFault::Disagrees)
         } else {
-            None
+            // What was estimated before it turned is sound, and coasted on.
+            turned.then_some(PoseFault::Jumps)
         };
         if found.is_some() {
             self.fault = found;
         }
         self.settle(at, sound && found.is_none());
+    }
+
+    /// Looks at the heading less the vehicle's own, `turn` rad, at `at` µs; `anew` where it may be any.
+    fn face(&mut self, turn: f32, at: u64, anew: bool) {
+        let known = self.turn.unwrap_or(turn);
+        let off = math::wrap_pi(turn - known);
+        let same = off.abs() < TURN_STEP;
+        if self.turned_us.is_some() {
+            if same || !self.level.wrong {
+                self.turned_us = None;
+                self.level.wrong = false;
+                self.turn = Some(turn);
+            }
+        } else if self.level.wrong || anew || same {
+            let gain = if same { TURN_GAIN } else { 1.0 };
+            self.turn = Some(math::wrap_pi(known + gain * off));
+            self.turns = self.turns.saturating_sub(1);
+        } else {
+            self.turns += REFUSED;
+            if self.turns >= REFUSED_MAX {
+                self.turns = 0;
+                self.turned_us = Some(at);
+                self.level = Departure::doubted();
+            }
+        }
     }
 
     /// The fault ends where all was `sound` for long enough.

@@ -253,6 +253,104 @@ fn on_the_ground_equal_poses_are_no_fault_and_in_the_air_at_once() {
     assert!((400..410).any(|i| step(i, 17.0) == Some(Fault::Pose(PoseFault::Frozen))));
 }
 
+fn turned(fix: Fix) -> Fix {
+    Fix {
+        heading: fix.heading + 0.8,
+        ..noisy(fix)
+    }
+}
+
+#[test]
+fn a_heading_that_turns_alone_turns_nothing_and_what_was_known_is_coasted_on() {
+    let mut r = Rig::new();
+    (r.spoil, r.turn) = (noisy, 0.7);
+    r.run(12.0);
+    r.spoil = turned;
+    let named = until(&mut r, 1.0, |r| fault(r) == Some(PoseFault::Jumps)).expect("named");
+    r.run(1.0 - named);
+    let e = r.out.unwrap();
+    let [p, v] = r.errors();
+    assert!(named < 0.15 && (0.9..1.1).contains(&e.age), "{named} {}", e.age);
+    assert!(
+        (e.turn - 0.7).abs() < 0.06 && p < 0.05 && v < 0.1,
+        "{} {p} {v}",
+        e.turn
+    );
+    // The way does not agree with that heading: no longer a jump.
+    assert!(until(&mut r, 0.5, |r| fault(r) == Some(PoseFault::Disagrees)).is_some());
+    r.run(5.0);
+    assert_eq!(fault(&r), Some(PoseFault::Disagrees));
+}
+
+#[test]
+fn axes_that_turn_with_the_way_are_taken_once_it_agrees() {
+    let mut r = Rig::new();
+    (r.spoil, r.turn) = (noisy, 0.7);
+    r.run(12.0);
+    r.turn = 1.5;
+    assert!(until(&mut r, 0.2, |r| fault(r) == Some(PoseFault::Jumps)).is_some());
+    assert!(until(&mut r, 6.0, |r| fault(r).is_none()).is_some());
+    r.run(0.1);
+    let e = r.out.unwrap();
+    assert!(
+        e.jumps == 1 && (e.turn - 1.5).abs() < 0.05,
+        "{} {}",
+        e.jumps,
+        e.turn
+    );
+    // They are what the next turn is told from.
+    r.spoil = turned;
+    assert!(until(&mut r, 0.2, |r| fault(r) == Some(PoseFault::Jumps)).is_some());
+}
+
+#[test]
+fn axes_that_have_turned_in_a_silence_are_taken_at_once() {
+    let mut r = Rig::new();
+    (r.spoil, r.turn) = (noisy, 0.7);
+    r.run(12.0);
+    r.silent = true;
+    r.run(1.1);
+    (r.silent, r.turn) = (false, 1.5);
+    r.run(0.1);
+    let e = r.out.unwrap();
+    assert_eq!((fault(&r), e.jumps), (None, 1));
+    assert!((e.turn - 1.5).abs() < 0.05, "{}", e.turn);
+}
+
+/// A pipe does not let it move: only the heading can say that it is sound again.
+#[test]
+fn a_heading_that_comes_back_is_taken_by_a_vehicle_that_stands_still() {
+    let mut estimator = PositionEstimator::new(&Params::default());
+    let mut run = |from: u64, to: u64, lift: f32, spoil: Spoil| -> Vec<_> {
+        let step = |i: u64| {
+            let at_us = i * 5_000;
+            let fix = Fix {
+                at_us: at_us.saturating_sub(30_000) / 20_000 * 20_000,
+                ..Fix::default()
+            };
+            let felt = Inertial {
+                at_us,
+                q: Quat::IDENTITY,
+                accel: Vec3::new(0.0, 0.0, -GRAVITY),
+            };
+            estimator.step(&felt, lift, Some(&spoil(fix)), None);
+            estimator.fault()
+        };
+        (from..to).map(step).collect()
+    };
+    let none = |faults: Vec<Option<Fault>>| faults.iter().all(Option::is_none);
+    // Carried about, any heading is as good.
+    assert!(none(run(1, 400, 1.0, noisy)) && none(run(400, 800, 1.0, turned)));
+    assert!(none(run(800, 1200, 1.0, noisy)) && none(run(1200, 1600, 17.0, noisy)));
+    let flying = run(1600, 1650, 17.0, turned);
+    assert_eq!(flying.last(), Some(&Some(Fault::Pose(PoseFault::Jumps))));
+    assert!(run(1650, 4000, 1.0, turned).iter().all(Option::is_some));
+    let back = run(4000, 4400, 1.0, noisy);
+    let soon = back.iter().position(Option::is_none).expect("taken again");
+    assert!((190..230).contains(&soon), "{soon}");
+    assert!(none(run(4400, 5000, 17.0, noisy)));
+}
+
 mod any {
     use proptest::prelude::*;
 
