@@ -35,6 +35,10 @@ pub enum Doubt {
     NotTouched,
     /// No range.
     RangeStale,
+    /// Below the crown it shows what was not there before.
+    RangeMisfit,
+    /// It shows higher steps than before.
+    RangeLong,
     /// The place of the pipe is not known any more.
     TargetStale,
     /// That place is none that the vehicle can reach.
@@ -104,6 +108,12 @@ pub struct Approach {
     up: f32,
     edges: Edges,
     seen: u8,
+    /// Height of the step onto the pipe, and those onto it and off it as it was crossed first, m; `None` where nothing was within
+    /// reach beside it.
+    onto: Option<f32>,
+    steps: [Option<f32>; 2],
+    /// Longest range that there was, m.
+    farthest: f32,
     /// Middle of the sweeps, forward and right, m; side of the present leg, half the sweep's width, m, and legs flown.
     middle: Vec3,
     side: f32,
@@ -154,6 +164,9 @@ impl Approach {
             up: -RISE,
             edges: Edges::default(),
             seen: v.foot.count,
+            onto: None,
+            steps: [None; 2],
+            farthest: 0.0,
             middle: Vec3::ZERO,
             side: 1.0,
             reach: SWEEP,
@@ -230,6 +243,8 @@ impl Approach {
         let over = self.origin.z + self.top - HIGH - v.position.z;
         Self {
             given: self.given,
+            steps: self.steps,
+            farthest: self.farthest,
             up: if known {
                 clamp(over, -2.0 * HIGH, 0.0)
             } else {
@@ -242,6 +257,13 @@ impl Approach {
     /// A touch from here on is the pipe's.
     pub fn committed(&self) -> bool {
         matches!(self.phase, Phase::Descend | Phase::Commit)
+    }
+
+    /// It is on the way down, so near that nothing but the pipe's back is below.
+    pub fn near_crown(&self, v: &View) -> bool {
+        let at = self.local(v.position);
+        let over = (at.y - self.crown).abs() < NEAR_OFF;
+        self.phase == Phase::Descend && !self.given && over && self.clearance(at) < STEADY
     }
 
     /// It is on its way up.
@@ -293,6 +315,12 @@ impl Approach {
         }
         let edge = self.look(v).filter(|_| !self.given);
         let at = self.local(v.position);
+        if let Some(edge) = edge
+            && !self.climbs()
+            && asks
+        {
+            self.compare(edge, at)?;
+        }
         let held = self.local(v.held);
         let velocity = about_down(v.velocity, -self.heading);
         let wanted = match self.phase {
@@ -339,10 +367,31 @@ impl Approach {
             return None;
         }
         self.seen = v.foot.count;
+        let range = v.foot.point.map_or(0.0, |point| point.z - v.position.z);
+        self.farthest = self.farthest.max(range);
         match v.foot.point {
             Some(point) => self.edges.step(self.local(point)),
             // Nothing within reach: farther than all that is.
             None => self.edges.step_beyond(self.local(v.position)),
+        }
+    }
+
+    /// Compares the step at `edge`, seen from `at`, with those by which the pipe was crossed first.
+    fn compare(&self, edge: Edge, at: Vec3) -> Result<(), Doubt> {
+        let [Some(onto), Some(off)] = self.steps else {
+            return Ok(());
+        };
+        let most = onto.max(off);
+        let falls = matches!(edge, Edge::Off(_));
+        let from_crown = |step| self.edges.level() - step - self.edges.top() < 0.5 * self.diameter;
+        match self.edges.height() {
+            Some(step) if step > HIGHER * most + 0.5 * self.diameter => Err(Doubt::RangeLong),
+            Some(step) if falls && from_crown(step) && step < LOWEST * onto.min(off) => {
+                Err(Doubt::RangeMisfit)
+            }
+            // From as high what is below was within reach.
+            None if falls && self.edges.top() + most - at.z < self.farthest => Err(Doubt::RangeLong),
+            _ => Ok(()),
         }
     }
 
@@ -369,7 +418,7 @@ impl Approach {
     fn crossed(&mut self, edge: Option<Edge>) -> Option<f32> {
         match (edge?, self.entered) {
             (Edge::Onto(at), _) => {
-                self.entered = Some(at.y);
+                (self.entered, self.onto) = (Some(at.y), self.edges.height());
                 None
             }
             (Edge::Off(at), Some(from)) => {
@@ -380,6 +429,9 @@ impl Approach {
                     return None;
                 }
                 (self.half, self.top) = (0.5 * width, self.edges.top());
+                if self.steps.contains(&None) {
+                    self.steps = [self.onto, self.edges.height()];
+                }
                 Some(0.5 * (at.y + from))
             }
             (Edge::Off(_), None) => None,

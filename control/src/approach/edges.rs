@@ -28,6 +28,8 @@ pub struct Edges {
     last: Vec3,
     /// First place of another surface, to be confirmed by the next range.
     other: Option<Vec3>,
+    /// Height of the last step, m.
+    height: f32,
 }
 
 impl Edges {
@@ -50,6 +52,7 @@ impl Edges {
         }
         // Of the two surfaces' feet the higher one's: a tilted beam meets the ground a hand's breadth beside the edge.
         let last = self.last;
+        self.height = off.abs();
         (self.level, self.last, self.other) = (Some(foot.z), foot, None);
         if off < 0.0 {
             self.top = foot.z;
@@ -67,6 +70,11 @@ impl Edges {
     /// Depth of the present surface, m.
     pub fn level(&self) -> f32 {
         self.level.unwrap_or(BEYOND)
+    }
+
+    /// Height of the last step, m; `None` where nothing was within reach beside it.
+    pub fn height(&self) -> Option<f32> {
+        Some(self.height).filter(|height| *height < 0.5 * BEYOND)
     }
 
     /// Highest of the surface that was come onto last, m down.

@@ -18,6 +18,11 @@ pub const NEWER: f32 = 0.7;
 pub const END_TIME: f32 = 1.5;
 /// Widths of a crossing that are the pipe's, share of its diameter.
 pub const WIDTH: (f32, f32) = (0.7, 1.35);
+/// Highest step at an edge, beside half the width of the pipe, and the lowest that the beam falls, share of those by which the
+/// pipe was crossed first: ground is not even, and a beam falls off a flank. One that becomes 1.6 times too long shows a third
+/// surface below the crown, then steps of 1.6 times.
+pub const HIGHER: f32 = 1.25;
+pub const LOWEST: f32 = 0.5;
 /// Heights over the crown, m: to which it climbs for another try, and of the crossings.
 pub const HIGH: f32 = 0.6;
 pub const LOW: f32 = 0.4;
@@ -36,6 +41,8 @@ pub const CORRECT_SPEED: f32 = 0.05;
 /// Range below which it does not sink while it is this far off, m.
 pub const NEAR: f32 = 0.25;
 pub const NEAR_OFF: f32 = 0.06;
+/// Range below which, over the crown, the flank is not met, m.
+pub const STEADY: f32 = 0.3;
 /// Range at which it waits to be over the crown, m: the last at which flow is seen with some margin.
 pub const GATE: f32 = 0.10;
 /// Speed back up to it, m/s, and the time in which a sinking is ended, s: half of [`DESCENT`] over the change of a wish.

@@ -3,6 +3,8 @@
 use super::*;
 
 const DT: f32 = 0.01;
+/// Of the range, m.
+const REACH: f32 = 2.5;
 
 /// The pipe runs along `heading` through a point `right` of the origin, its crown `down` below the origin's height.
 #[derive(Clone, Copy)]
@@ -16,6 +18,10 @@ struct World {
     ends: (f32, f32),
     /// Where along it the beam misses it for a moment, m.
     missed: (f32, f32),
+    /// When a range becomes wrong, s, and how many times as long as it should be.
+    scaled: (f32, f32),
+    /// By how much the ground to the right of the pipe is lower, m, and how far off that begins.
+    dip: (f32, f32),
 }
 
 const WORLD: World = World {
@@ -26,6 +32,8 @@ const WORLD: World = World {
     radius: 0.15,
     ends: (-1.0, 1.0),
     missed: (5.0, 5.0),
+    scaled: (f32::MAX, 1.0),
+    dip: (0.0, 0.0),
 };
 
 impl World {
@@ -47,8 +55,13 @@ impl World {
             && (self.ends.0..self.ends.1).contains(&x)
             && !(self.missed.0..self.missed.1).contains(&x);
         let pipe = self.crown + self.radius - (self.radius * self.radius - y * y).max(0.0).sqrt();
-        let z = if on { Some(pipe) } else { self.ground };
-        z.filter(|z| (0.02..2.5).contains(&(z - p.z)))
+        let dip = if y > self.dip.1 { self.dip.0 } else { 0.0 };
+        let z = if on {
+            Some(pipe)
+        } else {
+            self.ground.map(|ground| ground + dip)
+        };
+        z.filter(|z| (0.02..REACH).contains(&(z - p.z)))
             .map(|z| Vec3::new(p.x, p.y, z))
     }
 }
@@ -60,7 +73,13 @@ fn flown(world: World, law: Approach) -> (Result<(), Doubt>, Vec3, Approach, f32
     for i in 0..12_000 {
         if i % 2 == 0 {
             foot = Foot {
-                point: world.below_lens(held, law.lens),
+                point: world.below_lens(held, law.lens).and_then(|point| {
+                    let (from, scale) = world.scaled;
+                    let scale = if i as f32 * DT < from { 1.0 } else { scale };
+                    let range = scale * (point.z - held.z);
+                    let seen = Vec3::new(point.x, point.y, held.z + range);
+                    (range < REACH).then_some(seen)
+                }),
                 count: foot.count.wrapping_add(1),
                 age: 0.02,
             };
@@ -232,6 +251,76 @@ fn what_is_no_pipe_or_too_wide_for_it_is_none() {
     assert!(at.z.abs() < 1e-3, "{at:?}");
     let wall = World { radius: 0.4, ..WORLD };
     assert_eq!(flown(wall, begun(&wall)).0, Err(Doubt::NoPipe));
+}
+
+/// One that had become too long was flown by: the vehicle hovered at the gate where flow sees nothing, or in another search lower
+/// than it took itself to be, until a gust pressed an arm onto the pipe.
+#[test]
+fn a_range_that_shows_higher_steps_than_before_ends_it() {
+    for from in 7..26u8 {
+        for (ground, lost) in [(Some(2.2), true), (Some(1.3), false)] {
+            let world = World {
+                ground,
+                scaled: (f32::from(from), 1.6),
+                ..WORLD
+            };
+            let (end, at, law, seconds) = flown(world, begun(&world));
+            let found = matches!(end, Err(Doubt::RangeLong | Doubt::RangeMisfit | Doubt::PipeLost));
+            assert!(found, "{from} {lost}: {end:?} {law:?}");
+            let above = world.crown - at.z;
+            assert!(
+                above > 0.15 && seconds < f32::from(from) + 6.0,
+                "{from} {lost}: {above} m, {seconds} s"
+            );
+        }
+    }
+}
+
+#[test]
+fn uneven_ground_and_a_range_that_is_a_little_off_are_no_other_steps() {
+    // A terrace along the pipe, a ditch beside it.
+    for dip in [(0.2, 0.0), (0.9, 0.0), (-0.9, 0.0), (0.25, 0.22)] {
+        let world = World {
+            ground: Some(2.0),
+            dip,
+            ..WORLD
+        };
+        let (end, at, law, _) = flown(world, begun(&world));
+        assert_eq!(end, Ok(()), "{dip:?} {law:?}");
+        assert!(world.beside(at).0.abs() < 0.03, "{dip:?}: {at:?}");
+    }
+    for scale in [0.85, 1.15] {
+        for from in 7..26u8 {
+            let world = World {
+                scaled: (f32::from(from), scale),
+                ..WORLD
+            };
+            let (end, ..) = flown(world, begun(&world));
+            let misfit = matches!(end, Err(Doubt::RangeLong | Doubt::RangeMisfit));
+            assert!(!misfit, "{from} {scale}: {end:?}");
+        }
+    }
+}
+
+/// What has been learnt of the steps goes along to the next try.
+#[test]
+fn another_try_knows_the_steps_of_the_first() {
+    let mut law = begun(&WORLD);
+    (law.steps, law.farthest) = ([Some(1.5), Some(1.4)], 2.0);
+    let view = descending(0.4, 0.0, 0.02).1;
+    let next = law.retried(&Params::default(), &view, WORLD.heading, 0);
+    assert!(next.steps == law.steps && next.farthest == law.farthest);
+    // Only over the crown and near it nothing but the pipe's back is below.
+    for (range, aside, near) in [(0.2, 0.0, true), (0.35, 0.0, false), (0.2, 0.08, false)] {
+        let (mut law, mut view) = descending(range, 0.0, 0.02);
+        law.look(&view);
+        view.foot.count = 2;
+        law.look(&view);
+        view.position = about_down(Vec3::new(0.0, aside, 0.0), WORLD.heading) + view.position;
+        assert_eq!(law.near_crown(&view), near, "{range} {aside}");
+        law.phase = Phase::Cross;
+        assert!(!law.near_crown(&view));
+    }
 }
 
 #[test]

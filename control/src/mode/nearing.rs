@@ -118,7 +118,7 @@ impl Approach {
     fn step(&mut self, estimate: &Estimate, step: &mut Step<'_>) {
         let seen = view(&self.law, estimate, step);
         if step.context.rise.misfit() && !self.way.leaves() {
-            self.misfit(&seen, estimate, step);
+            self.misfit(false, &seen, estimate, step);
         }
         let result = if self.way.jumped(estimate.jumps) {
             Err(Doubt::NotCentred)
@@ -130,16 +130,21 @@ impl Approach {
         }
         let crown = self.way.crown().map(|crown| (crown, estimate.jumps));
         step.context.by_itself.crown = crown.or(step.context.by_itself.crown);
+        step.context.rise.steady = self.way.near_crown(&seen);
         let wish = result.unwrap_or_else(|doubt| {
-            self.again(reason(doubt), &seen, estimate, step);
+            match doubt {
+                Doubt::RangeMisfit => self.misfit(false, &seen, estimate, step),
+                Doubt::RangeLong => self.misfit(true, &seen, estimate, step),
+                _ => self.again(reason(doubt), &seen, estimate, step),
+            }
             Wish::default()
         });
         self.wanted = self.law.step(estimate, &felt(step), &wish, true, step.dt);
     }
 
-    /// Another try, once; then up and away.
-    fn misfit(&mut self, view: &View, e: &Estimate, step: &mut Step<'_>) {
-        let before = core::mem::replace(&mut step.context.by_itself.misfit, true);
+    /// Another try, once, unless it is `proven`; then up and away.
+    fn misfit(&mut self, proven: bool, view: &View, e: &Estimate, step: &mut Step<'_>) {
+        let before = core::mem::replace(&mut step.context.by_itself.misfit, true) || proven;
         self.again(Reason::RangeMisfit, view, e, step);
         if before && !self.astray {
             (self.given_up, self.gives_up) = (None, Some(Reason::RangeMisfit));
@@ -195,6 +200,7 @@ fn reason(doubt: Doubt) -> Reason {
         Doubt::NotCentred => Reason::NotCentred,
         Doubt::NotTouched => Reason::NotTouched,
         Doubt::RangeStale => Reason::RangeStale,
+        Doubt::RangeMisfit | Doubt::RangeLong => Reason::RangeMisfit,
         Doubt::TargetStale => Reason::TargetStale,
         Doubt::TargetFar => Reason::TargetFar,
         Doubt::TargetJumps => Reason::TargetJumps,

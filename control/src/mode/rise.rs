@@ -23,6 +23,9 @@ const BLIND_AGE: f32 = 0.1;
 const BENT: f32 = 0.06;
 const BROKEN: f32 = 0.25;
 const UNLEARNT: f32 = 0.45;
+/// The same over a crown and near it, where no edge bends it: of 54 sound missions none comes beyond 0.07, one that becomes 1.6
+/// times too long 10 cm over it comes to 0.12.
+const STEADY: f32 = 0.1;
 /// Age of an estimate that has learnt the bias of its acceleration, s.
 const LEARNING: f32 = 4.0;
 /// Time for which they must differ, s.
@@ -44,6 +47,8 @@ pub struct Rise {
     since: Option<f32>,
     /// A range began it in this step.
     misfit: bool,
+    /// The vehicle is over a crown and near it.
+    pub steady: bool,
     /// What the estimate's height lacks, down, m, and how often its origin has jumped by that.
     lacks: f32,
     jumps: u8,
@@ -77,8 +82,10 @@ impl Rise {
         let off = e.velocity.z - self.speed;
         let learnt = self.age.step(true, dt) > LEARNING;
         let ranged = e.foot.age < f32::MAX;
+        let steady = core::mem::take(&mut self.steady);
         let limit = match (blind(&e), learnt) {
             (true, _) => BENT,
+            (false, true) if steady => STEADY,
             (false, true) => BROKEN,
             (false, false) => UNLEARNT,
         };

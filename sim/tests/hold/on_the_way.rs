@@ -201,6 +201,12 @@ fn a_range_that_becomes_too_long_is_not_flown_by() {
         (15, Part::Release, 77.958),
         (27, Part::Release, 76.894),
         (23, Part::Release, 83.443),
+        // At the gate, where 10 cm read are 6 cm, and in another search.
+        (30, Part::Touch, 59.257),
+        (77, Part::Touch, 67.543),
+        (39, Part::Touch, 58.411),
+        (10, Part::Approach, 59.898),
+        (344, Part::Touch, 58.092),
     ];
     let wrong: Vec<_> = cases
         .into_iter()
@@ -243,5 +249,5 @@ fn a_range_that_becomes_too_short_harms_nothing_on_the_way() {
         wrong.extend(flown(seed, Fault::Flow(fault), PARTS[part], at));
     }
     println!("{} of 40: {wrong:#?}", wrong.len());
-    assert!(wrong.iter().all(|what| what.contains("RangeLong")), "{wrong:#?}");
+    assert!(wrong.is_empty(), "{wrong:#?}");
 }

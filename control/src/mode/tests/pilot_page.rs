@@ -102,7 +102,7 @@ fn on_reason(reason: Reason) -> &'static str {
             "It climbs and tries again. If it comes back, the range is wrong: perch by hand."
         }
         Reason::RangeMisfit => {
-            "It climbs and tries again; the second time it holds. If it comes back, perch by hand."
+            "It climbs and may try again once; then it holds. If it comes back, perch by hand."
         }
         Reason::RangeStale => "It holds. Look after the module below, or perch by hand.",
         Reason::ArmsStuck => "Keep the throttle, or perch on to hold again. Something holds the tendons.",
