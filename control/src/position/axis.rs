@@ -62,6 +62,16 @@ impl Axis {
         }
     }
 
+    /// The same with the bias of `before`, known no better than to `deviation` m/s²: it is the sensor's own.
+    pub fn biased_as(self, before: &Self, deviation: f32) -> Self {
+        let ([vv, vb, _], [_, _, bb]) = (self.rest, before.rest);
+        Self {
+            bias: before.bias,
+            rest: [vv, vb, bb.max(deviation * deviation)],
+            ..self
+        }
+    }
+
     /// m.
     pub fn position(&self) -> f32 {
         self.position
