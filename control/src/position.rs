@@ -62,6 +62,11 @@ const UNKNOWN_AGE: f32 = 1.0;
 /// Age that an estimate has once its poses were found to disagree, µs: none coasts on by it (see
 /// [`crate::mode::Mode::Hold`]).
 const TAINTED_AGE: u64 = 1_310_000;
+/// Deviation of a bias that was learnt before the estimate began anew, as after a perch, at least, m/s²: level that of the
+/// attitude, 0.6°, down that of the sensor alone.
+const KEPT_BIAS: [f32; 3] = [0.1, 0.1, 0.03];
+/// Largest that is kept, m/s²: more is what has misled the estimate.
+const SENSOR_BIAS: f32 = 0.3;
 /// Share of the weight from which on the rotors carry the vehicle.
 const FLIES: f32 = 0.5;
 /// Age of the newest pose from which on flow and range are taken, s.
@@ -207,6 +212,8 @@ pub struct PositionEstimator {
     sight: Sight,
     trust: Trust,
     aloft: Aloft,
+    /// When the last track by flow ended, µs, and its axes, of which the biases are good for the next.
+    learnt: Option<(u64, [Axis; 3])>,
     /// When the newest fix and the newest flow that were looked at were measured, µs: each is taken once.
     seen_us: u64,
     flow_us: u64,
@@ -223,6 +230,7 @@ impl PositionEstimator {
             sight: Sight::new(p.pipe_diameter, p.flow_lens()),
             trust: Trust::default(),
             aloft: Aloft::default(),
+            learnt: None,
             seen_us: 0,
             flow_us: 0,
         }
@@ -298,10 +306,11 @@ impl PositionEstimator {
             (track, None) => {
                 // Where the first flow that is of use comes, the axes begin: on the ground below, as the vehicle's own.
                 let height = flow.and_then(|flow| self.sight.begin(&flow, felt.q));
+                self.learnt = track.as_ref().map_or(self.learnt, Track::learnt);
                 *track = height.map(|height| {
                     self.past.clear();
                     self.aloft.forget();
-                    Track::above(at_us, height)
+                    Track::above(at_us, height, self.learnt.as_ref())
                 });
                 self.past.push(here);
                 return None;
@@ -410,17 +419,31 @@ impl Track {
         }
     }
 
-    /// At rest `height` m above the ground, in the vehicle's own axes.
-    fn above(at_us: u64, height: f32) -> Self {
+    /// At rest `height` m above the ground, in the vehicle's own axes, with the biases of the one before.
+    fn above(at_us: u64, height: f32, before: Option<&(u64, [Axis; 3])>) -> Self {
         let here = Fix {
             at_us,
             position: Vec3::new(0.0, 0.0, -height),
             ..Fix::default()
         };
-        Self {
+        let mut track = Self {
             posed: false,
             ..Self::begin(at_us, 0.0, &here)
+        };
+        if let Some((ended_us, before)) = before {
+            let since = seconds(*ended_us, at_us);
+            let pairs = track.axes.iter_mut().zip(before).zip(KEPT_BIAS);
+            for ((axis, before), deviation) in pairs {
+                *axis = axis.biased_as(before, deviation, since);
+            }
         }
+        track
+    }
+
+    /// Its end and its axes where they are the vehicle's own, and their biases a sensor's.
+    fn learnt(&self) -> Option<(u64, [Axis; 3])> {
+        let sound = self.axes.iter().all(|axis| axis.bias().abs() < SENSOR_BIAS);
+        (sound && !self.posed && !self.misled).then_some((self.at_us, self.axes))
     }
 
     /// The step at `at_us` µs follows the last one, and the newest fix is not too old.

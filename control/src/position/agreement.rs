@@ -21,6 +21,14 @@ pub struct Agreement {
 }
 
 impl Agreement {
+    /// The same judgement, with nothing behind it: what has followed before a perch may not after it.
+    pub fn anew(self) -> Self {
+        Self {
+            wrong: self.wrong,
+            ..Self::default()
+        }
+    }
+
     /// Takes a measurement and its prediction, `dt` s after the last; `noise` is the measurement's deviation in the same
     /// unit. One whose prediction is not `sure` says nothing. True while it does not follow.
     pub fn step(&mut self, measured: f32, predicted: f32, noise: f32, sure: bool, dt: f32) -> bool {

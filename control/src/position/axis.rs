@@ -62,6 +62,18 @@ impl Axis {
         }
     }
 
+    /// The same with the bias that `before` had `since` s ago, then known no better than to `deviation` m/s²: it is the
+    /// sensor's own, and walks.
+    pub fn biased_as(self, before: &Self, deviation: f32, since: f32) -> Self {
+        let ([vv, vb, most], [_, _, bb]) = (self.rest, before.rest);
+        let walked = bb.max(deviation * deviation) + BIAS_WALK * BIAS_WALK * since;
+        Self {
+            bias: before.bias,
+            rest: [vv, vb, walked.min(most)],
+            ..self
+        }
+    }
+
     /// m.
     pub fn position(&self) -> f32 {
         self.position

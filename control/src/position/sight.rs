@@ -276,6 +276,7 @@ impl Sight {
         let sound = cos >= COS_MIN && flow.quality >= QUALITY_MIN && (least..=most).contains(&distance);
         (self.level, self.base, self.other, self.agreed) = (0.0, 0.0, 0.0, 0);
         self.band = None;
+        self.agreements = self.agreements.map(Agreement::anew);
         (fresh && sound).then_some(distance * cos + q.rotate(self.lens).z)
     }
 
