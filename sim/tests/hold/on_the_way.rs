@@ -186,7 +186,6 @@ fn what_fails_at_any_moment_is_named_and_harms_nothing() {
 fn what_fails_at_any_moment_is_named_and_harms_nothing_with_many_seeds() {
     let wrong = judge(2, &[1, 2, 3, 4, 5, 6, 7, 8], 200);
     println!("{} of 200: {wrong:#?}", wrong.len());
-    // Red: two are left, and docs/hold.md has which.
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
