@@ -298,7 +298,7 @@ fn axes_that_turn_with_the_way_are_taken_once_it_agrees() {
         e.jumps,
         e.turn
     );
-    // They are what the next turn is told from.
+    // The next turn is measured from them.
     r.spoil = turned;
     assert!(until(&mut r, 0.2, |r| fault(r) == Some(PoseFault::Jumps)).is_some());
 }
