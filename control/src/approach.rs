@@ -88,6 +88,15 @@ enum Phase {
     Commit,
 }
 
+/// A step that was not there before: what it makes of the range, the level that it came from, m down, and how long it has
+/// lasted, s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Other {
+    doubt: Doubt,
+    from: f32,
+    seconds: f32,
+}
+
 /// The law and its state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Approach {
@@ -114,6 +123,7 @@ pub struct Approach {
     steps: [Option<f32>; 2],
     /// Longest range that there was, m.
     farthest: f32,
+    other: Option<Other>,
     /// Middle of the sweeps, forward and right, m; side of the present leg, half the sweep's width, m, and legs flown.
     middle: Vec3,
     side: f32,
@@ -167,6 +177,7 @@ impl Approach {
             onto: None,
             steps: [None; 2],
             farthest: 0.0,
+            other: None,
             middle: Vec3::ZERO,
             side: 1.0,
             reach: SWEEP,
@@ -313,26 +324,42 @@ impl Approach {
         } else if asks && v.foot.age > RANGE_AGE {
             return Err(Doubt::RangeStale);
         }
+        let before = self.edges.level();
         let edge = self.look(v).filter(|_| !self.given);
         let at = self.local(v.position);
-        if let Some(edge) = edge
-            && !self.climbs()
-            && asks
-        {
-            self.compare(edge, at)?;
+        if let Some(edge) = edge {
+            let level = self.edges.level();
+            self.other = self
+                .other
+                .filter(|o| (level - o.from).abs() > 0.5 * self.diameter);
+            let found = self.compare(edge, at).err().filter(|_| !self.climbs() && asks);
+            let found = found.map(|doubt| Other {
+                doubt,
+                from: before,
+                seconds: 0.0,
+            });
+            self.other = self.other.or(found);
+        }
+        if let Some(other) = &mut self.other {
+            other.seconds += dt;
+            if other.seconds > LASTING {
+                return Err(other.doubt);
+            }
         }
         let held = self.local(v.held);
         let velocity = about_down(v.velocity, -self.heading);
         let wanted = match self.phase {
-            Phase::Climb => self.climb(at, held),
-            Phase::Search => self.search(edge, held)?,
-            Phase::Over => self.over(at, held, math::wrap_pi(self.heading - v.heading))?,
-            Phase::Fore | Phase::Aft => self.look_along(edge, held, dt)?,
-            Phase::Cross => self.cross(edge, held)?,
-            Phase::Centre => self.centre(edge, at, held)?,
-            Phase::Descend => self.descend(edge, (at, velocity, held), v.age, dt)?,
-            Phase::Commit => self.commit(at, held)?,
+            Phase::Climb => Ok(self.climb(at, held)),
+            Phase::Search => self.search(edge, held),
+            Phase::Over => self.over(at, held, math::wrap_pi(self.heading - v.heading)),
+            Phase::Fore | Phase::Aft => self.look_along(edge, held, dt),
+            Phase::Cross => self.cross(edge, held),
+            Phase::Centre => self.centre(edge, at, held),
+            Phase::Descend => self.descend(edge, (at, velocity, held), v.age, dt),
+            Phase::Commit => self.commit(at, held),
         };
+        // What such a range makes of the pipe is not looked into.
+        let wanted = wanted.map_err(|doubt| self.other.map_or(doubt, |other| other.doubt))?;
         self.speed = Vec3::new(
             math::slew(self.speed.x, wanted.x, SLEW * dt),
             math::slew(self.speed.y, wanted.y, SLEW * dt),

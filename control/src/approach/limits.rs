@@ -23,6 +23,8 @@ pub const WIDTH: (f32, f32) = (0.7, 1.35);
 /// surface below the crown, then steps of 1.6 times.
 pub const HIGHER: f32 = 1.25;
 pub const LOWEST: f32 = 0.5;
+/// Time for which such a step lasts, s: a range that jumps is back before, and has a name of its own.
+pub const LASTING: f32 = 0.35;
 /// Heights over the crown, m: to which it climbs for another try, and of the crossings.
 pub const HIGH: f32 = 0.6;
 pub const LOW: f32 = 0.4;
