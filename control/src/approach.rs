@@ -117,10 +117,9 @@ pub struct Approach {
     up: f32,
     edges: Edges,
     seen: u8,
-    /// Height of the step onto the pipe, and those onto it and off it as it was crossed first, m; `None` where nothing was within
+    /// Heights of the steps onto the pipe and off it as it was crossed first, m: infinite until then, and where nothing was within
     /// reach beside it.
-    onto: Option<f32>,
-    steps: [Option<f32>; 2],
+    steps: [f32; 2],
     /// Longest range that there was, m.
     farthest: f32,
     other: Option<Other>,
@@ -174,8 +173,7 @@ impl Approach {
             up: -RISE,
             edges: Edges::default(),
             seen: v.foot.count,
-            onto: None,
-            steps: [None; 2],
+            steps: [f32::INFINITY; 2],
             farthest: 0.0,
             other: None,
             middle: Vec3::ZERO,
@@ -405,9 +403,10 @@ impl Approach {
 
     /// Compares the step at `edge`, seen from `at`, with those by which the pipe was crossed first.
     fn compare(&self, edge: Edge, at: Vec3) -> Result<(), Doubt> {
-        let [Some(onto), Some(off)] = self.steps else {
+        let [onto, off] = self.steps;
+        if !(onto + off).is_finite() {
             return Ok(());
-        };
+        }
         let most = onto.max(off);
         let falls = matches!(edge, Edge::Off(_));
         let from_crown = |step| self.edges.level() - step - self.edges.top() < 0.5 * self.diameter;
@@ -445,7 +444,11 @@ impl Approach {
     fn crossed(&mut self, edge: Option<Edge>) -> Option<f32> {
         match (edge?, self.entered) {
             (Edge::Onto(at), _) => {
-                (self.entered, self.onto) = (Some(at.y), self.edges.height());
+                self.entered = Some(at.y);
+                let [onto, off] = &mut self.steps;
+                if off.is_infinite() {
+                    *onto = self.edges.height().unwrap_or(f32::INFINITY);
+                }
                 None
             }
             (Edge::Off(at), Some(from)) => {
@@ -456,8 +459,9 @@ impl Approach {
                     return None;
                 }
                 (self.half, self.top) = (0.5 * width, self.edges.top());
-                if self.steps.contains(&None) {
-                    self.steps = [self.onto, self.edges.height()];
+                let [onto, off] = &mut self.steps;
+                if onto.is_finite() && off.is_infinite() {
+                    *off = self.edges.height().unwrap_or(f32::INFINITY);
                 }
                 Some(0.5 * (at.y + from))
             }

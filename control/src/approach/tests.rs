@@ -306,7 +306,7 @@ fn uneven_ground_and_a_range_that_is_a_little_off_are_no_other_steps() {
 #[test]
 fn another_try_knows_the_steps_of_the_first() {
     let mut law = begun(&WORLD);
-    (law.steps, law.farthest) = ([Some(1.5), Some(1.4)], 2.0);
+    (law.steps, law.farthest) = ([1.5, 1.4], 2.0);
     let view = descending(0.4, 0.0, 0.02).1;
     let next = law.retried(&Params::default(), &view, WORLD.heading, 0);
     assert!(next.steps == law.steps && next.farthest == law.farthest);
