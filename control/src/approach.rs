@@ -326,10 +326,7 @@ impl Approach {
         let edge = self.look(v).filter(|_| !self.given);
         let at = self.local(v.position);
         if let Some(edge) = edge {
-            let level = self.edges.level();
-            self.other = self
-                .other
-                .filter(|o| (level - o.from).abs() > 0.5 * self.diameter);
+            self.other = self.other.filter(|other| !self.at_known(other.from));
             let found = self.compare(edge, at).err().filter(|_| !self.climbs() && asks);
             let found = found.map(|doubt| Other {
                 doubt,
@@ -399,6 +396,13 @@ impl Approach {
             // Nothing within reach: farther than all that is.
             None => self.edges.step_beyond(self.local(v.position)),
         }
+    }
+
+    /// What is below is `before`, m down, again, or the pipe, or the ground at its sides.
+    fn at_known(&self, before: f32) -> bool {
+        let [onto, off] = self.steps.map(|step| self.top + step);
+        let near = |known: f32| (self.edges.level() - known).abs() < 0.5 * self.diameter;
+        self.sees_pipe() || [before, onto, off].into_iter().any(near)
     }
 
     /// Compares the step at `edge`, seen from `at`, with those by which the pipe was crossed first.

@@ -31,8 +31,8 @@ pub fn micros() -> u64 {
     }
 }
 
-/// Starts the watchdog, then the clocks of `config`; `timer` is embassy-time's. If the
-/// crystal or a PLL fails, the watchdog resets, and the next start reports which. Called once.
+/// Starts the watchdog, then the clocks of `config`; `timer` is embassy-time's. If the crystal or a PLL fails, the
+/// watchdog resets, and the next start reports which. Called once.
 pub fn start(config: Config, timer: TimGp32) -> Peripherals {
     watchdog::start();
     if let Some(crystal) = config.rcc.hse {

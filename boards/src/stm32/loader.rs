@@ -25,8 +25,9 @@ pub fn leave_for_loader() -> ! {
 /// Enters the loader where the run before has asked for it. Called first of all, once.
 pub fn enter_loader_if_asked(cause: ResetCause) {
     if retained::loader_asked_for(cause) {
-        // SAFETY: the chip is as a reset left it, but for the memory and the outputs' first levels: no interrupt is on, and nothing of this firmware runs
-        // again before the next reset. The vector table is there in every chip of the family.
+        // SAFETY: the chip is as a reset left it, but for the memory and the outputs' first levels: no interrupt is on,
+        // and nothing of this firmware runs again before the next reset. The vector table is there in every chip of the
+        // family.
         unsafe {
             (*SCB::PTR).vtor.write(LOADER);
             cortex_m::asm::dsb();

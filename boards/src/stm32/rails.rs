@@ -78,8 +78,7 @@ unsafe extern "C" {
     fn drive_ports(first: *const PortLevels, count: usize);
 }
 
-/// The register that switches the ports' clocks: AHB4ENR of the H7 (RM0433), AHB1ENR of the others (RM0090,
-/// RM0410).
+/// The register that switches the ports' clocks: AHB4ENR of the H7 (RM0433), AHB1ENR of the others (RM0090, RM0410).
 #[cfg(family = "h7")]
 const CLOCKS: u32 = 0x5802_44E0;
 #[cfg(not(family = "h7"))]
