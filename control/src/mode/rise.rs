@@ -81,15 +81,15 @@ impl Rise {
         };
         let off = e.velocity.z - self.speed;
         let learnt = self.age.step(true, dt) > LEARNING;
-        let ranged = e.foot.age < f32::MAX;
+        let (ranged, blind) = (e.foot.age < f32::MAX, blind(&e));
         let steady = core::mem::take(&mut self.steady);
-        let limit = match (blind(&e), learnt) {
+        let limit = match (blind, learnt) {
             (true, _) => BENT,
             (false, true) if steady => STEADY,
             (false, true) => BROKEN,
             (false, false) => UNLEARNT,
         };
-        let begins = self.differs.step(ranged && off.abs() > limit, dt) > BENT_TIME;
+        let begins = self.differs.step((ranged || blind) && off.abs() > limit, dt) > BENT_TIME;
         self.misfit = self.since.is_none() && begins && learnt && limit > BENT;
         self.since = match self.since {
             Some(since) => (off.abs() > BENT).then_some(clamp(since + dt, 0.0, 1e3)),

@@ -115,6 +115,20 @@ fn where_nothing_gives_the_height_a_bent_speed_is_not_flown_by() {
     assert!(w.out().age > HEIGHT_AGE, "{:?}", w.out());
 }
 
+/// Poses that had been scaled were left out, and what they had bent of the acceleration was flown by for seconds.
+#[test]
+fn where_poses_have_gone_their_bent_speed_is_not_flown_by() {
+    let mut w = World::new();
+    w.foot = Foot::default();
+    w.run(30.0);
+    (w.age, w.bent) = (0.2, -0.2);
+    w.run(1.0);
+    let out = w.out();
+    assert!((out.velocity.z - w.speed).abs() < 0.05, "{out:?} {}", w.speed);
+    assert!((out.position.z - w.at).abs() < 0.1, "{out:?} {}", w.at);
+    assert!(!w.named);
+}
+
 #[test]
 fn a_range_that_goes_another_way_is_named_once_its_bias_is_learnt() {
     for (seconds, bent, flown, named) in [
@@ -133,7 +147,7 @@ fn a_range_that_goes_another_way_is_named_once_its_bias_is_learnt() {
         let by_felt = (out.velocity.z - w.speed).abs() < 0.08;
         assert_eq!((by_felt, w.named), (flown, named), "{seconds} {bent}: {out:?}");
     }
-    // A pose is judged elsewhere.
+    // What a pose says of the speed is judged elsewhere.
     let mut w = World::learnt();
     (w.foot, w.bent) = (Foot::default(), 0.5);
     w.run(1.0);
