@@ -263,14 +263,14 @@ impl PositionEstimator {
         let flow = view.and_then(|view| view.flow).and_then(Flow::checked);
         let flow = flow.filter(|flow| flow.until_us > self.flow_us && flow.until_us <= at_us);
         self.flow_us = flow.map_or(self.flow_us, |flow| flow.until_us);
+        let flies = lift > FLIES * GRAVITY * self.mass;
         let before = self.sight.looked_us();
-        let range = view.and_then(|view| self.sight.new_range(view, at_us));
+        let range = view.and_then(|view| self.sight.new_range(view, at_us, flies));
         let ranged = self.sight.looked_us();
         let looked = (ranged != before && self.sight.range_is_sound()).then_some(ranged);
         if !(felt.q.is_finite() && felt.accel.is_finite() && lift.is_finite()) {
             return None;
         }
-        let flies = lift > FLIES * GRAVITY * self.mass;
         let down = felt.q.rotate(felt.accel).z + GRAVITY;
         self.sight.scale.feel(at_us, flies.then_some(down));
         // A scaled range gives no height; how it changes may say that it is right again.

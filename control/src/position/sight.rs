@@ -43,8 +43,10 @@ const DISTRUST: u64 = 5_000_000;
 /// Equal values in a row of a sensor that stands still: ranges and flows of which none is zero.
 const FROZEN_RANGES: u32 = 25;
 const FROZEN_FLOWS: u32 = 12;
-/// Nearest at which equal ranges are no sign, m: the vehicle may stand.
-const FROZEN_MIN: f32 = 0.1;
+/// Up to here, m, equal ranges are no sign of a vehicle that stands, and so many are one of a vehicle that flies: some modules
+/// read their least for the half second in which it sinks on.
+const NEAR: f32 = 0.1;
+const FROZEN_NEAR: u32 = 50;
 /// Least cosine of a tilt at which flow and range say something: 40°.
 const COS_MIN: f32 = 0.77;
 /// Way, m, and time, µs, since what is narrow was met below, after which it is elsewhere: a pipe has ends.
@@ -202,7 +204,7 @@ impl Sight {
     /// What is wrong at present.
     pub fn fault(&self) -> Option<SightFault> {
         let faults = [
-            (self.same_ranges >= FROZEN_RANGES, SightFault::RangeFrozen),
+            (self.range_frozen(), SightFault::RangeFrozen),
             (self.distrusted_us > self.range_us, SightFault::RangeJumps),
             (self.scale.wrong(), SightFault::RangeScaled),
             (self.same_flows >= FROZEN_FLOWS, SightFault::FlowFrozen),
@@ -227,11 +229,17 @@ impl Sight {
     }
 
     fn range_faulty(&self) -> bool {
-        self.same_ranges >= FROZEN_RANGES || self.distrusted_us > self.range_us || self.scale.wrong()
+        self.range_frozen() || self.distrusted_us > self.range_us || self.scale.wrong()
     }
 
-    /// The distance of a range that was not looked at before, m, and when it was measured, µs; a scaled one too.
-    pub fn new_range(&mut self, view: &GroundView, now: u64) -> Option<(u64, f32)> {
+    fn range_frozen(&self) -> bool {
+        let near = self.range.is_some_and(|(_, distance)| distance <= NEAR);
+        self.same_ranges >= if near { FROZEN_NEAR } else { FROZEN_RANGES }
+    }
+
+    /// The distance of a range that was not looked at before, m, and when it was measured, µs; a scaled one too. The rotors
+    /// carry a vehicle that `flies`.
+    pub fn new_range(&mut self, view: &GroundView, now: u64, flies: bool) -> Option<(u64, f32)> {
         let range = view.range.and_then(Range::checked)?;
         if range.at_us <= self.range_us || range.at_us > now {
             return None;
@@ -241,7 +249,7 @@ impl Sight {
         let same = self
             .range
             .is_some_and(|(_, before)| (before - distance).abs() < 1e-4);
-        self.same_ranges = if same && distance > FROZEN_MIN {
+        self.same_ranges = if same && (flies || distance > NEAR) {
             self.same_ranges.saturating_add(1)
         } else {
             0

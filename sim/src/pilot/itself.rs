@@ -18,6 +18,8 @@ const STILL: f64 = 1.5;
 const NOTICED: f64 = 0.5;
 /// How far it has climbed when he takes the leaving as done, m.
 const LEFT: f64 = 0.4;
+/// Time after which he no longer waits for that from a vehicle that holds lower, s.
+const LEAVES: f64 = 15.0;
 
 impl Mission {
     /// By hand to the pipe, and the last metre by the hold.
@@ -90,7 +92,9 @@ impl Mission {
         if self.phase == Phase::Fly {
             return self.release(v, dt);
         }
-        let left = Self::left_to_him(v);
+        let holds = v.mode == Some(Mode::Hold);
+        let risen = v.height() > self.height + LEFT;
+        let left = Self::left_to_him(v) || (holds && !risen && self.phase_time > LEAVES);
         if left && self.phase == Phase::Wait && self.held_for(left, NOTICED, dt) {
             self.hold_switch = false;
             self.height = v.height();
@@ -111,7 +115,7 @@ impl Mission {
         }
         let done = match step {
             Step::Open => v.mode == Some(Mode::Releasing),
-            _ => v.mode == Some(Mode::Hold) && v.height() > self.height + LEFT,
+            _ => holds && risen,
         };
         if self.held_for(done, 0.5, dt) {
             self.hold_switch &= matches!(step, Step::Open);
