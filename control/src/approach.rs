@@ -249,16 +249,13 @@ impl Approach {
             return again;
         }
         let known = !matches!(self.phase, Phase::Climb | Phase::Search);
-        let over = self.origin.z + self.top - HIGH - v.position.z;
+        let top = if known { self.top } else { self.edges.top() };
+        let over = self.origin.z + top - HIGH - v.position.z;
         Self {
             given: self.given,
             steps: self.steps,
             farthest: self.farthest,
-            up: if known {
-                clamp(over, -2.0 * HIGH, 0.0)
-            } else {
-                -RISE
-            },
+            up: clamp(over, -2.0 * HIGH, 0.0),
             ..again
         }
     }

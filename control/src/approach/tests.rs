@@ -400,6 +400,42 @@ fn another_try_climbs_before_it_searches_and_leaving_only_climbs() {
     assert!(world.beside(at).0.abs() < 0.015, "{at:?}");
 }
 
+/// From 0.65 m over the crown another try climbed by 0.4 m more, from where the ground was out of the range's reach.
+#[test]
+fn another_try_from_a_search_climbs_no_higher_than_over_what_it_has_met() {
+    for (crown, climbs) in [(0.3, HIGH - 0.3), (0.65, 0.0)] {
+        let world = World {
+            right: 0.0,
+            crown,
+            ..WORLD
+        };
+        let mut law = begun(&world);
+        let mut view = View {
+            position: Vec3::ZERO,
+            velocity: Vec3::ZERO,
+            heading: world.heading,
+            held: Vec3::ZERO,
+            age: 0.0,
+            foot: Foot {
+                point: world.below(Vec3::ZERO),
+                count: 1,
+                age: 0.0,
+            },
+            target: None,
+        };
+        law.step(&view, DT).unwrap();
+        // The ground is met at the side since.
+        view.foot.point = Some(Vec3::new(0.0, 0.0, 2.2));
+        for count in 2..5 {
+            view.foot.count = count;
+            law.step(&view, DT).unwrap();
+        }
+        assert_eq!(law.phase, Phase::Search);
+        let again = law.retried(&Params::default(), &view, world.heading, 0);
+        assert!((again.up + climbs).abs() < 1e-5, "{crown}: {}", again.up);
+    }
+}
+
 /// Over the crown on the way down: at `range` m, sinking at `sinks` m/s, the newest flow `age` s old.
 fn descending(range: f32, sinks: f32, age: f32) -> (Approach, View) {
     let world = World { right: 0.0, ..WORLD };
