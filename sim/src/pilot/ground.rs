@@ -2,8 +2,10 @@
 
 use sophie_control::mode::Mode;
 
+use super::itself::NEAR_SPEED;
 use super::mission::{Mission, Phase, Progress, View};
 use super::stick_dynamics::StickTarget;
+use crate::scenario::Assist;
 
 /// Throttle at which the paper's vehicle surely leaves the ground.
 const TAKE_OFF: f64 = 0.85;
@@ -16,6 +18,8 @@ const RISING: f64 = 0.2;
 /// Height error (m) and speed (m/s) that count as reached.
 const REACHED: f64 = 0.15;
 const REACHED_SPEED: f64 = 0.25;
+/// Time after which he goes on with [`NEAR_SPEED`] where the vehicle is to hold by itself, s.
+const PATIENCE: f64 = 12.0;
 /// Rates of descent, m/s: high up, and below [`LAST_BIT`].
 const DESCENT: f64 = 0.4;
 const LAST_DESCENT: f64 = 0.2;
@@ -80,7 +84,10 @@ impl Mission {
             self.enter(Phase::Fly);
         }
         let wish = self.go_to(v, self.spot, height, dt);
-        let there = (v.height() - height).abs() < REACHED && v.seen.velocity.length() < REACHED_SPEED;
+        // What gusts leave him no time to settle, the hold does at the pipe.
+        let patient = self.assist != Assist::Itself || self.step_time < PATIENCE;
+        let speed = if patient { REACHED_SPEED } else { NEAR_SPEED };
+        let there = (v.height() - height).abs() < REACHED && v.seen.velocity.length() < speed;
         if self.held_for(there, 1.0, dt) {
             Progress::Done(wish)
         } else {

@@ -11,7 +11,7 @@ use crate::scenario::Step;
 const OVER: f64 = 0.6;
 /// Distance, m, and speed, m/s, from which he leaves the rest of the way to the hold.
 const NEAR: f64 = 0.8;
-const NEAR_SPEED: f64 = 0.5;
+pub(super) const NEAR_SPEED: f64 = 0.5;
 /// Time with centred sticks before he turns the perch switch, s.
 const STILL: f64 = 1.5;
 /// Time for which the display asks for him before he takes over, s.
