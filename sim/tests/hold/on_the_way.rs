@@ -1,5 +1,8 @@
 //! Flow, range, poses and the place of the pipe that fail at any moment of perching and leaving by themselves.
 
+mod draw;
+
+use draw::Draw;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use sophie_control::position::{PoseFault as Called, SightFault};
@@ -151,87 +154,6 @@ fn flown(seed: u64, fault: Fault, part: Part, at: f64) -> Option<String> {
     (!ends_well || !bounded || missed).then(|| {
         format!("{seed} {fault:?} {part:?} at {at:.2} s: {why}, {named:?} {lean:.2} {speed:.2} {low:.2}")
     })
-}
-
-/// Missions of which seed, part and moment are drawn.
-struct Draw {
-    number: u64,
-    seeds: Vec<u64>,
-    faults: Vec<Fault>,
-    parts: Vec<Part>,
-    count: usize,
-}
-
-impl Draw {
-    /// `count` missions of `seeds` with every fault in every part.
-    fn of(number: u64, seeds: &[u64], count: usize) -> Self {
-        Self {
-            number,
-            seeds: seeds.to_vec(),
-            faults: FAULTS.to_vec(),
-            parts: PARTS.to_vec(),
-            count,
-        }
-    }
-
-    /// What `SOPHIE_DRAW`, `SOPHIE_SEEDS`, `SOPHIE_COUNT`, `SOPHIE_FAULTS` and `SOPHIE_PARTS` ask for: two hundred of draw 1
-    /// with seeds 1 to 100 and every fault in every part where they say nothing.
-    fn asked() -> Self {
-        let number = |name: &str, or: u64| {
-            let asked = std::env::var(name).ok();
-            asked.map_or(or, |n| {
-                n.parse().unwrap_or_else(|_| panic!("{name}: a number, not {n}"))
-            })
-        };
-        Self {
-            number: number("SOPHIE_DRAW", 1),
-            seeds: super::by_itself::campaign(),
-            faults: named_in("SOPHIE_FAULTS", &FAULTS),
-            parts: named_in("SOPHIE_PARTS", &PARTS),
-            count: number("SOPHIE_COUNT", 200) as usize,
-        }
-    }
-
-    /// Flies them: what is wrong with them.
-    fn judge(&self) -> Vec<String> {
-        let mut rng = Pcg64Mcg::seed_from_u64(self.number);
-        let times = |sensor| -> Vec<_> {
-            if self.faults.iter().all(|fault| fault.sensor() != sensor) {
-                return vec![];
-            }
-            let times = sophie_sim::parallel::each(&self.seeds, |seed| (*seed, parts(*seed, sensor)));
-            times
-                .into_iter()
-                .filter_map(|(seed, parts)| Some((seed, parts?)))
-                .collect()
-        };
-        let by = [times(PositionSensor::Flow), times(PositionSensor::Pose)];
-        let mut cases = vec![];
-        for i in 0..self.count {
-            // Every fault comes before one comes again; seed, part and moment are drawn.
-            let fault = self.faults[i % self.faults.len()];
-            let known = &by[usize::from(fault.sensor() == PositionSensor::Pose)];
-            let (seed, times) = known[rng.random_range(0..known.len())];
-            let part = self.parts[rng.random_range(0..self.parts.len())];
-            let (from, to) = times[part as usize];
-            cases.push((seed, fault, part, rng.random_range(from..=to)));
-        }
-        let flown =
-            sophie_sim::parallel::each(&cases, |&(seed, fault, part, at)| flown(seed, fault, part, at));
-        flown.into_iter().flatten().collect()
-    }
-}
-
-/// Those of `all` that the variable `name` lists by their names in this file; all of them where it is not set.
-fn named_in<T: Copy + std::fmt::Debug>(name: &str, all: &[T]) -> Vec<T> {
-    let Ok(asked) = std::env::var(name) else {
-        return all.to_vec();
-    };
-    let one = |asked: &str| {
-        let found = all.iter().find(|one| format!("{one:?}") == asked);
-        *found.unwrap_or_else(|| panic!("{name}: {asked} is none of {all:?}"))
-    };
-    asked.split(',').map(one).collect()
 }
 
 #[test]
