@@ -88,6 +88,28 @@ fn bad_files_are_refused_in_one_line_that_names_them() {
     assert!(line.contains(".: cannot be read: it is a directory"), "{line}");
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn input_without_an_end_is_refused() {
+    let temp = Temp::new("endless");
+    let log = temp.file("log.bin", &[0, 1, 2, 0xff]);
+    let bench = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/arm-bench.csv");
+    for args in [
+        &["check", "/dev/zero"][..],
+        &["fit-arm", "/dev/zero"],
+        &["fit-arm", bench, "--tendon", "/dev/zero"],
+        &["timing", "/dev/zero"],
+        &["timing", &log, "--elf", "/dev/zero"],
+        &["fly", "--live", "--pilot", "none", "--mavlink-key", "/dev/zero"],
+    ] {
+        let line = refused(&temp, args);
+        assert!(
+            line.starts_with("sophie: /dev/zero: cannot be read: it is longer than "),
+            "{line}"
+        );
+    }
+}
+
 #[test]
 fn an_unwritable_directory_is_told_before_the_flight() {
     let temp = Temp::new("unwritable");

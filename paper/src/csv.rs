@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-const MAX_BYTES: u64 = 16 << 20;
+const MAX_BYTES: u64 = 16 * sophie_input::MIB;
 
 /// A column of a table.
 #[derive(Clone, Copy, Debug)]
@@ -37,15 +37,8 @@ impl<const N: usize> Table<N> {
     pub fn load(&self, path: &Path) -> Result<Vec<[f64; N]>, String> {
         let file = path.display();
         let complaint = |why: String| format!("{file}: {why}");
-        let size = std::fs::metadata(path)
-            .map_err(|e| complaint(format!("cannot be read: {e}: allowed is a CSV file")))?;
-        if size.is_dir() || size.len() > MAX_BYTES {
-            return Err(complaint(
-                "cannot be read: allowed is a CSV file of at most 16 MiB".to_owned(),
-            ));
-        }
-        let bytes = std::fs::read(path)
-            .map_err(|e| complaint(format!("cannot be read: {e}: allowed is a CSV file")))?;
+        let bytes = sophie_input::read(path, MAX_BYTES)
+            .map_err(|why| complaint(format!("cannot be read: {why}: allowed is a CSV file")))?;
         let text = String::from_utf8(bytes)
             .map_err(|_| complaint("is not text: allowed is a CSV file in UTF-8".to_owned()))?;
         self.parse(&text, &file.to_string())

@@ -31,7 +31,8 @@ pub fn paper(args: &PaperArgs) -> Result<bool, String> {
 
 /// Fits an arm to bench data.
 pub fn fit_arm(args: &FitArgs) -> Result<bool, String> {
-    let file = args.bench.display().to_string();
+    // It goes into the files of parameters as a comment.
+    let file = console::one_line(&args.bench.display().to_string());
     let points = bench_data::load(&args.bench)?;
     let t = Printed::read().table_1;
     let fitted = fit::fit(&points, [t.a1, t.a2, t.b1, t.b2]).map_err(|why| format!("{file}: {why}"))?;

@@ -16,8 +16,8 @@ const FILES: [&str; 2] = ["timing.html", "timing.csv"];
 pub fn run(args: &TimingArgs) -> Result<(), String> {
     let capture = Capture::read(&args.capture, args.elf.as_deref())?;
     let out = OutDir::prepare(&args.out, &FILES)?;
-    if let Some(incomplete) = &capture.incomplete {
-        complain(PROGRAM, incomplete);
+    for line in capture.notes.iter().chain(&capture.incomplete) {
+        complain(PROGRAM, line);
     }
     let replay = Replay::of(&capture.trace);
     let mut tables = table::tables(&capture, &replay);

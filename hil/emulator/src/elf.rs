@@ -9,6 +9,9 @@ use object::{Architecture, Object, ObjectSection, ObjectSymbol};
 use crate::boards::EmulatedBoard;
 use crate::chain::Window;
 
+/// Bytes of the largest image, with its debug information.
+const MAX_BYTES: u64 = 256 * sophie_input::MIB;
+
 /// Flash contents besides the firmware.
 #[derive(Clone, Debug)]
 pub struct Loader {
@@ -46,7 +49,8 @@ impl Firmware {
     /// # Errors
     /// One line: the file, the fault, the requirement.
     pub fn read(path: &Path, board: &'static EmulatedBoard) -> Result<Self, String> {
-        let bytes = std::fs::read(path).map_err(|e| format!("{}: cannot be read: {e}", path.display()))?;
+        let bytes = sophie_input::read(path, MAX_BYTES)
+            .map_err(|why| format!("{}: cannot be read: {why}", path.display()))?;
         let wrong = |what: String| format!("{}: {what}", path.display());
         let wanted = format!("wanted is what `cargo xtask firmware {}` builds", board.name);
         let file = object::File::parse(&*bytes).map_err(|_| wrong(format!("is no ELF file; {wanted}")))?;

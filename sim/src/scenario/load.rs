@@ -1,19 +1,20 @@
 //! Scenarios from files, with overrides of the command line.
 
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 
 use sophie_control::rc::ArmChoice;
 use sophie_control::wrench::Configuration;
 use sophie_mixers::Variant;
 
-use super::error::{Place, ScenarioError};
+use super::error::{Place, ScenarioError, one_line};
 use super::read::Source;
 use super::{Assist, PositionSensor, Scenario};
 
 /// Refuses devices and wrong files.
-const MAX_BYTES: u64 = 1 << 20;
+const MAX_BYTES: u64 = sophie_input::MIB;
+
+/// Characters of a name that a file gives its scenario.
+const NAME_MAX: usize = 80;
 
 /// Command line settings, within the ranges of [`keys`](super::keys), override the file's vehicle; the stack's
 /// parameters follow, but for the file's `[params]`.
@@ -65,10 +66,8 @@ impl Scenario {
         let text = read_text(path, &file)?;
         let mut scenario = Self::parse(&text, &file, overrides)?;
         if scenario.name.is_empty() {
-            scenario.name = path
-                .file_stem()
-                .map(|s| s.to_string_lossy().into_owned())
-                .unwrap_or_default();
+            let stem = path.file_stem().unwrap_or_default();
+            scenario.name = one_line(&stem.to_string_lossy(), NAME_MAX);
         }
         Ok(scenario)
     }
@@ -88,18 +87,8 @@ pub(super) fn read_text(path: &Path, file: &str) -> Result<String, ScenarioError
         file: file.to_owned(),
         why,
     };
-    if path.is_dir() {
-        return Err(unreadable("it is a directory; allowed is a TOML file".to_owned()));
-    }
-    let mut bytes = Vec::new();
-    File::open(path)
-        .and_then(|f| f.take(MAX_BYTES + 1).read_to_end(&mut bytes))
-        .map_err(|error| unreadable(error.to_string()))?;
-    if bytes.len() as u64 > MAX_BYTES {
-        return Err(unreadable(
-            "it is longer than 1 MiB; allowed is a short TOML file".to_owned(),
-        ));
-    }
+    let bytes = sophie_input::read(path, MAX_BYTES)
+        .map_err(|why| unreadable(format!("{why}; allowed is a TOML file")))?;
     String::from_utf8(bytes).map_err(|error| {
         let good = error
             .as_bytes()

@@ -19,6 +19,10 @@ pub struct Capture {
     pub contact: Vec<Contact>,
     /// The executors' events, if logged.
     pub trace: Trace,
+    /// Starts of the board whose greeting the log has.
+    pub greetings: usize,
+    /// What to know of the file, though nothing of it is lost; a line each.
+    pub notes: Vec<String>,
     /// Unreadable and remaining parts, in a sentence.
     pub incomplete: Option<String>,
 }
@@ -43,6 +47,14 @@ impl Capture {
         let mut garbled = 0;
         for line in &messages.lines {
             garbled += usize::from(capture.take(line).is_err());
+        }
+        let note = |what: &str| format!("{}: {what}", path.display());
+        capture.notes.extend(messages.encoding.map(note));
+        let starts = capture.greetings.max(capture.trace.starts);
+        if starts > 1 {
+            capture.notes.push(note(&format!(
+                "{starts} starts of the board; the trace of each begins on the second after the one before"
+            )));
         }
         let lines = messages.lines.len();
         if capture.tasks.is_empty() && capture.trace.events.is_empty() {
@@ -84,6 +96,8 @@ impl Capture {
             && let Some((board, _)) = rest.split_once(", start after")
         {
             self.board = Some(board.to_owned());
+            self.greetings += 1;
+            self.trace.start();
             return Ok(());
         }
         if self.trace.take(line)? {

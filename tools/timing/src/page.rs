@@ -18,8 +18,8 @@ pub fn html(capture: &Capture, replay: &Replay, tables: &str) -> String {
     let mut page = format!(
         "<!doctype html>\n<html lang=\"en\"><meta charset=\"utf-8\"><title>Timing of {board}</title>\n<style>\n{STYLE}</style>\n<h1>Timing of {board}</h1>\n"
     );
-    if let Some(incomplete) = &capture.incomplete {
-        let _ = writeln!(page, "<p class=\"incomplete\">{}</p>", escaped(incomplete));
+    for line in capture.notes.iter().chain(&capture.incomplete) {
+        let _ = writeln!(page, "<p class=\"incomplete\">{}</p>", escaped(line));
     }
     let (rows, bars, what) = if replay.polls.is_empty() {
         seconds(capture)

@@ -58,11 +58,33 @@ pub struct Trace {
     pub names: Vec<Name>,
     /// Count of missing events.
     pub lost: u64,
+    /// Starts of the board in it, from the first event on.
+    pub starts: usize,
     pub(crate) next: Option<u32>,
     pub(crate) board_lost: u32,
+    /// Of the present start: its first event, and the time of its clock's zero, µs.
+    pub(crate) first: usize,
+    pub(crate) origin: u64,
+}
+
+/// True where a count that only grows, and wraps, has gone from `before` back to `now`: the board has started again.
+fn went_back(before: u32, now: u32) -> bool {
+    now.wrapping_sub(before) > u32::MAX / 2
 }
 
 impl Trace {
+    /// The board starts: its counts and clock begin again. Its events follow the last start's from the next second on.
+    pub fn start(&mut self) {
+        self.next = None;
+        self.board_lost = 0;
+        if self.events.len() > self.first {
+            self.gaps.push(self.events.len());
+            self.first = self.events.len();
+            let last = self.events.last().map_or(0, |e| e.at);
+            self.origin = (last / 1_000_000 + 1) * 1_000_000;
+        }
+    }
+
     /// Takes a line; true if it was of the trace.
     ///
     /// # Errors
@@ -76,6 +98,9 @@ impl Trace {
         }
         if let Some(count) = rest.strip_prefix("lost ") {
             let count: u32 = count.trim().parse().map_err(|_| Garbled)?;
+            if went_back(self.board_lost, count) {
+                self.start();
+            }
             self.lost += u64::from(count.wrapping_sub(self.board_lost));
             self.board_lost = count;
             self.gaps.push(self.events.len());
@@ -117,6 +142,10 @@ impl Trace {
         if !rest.is_empty() || events.is_empty() {
             return None;
         }
+        // The greeting of a start may be lost as any other line.
+        if self.next.is_some_and(|next| went_back(next, number)) {
+            self.start();
+        }
         if let Some(next) = self.next
             && number != next
         {
@@ -130,6 +159,7 @@ impl Trace {
                 u32::from_le_bytes(bytes.unwrap_or_default())
             };
             let event = self.event(word(0), word(4))?;
+            self.starts += usize::from(self.events.len() == self.first);
             self.events.push(event);
         }
         Some(())
@@ -145,8 +175,10 @@ impl Trace {
         };
         // The clock's lower half wraps every 71 minutes.
         let at = match self.events.last() {
-            Some(last) => last.at + u64::from(time.wrapping_sub(last.at as u32)),
-            None => u64::from(time),
+            Some(last) if self.events.len() > self.first => {
+                last.at + u64::from(time.wrapping_sub((last.at - self.origin) as u32))
+            }
+            _ => self.origin + u64::from(time),
         };
         Some(Event {
             at,
@@ -194,6 +226,37 @@ mod tests {
         assert_eq!((trace.lost, trace.gaps.as_slice()), (3, &[2][..]));
         assert_eq!(trace.take("trace lost 7"), Ok(true));
         assert_eq!(trace.lost, 10);
+    }
+
+    #[test]
+    fn a_start_of_the_board_is_no_loss() {
+        // With its greeting, and with that lost.
+        for greeted in [true, false] {
+            let mut trace = Trace::default();
+            for start in 0..2 {
+                if greeted {
+                    trace.start();
+                }
+                for number in [9, 10, 11] {
+                    assert_eq!(trace.take(&line(number, &[(1_500_000 + number, 0)])), Ok(true));
+                }
+                assert_eq!(trace.take(&format!("trace lost {}", 5 - start)), Ok(true));
+            }
+            assert_eq!((trace.lost, trace.starts), (5 + 4, 2), "greeted: {greeted}");
+            let times: Vec<u64> = trace.events.iter().map(|e| e.at).collect();
+            assert_eq!(times[..3], [1_500_009, 1_500_010, 1_500_011]);
+            assert_eq!(times[3..], [3_500_009, 3_500_010, 3_500_011]);
+            assert!(trace.gaps.contains(&3));
+        }
+    }
+
+    #[test]
+    fn counts_that_wrap_are_no_start() {
+        let mut trace = Trace::default();
+        for number in [u32::MAX, 0, 1] {
+            assert_eq!(trace.take(&line(number, &[(number, 0)])), Ok(true));
+        }
+        assert_eq!((trace.lost, trace.starts), (0, 1));
     }
 
     #[test]

@@ -178,3 +178,51 @@ fn what_is_no_capture_is_refused_in_one_line() {
     std::fs::remove_file(bytes).unwrap();
     std::fs::remove_file(image).unwrap();
 }
+
+#[test]
+fn a_log_of_two_starts_loses_nothing() {
+    let once = std::fs::read(capture("trace.txt")).unwrap();
+    let path = file("twice.txt", &[once.clone(), once].concat());
+    let capture = Capture::read(&path, None).unwrap();
+    std::fs::remove_file(path).unwrap();
+    assert_eq!((capture.trace.lost, capture.trace.starts), (0, 2));
+    assert!(capture.incomplete.is_none());
+    assert!(
+        capture.notes[0].contains("2 starts of the board"),
+        "{}",
+        capture.notes[0]
+    );
+    // As one start alone, twice.
+    let half = capture.trace.events.len() / 2;
+    let (first, second) = (&capture.trace.events[0], &capture.trace.events[half]);
+    assert!((1..60_000_000).contains(&(second.at - first.at)), "{}", second.at);
+    let replay = Replay::of(&capture.trace);
+    assert!(replay.idle as f64 > 0.7 * replay.covered as f64);
+}
+
+#[test]
+fn line_noise_costs_its_lines_alone() {
+    let mut log = std::fs::read(capture("trace.txt")).unwrap();
+    log.splice(90_000..90_000, *b"\xff\xfe\0");
+    let path = file("noise.txt", &log);
+    let capture = Capture::read(&path, None).unwrap();
+    std::fs::remove_file(path).unwrap();
+    let incomplete = capture.incomplete.unwrap();
+    assert!(
+        incomplete.contains("a line with unreadable bytes is left out"),
+        "{incomplete}"
+    );
+    assert!(capture.trace.lost < 20, "{incomplete}");
+}
+
+#[test]
+fn a_log_that_powershell_wrote_is_read() {
+    let log = std::fs::read_to_string(capture("perch-short.txt")).unwrap();
+    let words = std::iter::once(0xfeff).chain(log.encode_utf16());
+    let bytes: Vec<u8> = words.flat_map(u16::to_le_bytes).collect();
+    let path = file("utf16.txt", &bytes);
+    let capture = Capture::read(&path, None).unwrap();
+    std::fs::remove_file(path).unwrap();
+    assert_eq!((capture.tasks.len(), capture.incomplete), (13, None));
+    assert!(capture.notes[0].contains("UTF-16"), "{}", capture.notes[0]);
+}

@@ -252,6 +252,19 @@ fn unreadable_files_are_refused_in_one_line() {
 }
 
 #[test]
+fn a_name_from_the_file_s_own_is_one_printable_line() {
+    let name = format!("sophie-{}-\x1b[31mred\nline.toml", std::process::id());
+    let file = std::env::temp_dir().join(name);
+    std::fs::write(&file, "steps = [{ do = \"arm\" }, { do = \"disarm\" }]\n").unwrap();
+    let scenario = Scenario::load(&file, &Overrides::default()).unwrap();
+    std::fs::remove_file(&file).unwrap();
+    assert_eq!(
+        scenario.name,
+        format!("sophie-{}- [31mred line", std::process::id())
+    );
+}
+
+#[test]
 fn long_and_odd_values_stay_on_one_line() {
     let line = complaint(&format!("[vehicle]\ninfill = \"{}\"", "x".repeat(5000)));
     assert!(line.len() < 200, "{line}");

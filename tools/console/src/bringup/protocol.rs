@@ -15,7 +15,7 @@ use crate::{Failure, file};
 const HEAD: &str = "# Protocol of a bring-up, written after each step by `sophie bringup`. The next run with this file\n\
                     # continues with the first step that has not passed; --again STEP repeats one.\n";
 /// Largest file that is read, bytes.
-const LARGEST: u64 = 1 << 20;
+const LARGEST: u64 = sophie_input::MIB;
 
 /// How a step has ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -100,9 +100,9 @@ impl Protocol {
             begun: now(),
             ..Content::default()
         };
-        let size = match fs::metadata(path) {
+        match fs::metadata(path) {
             Ok(metadata) if !metadata.is_file() => return Err(refused("is no file")),
-            Ok(metadata) => metadata.len(),
+            Ok(_) => {}
             Err(error) if error.kind() == ErrorKind::NotFound => {
                 return Ok(Self {
                     path: path.to_owned(),
@@ -110,11 +110,9 @@ impl Protocol {
                 });
             }
             Err(error) => return Err(refused(&format!("cannot be read: {error}"))),
-        };
-        if size > LARGEST {
-            return Err(refused("is no protocol of a bring-up: longer than 1 MiB"));
         }
-        let text = fs::read_to_string(path).map_err(|error| refused(&format!("cannot be read: {error}")))?;
+        let text = sophie_input::read_text(path, LARGEST)
+            .map_err(|why| refused(&format!("is no protocol of a bring-up: {why}")))?;
         let content: Content = toml::from_str(&text).map_err(|error| {
             let why = error.message().lines().next().unwrap_or_default();
             refused(&format!("is no protocol of a bring-up: {why}; name another file"))

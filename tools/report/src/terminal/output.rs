@@ -4,6 +4,8 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use super::console::one_line;
+
 /// A directory that was writable when checked.
 pub struct OutDir {
     path: PathBuf,
@@ -78,7 +80,7 @@ impl OutDir {
             let name = name.as_ref();
             let path = self.path.join(name);
             fs::rename(self.partial(name), &path).map_err(|error| failed(name, error))?;
-            written.push(path.display().to_string());
+            written.push(one_line(&path.display().to_string()));
         }
         Ok(written)
     }

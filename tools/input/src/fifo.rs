@@ -1,0 +1,33 @@
+//! Opening what may be a named pipe.
+
+use std::fs::File;
+use std::io::{self, ErrorKind};
+use std::os::unix::fs::FileTypeExt;
+use std::path::Path;
+use std::sync::mpsc;
+use std::thread;
+use std::time::Duration;
+
+/// How long a named pipe may be without a writer: a program that was started at the same time opens it within that.
+const WRITER_WAIT: Duration = Duration::from_secs(5);
+
+/// Opens the file at `path`; a named pipe that no program opens for writing is given up after [`WRITER_WAIT`].
+pub fn open(path: &Path) -> io::Result<File> {
+    if !std::fs::metadata(path)?.file_type().is_fifo() {
+        return File::open(path);
+    }
+    // Opening blocks until there is a writer, and nothing in the standard library ends that: a thread waits, and is left
+    // behind where it waits in vain.
+    let (sender, opened) = mpsc::channel();
+    let path = path.to_owned();
+    thread::spawn(move || sender.send(File::open(path)));
+    opened.recv_timeout(WRITER_WAIT).unwrap_or_else(|_| {
+        Err(io::Error::new(
+            ErrorKind::TimedOut,
+            format!(
+                "no program writes into this pipe within {} s",
+                WRITER_WAIT.as_secs()
+            ),
+        ))
+    })
+}
