@@ -12,7 +12,8 @@ mod values;
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand};
+use clap::error::ErrorKind;
+use clap::{Args, CommandFactory, Parser, Subcommand};
 
 pub use console::{BringupArgs, ParamsArgs, ParamsVerb};
 pub use data::{FitArgs, TimingArgs};
@@ -112,5 +113,13 @@ fn parse_from(
     args: impl IntoIterator<Item = impl Into<std::ffi::OsString> + Clone>,
 ) -> Result<Task, Message> {
     let cli = Cli::try_parse_from(args).map_err(Message)?;
-    Ok(cli.command.unwrap_or(Task::Fly(cli.fly)))
+    let task = cli.command.unwrap_or(Task::Fly(cli.fly));
+    // Options that are right one by one.
+    let together = match &task {
+        Task::Capture(args) => values::seeds(args.seed, args.touches, "touches"),
+        Task::Study(args) => values::seeds(args.seed, args.count, "vehicles"),
+        _ => Ok(()),
+    };
+    together.map_err(|why| Message(Cli::command().error(ErrorKind::ValueValidation, why)))?;
+    Ok(task)
 }

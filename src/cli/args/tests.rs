@@ -66,6 +66,14 @@ fn refusals_are_one_line_that_says_what_is_allowed() {
             "invalid value '18446744073709551615' for '--seed <N>': allowed a whole number from 0 to 9e15",
         ),
         (
+            "study vehicles --seed 9e15 --count 2",
+            "invalid value '9000000000000000' for '--seed <N>': the last of 2 vehicles has seed 9000000000000001: allowed a whole number from 0 to 9e15",
+        ),
+        (
+            "capture --seed 8999999999999991 --touches 11",
+            "invalid value '8999999999999991' for '--seed <N>': the last of 11 touches has seed 9000000000000001: allowed a whole number from 0 to 9e15",
+        ),
+        (
             "a.toml b.toml",
             "unexpected argument 'b.toml': allowed is one scenario file",
         ),

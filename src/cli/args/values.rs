@@ -27,6 +27,18 @@ pub(super) fn seed(text: &str) -> Result<u64, String> {
     seed.ok_or_else(|| format!("allowed {}", keys::SEED_ALLOWED))
 }
 
+/// Refuses `count` seeds from `first` on where the last is none.
+pub(super) fn seeds(first: u64, count: u64, of: &str) -> Result<(), String> {
+    let last = first.saturating_add(count.saturating_sub(1));
+    match keys::seed(last as f64) {
+        Some(_) => Ok(()),
+        None => Err(format!(
+            "invalid value '{first}' for '--seed <N>': the last of {count} {of} has seed {last}: allowed {}",
+            keys::SEED_ALLOWED
+        )),
+    }
+}
+
 /// One of the words.
 pub(super) fn word<'a>(text: &'a str, allowed: &[&str]) -> Result<&'a str, String> {
     if allowed.contains(&text) {
