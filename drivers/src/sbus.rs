@@ -64,7 +64,7 @@ pub enum SbusError {
     FrameLost,
     /// Transmitter lost.
     Failsafe,
-    /// Channel out of range.
+    /// A channel without a pulse.
     Channel(ChannelError),
 }
 
@@ -122,7 +122,7 @@ impl Frame {
     /// The pilot's sticks.
     ///
     /// # Errors
-    /// A frame that the receiver made up, or a channel out of range: the caller drops it, so the link turns stale.
+    /// A frame that the receiver made up, or a channel without a pulse: the caller drops it, so the link turns stale.
     pub fn sticks(&self) -> Result<Sticks, SbusError> {
         if self.failsafe {
             return Err(SbusError::Failsafe);

@@ -391,7 +391,11 @@ fn a_line_error_costs_the_frame_in_progress_and_trust() {
 }
 
 #[test]
-fn channels_that_no_transmitter_sends_are_garbage() {
+fn counts_of_a_lost_radio_are_garbage_and_those_beyond_full_stick_are_full_stick() {
+    let mut d = believing();
+    let mut full = pilot();
+    full.channels[2] = 2047;
+    assert_eq!(published(&mut d, &full.encode(), 28_000), Some(100));
     let mut d = believing();
     let mut silly = pilot();
     silly.channels[2] = 0;
