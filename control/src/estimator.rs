@@ -14,6 +14,8 @@ pub const CALIBRATION_TIME: f32 = 2.0;
 const REST_RATE: f32 = 0.15;
 /// Departure from the running mean in motion, rad/s: on soft arms the wind rocks the vehicle by half of this.
 const REST_DEVIATION: f32 = 0.08;
+/// Specific force of rest, share of gravity: what weighs nothing falls, what weighs twice as much is no sound sensor's.
+const REST_FORCE: core::ops::RangeInclusive<f32> = 0.5..=1.5;
 /// Specific force error at which the pull has faded out, share of gravity.
 const ACCEL_FADE: f32 = 0.15;
 /// Largest gyro bias accepted, rad/s.
@@ -83,13 +85,16 @@ impl Estimator {
     // Not inlined: its caller is built for size.
     #[inline(never)]
     pub fn estimate(&mut self, sample: &ImuSample, attitude: &mut Attitude) {
-        let rate = self.step(sample.gyro, sample.accel, sample.dt);
+        // No force pulls nowhere, and is no rest.
+        let felt = if sample.clipped { Vec3::ZERO } else { sample.accel };
+        let rate = self.step(sample.gyro, felt, sample.dt);
         *attitude = Attitude {
             q: self.q,
             rate,
             accel: sample.accel,
             gyro_bias: self.bias,
             calibrated: self.calibrated,
+            clipped: sample.clipped,
             dt: sample.dt,
         };
     }
@@ -161,8 +166,9 @@ impl Estimator {
             return;
         }
         let limit = |v: Vec3, l: f32| v.to_array().iter().all(|x| (-l..=l).contains(x));
-        let still =
-            limit(gyro, REST_RATE) && (self.rest_time < 0.2 || limit(gyro - self.rest_gyro, REST_DEVIATION));
+        let still = limit(gyro, REST_RATE)
+            && accel != Vec3::ZERO
+            && (self.rest_time < 0.2 || limit(gyro - self.rest_gyro, REST_DEVIATION));
         if !still {
             self.rest_time = 0.0;
             return;
@@ -177,7 +183,8 @@ impl Estimator {
         let k = dt / self.rest_time;
         self.rest_gyro += (gyro - self.rest_gyro) * k;
         self.rest_accel += (accel - self.rest_accel) * k;
-        if self.rest_time >= CALIBRATION_TIME && self.rest_accel.norm() > 0.5 * GRAVITY {
+        let g = self.rest_accel.norm() * (1.0 / GRAVITY);
+        if self.rest_time >= CALIBRATION_TIME && REST_FORCE.contains(&g) {
             self.start(self.rest_gyro);
         }
     }

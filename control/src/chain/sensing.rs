@@ -3,7 +3,7 @@
 use super::messages::{ImuReading, ImuSample};
 use super::step_clock::{CONTROL_RATE_HZ, StepClock};
 use crate::imu_filter::ImuFilter;
-use crate::math;
+use crate::math::{self, GRAVITY};
 use crate::mounting::Mounting;
 use crate::params::Params;
 use crate::vector::Vec3;
@@ -31,7 +31,7 @@ impl Sensing {
     pub fn new(p: &Params, rate_hz: f32) -> Self {
         let mounting = Mounting::from(p.imu_mounting);
         Self {
-            filter: ImuFilter::new(p.gyro_cutoff, rate_hz),
+            filter: ImuFilter::new(p.gyro_cutoff, rate_hz, GRAVITY * p.imu_accel_range.number()),
             accel_bias: Vec3::new(p.accel_bias_x, p.accel_bias_y, p.accel_bias_z),
             accel_gain: Vec3::new(p.accel_scale_x, p.accel_scale_y, p.accel_scale_z).map(|scale| 1.0 / scale),
             mounting: (mounting != Mounting::AS_BUILT).then_some(mounting),
@@ -53,6 +53,7 @@ impl Sensing {
         }
         sample.gyro = newest.gyro;
         sample.accel = newest.accel.scale_by(self.accel_gain);
+        sample.clipped = self.filter.clips(finite);
         if let Some(mounting) = self.mounting {
             turn(&mounting, sample);
         }
@@ -121,7 +122,7 @@ mod tests {
             gyro: Vec3::new(0.1, -0.0, 3e-30),
             accel: Vec3::new(-0.0, 1e-38, -9.81),
         };
-        let mut filter = ImuFilter::new(Params::DEFAULT.gyro_cutoff, 4000.0);
+        let mut filter = ImuFilter::new(Params::DEFAULT.gyro_cutoff, 4000.0, 16.0 * GRAVITY);
         let mut newest = ImuReading::default();
         filter.batch(&[read; 4], Vec3::ZERO, &mut newest);
         let found = sample(&Params::DEFAULT, read);
