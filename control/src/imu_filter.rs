@@ -54,31 +54,15 @@ pub struct ImuFilter {
     gyro: AxisFilter,
     accel: AxisFilter,
     started: bool,
-    /// Square of the specific force that clips, (m/s²)².
-    clips_at: f32,
-    /// Readings until the last that clipped is out of the output and of the pilot's sight.
-    clipped: u32,
-    /// Readings in [`Self::CLIP_HOLD`].
-    clip_hold: u32,
 }
 
 impl ImuFilter {
     /// Cut-off of the accelerometer, Hz: for slow correction and support.
     pub const ACCEL_CUTOFF: f32 = 30.0;
 
-    /// Time after a clipped reading in which the output counts as clipped, s: it has settled to 0.1 % in 0.05 s, and a
-    /// display that is sent five times a second shows it.
-    pub const CLIP_HOLD: f32 = 0.5;
-    /// A reading clips from so far below full scale on, m/s²: the largest bias (0.6) is taken off before.
-    const CLIP_MARGIN: f32 = 1.0;
-
-    /// For samples at `rate_hz` of an accelerometer that reads up to `accel_range` m/s², with the gyro's cut-off `gyro_hz`.
-    pub fn new(gyro_hz: f32, rate_hz: f32, accel_range: f32) -> Self {
-        let clips_at = accel_range - Self::CLIP_MARGIN;
+    /// For samples at `rate_hz`, with the gyro's cut-off `gyro_hz`.
+    pub fn new(gyro_hz: f32, rate_hz: f32) -> Self {
         Self {
-            clips_at: clips_at * clips_at,
-            clipped: 0,
-            clip_hold: (Self::CLIP_HOLD * rate_hz) as u32,
             gyro: AxisFilter::low_pass(gyro_hz, rate_hz),
             accel: AxisFilter::low_pass(Self::ACCEL_CUTOFF, rate_hz),
             started: false,
@@ -100,35 +84,13 @@ impl ImuFilter {
                 gyro: *gyro,
                 accel: *accel - accel_bias,
             };
-            // One comparison finds what is not finite and what clips.
-            let size = unbiased.accel.norm_squared();
-            if size + (gyro.x + gyro.y + gyro.z).abs() < filter.clips_at {
-                last = filter.smooth(unbiased);
-                finite += 1;
-            } else if unbiased.is_finite() {
-                filter.clip(size);
+            if unbiased.is_finite() {
                 last = filter.smooth(unbiased);
                 finite += 1;
             }
         }
         (*self, *newest) = (filter, last);
         finite
-    }
-
-    /// An axis at full scale hides what lies beyond it: with a shake that is not even, the mean leans.
-    #[cold]
-    #[inline(never)]
-    fn clip(&mut self, size: f32) {
-        if size >= self.clips_at {
-            self.clipped = self.clip_hold;
-        }
-    }
-
-    /// True for [`Self::CLIP_HOLD`] after a reading that clipped; to be asked after each batch of `readings`.
-    #[inline(always)]
-    pub fn clips(&mut self, readings: u32) -> bool {
-        self.clipped = self.clipped.saturating_sub(readings);
-        self.clipped > 0
     }
 
     #[cold]
@@ -154,9 +116,6 @@ impl ImuFilter {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::GRAVITY;
-
-    const RANGE: f32 = 16.0 * GRAVITY;
 
     fn one(f: &mut ImuFilter, gyro: Vec3, accel: Vec3) -> Option<ImuReading> {
         let mut newest = ImuReading::default();
@@ -165,7 +124,7 @@ mod tests {
 
     #[test]
     fn starts_without_a_transient_and_drops_bad_samples() {
-        let mut f = ImuFilter::new(90.0, 4000.0, RANGE);
+        let mut f = ImuFilter::new(90.0, 4000.0);
         let (g, a) = (Vec3::new(0.1, -0.2, 0.3), Vec3::new(0.0, 0.5, -9.8));
         for _ in 0..2000 {
             let out = one(&mut f, g, a).expect("finite");
@@ -187,7 +146,7 @@ mod tests {
             gyro: Vec3::new(0.1, -0.2, 0.3),
             accel: Vec3::new(0.0, 0.5, -9.8),
         };
-        let mut f = ImuFilter::new(90.0, 4000.0, RANGE);
+        let mut f = ImuFilter::new(90.0, 4000.0);
         let kept = good;
         let mut newest = kept;
         assert!(f.batch(&[bad; 3], bias, &mut newest) == 0 && newest == kept);
@@ -198,7 +157,7 @@ mod tests {
 
     /// Gain and delay (s) of the gyro's filter at `hz`, at its 1 kHz output.
     fn response(hz: f64, rate_hz: f64) -> (f64, f64) {
-        let mut f = ImuFilter::new(90.0, rate_hz as f32, RANGE);
+        let mut f = ImuFilter::new(90.0, rate_hz as f32);
         let per_output = (rate_hz / 1000.0) as usize;
         let turn = core::f64::consts::TAU * hz;
         let (mut in_phase, mut quadrature, mut n) = (0.0, 0.0, 0);

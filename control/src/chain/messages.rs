@@ -33,7 +33,7 @@ pub struct ImuSample {
     pub accel: Vec3,
     /// Time since the last sample, s, limited.
     pub dt: f32,
-    /// The accelerometer has been at its full scale within [`ImuFilter::CLIP_HOLD`](crate::imu_filter::ImuFilter::CLIP_HOLD).
+    /// The accelerometer has been at its full scale within the last half a second.
     pub clipped: bool,
 }
 

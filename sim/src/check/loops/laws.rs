@@ -71,7 +71,7 @@ impl Laws {
 fn filter(params: &Params) -> Response {
     let rate = params.imu_rate.number();
     let per_step = (rate / CONTROL_RATE_HZ).max(1.0) as usize;
-    let mut filter = ImuFilter::new(params.gyro_cutoff, rate, f32::MAX);
+    let mut filter = ImuFilter::new(params.gyro_cutoff, rate);
     let reading = |gyro: f32| ImuReading {
         gyro: Vec3::new(gyro, 0.0, 0.0),
         accel: Vec3::ZERO,
