@@ -37,6 +37,8 @@ pub struct Estimator {
     rest_accel: Vec3,
     known_bias: Option<Vec3>,
     calibrated: bool,
+    /// The force of this step has clipped.
+    clipped: bool,
 }
 
 impl Estimator {
@@ -52,6 +54,7 @@ impl Estimator {
             rest_accel: Vec3::ZERO,
             known_bias: None,
             calibrated: false,
+            clipped: false,
         }
     }
 
@@ -85,9 +88,8 @@ impl Estimator {
     // Not inlined: its caller is built for size.
     #[inline(never)]
     pub fn estimate(&mut self, sample: &ImuSample, attitude: &mut Attitude) {
-        // No force pulls nowhere, and is no rest.
-        let felt = if sample.clipped { Vec3::ZERO } else { sample.accel };
-        let rate = self.step(sample.gyro, felt, sample.dt);
+        self.clipped = sample.clipped;
+        let rate = self.step(sample.gyro, sample.accel, sample.dt);
         *attitude = Attitude {
             q: self.q,
             rate,
@@ -115,7 +117,12 @@ impl Estimator {
         let weight = 1.0 - excess.abs() * (1.0 / ACCEL_FADE);
         let weight = math::clamp(weight, 0.0, 1.0);
         let error = (accel * -inv).cross(self.q.down_in_body()) * weight;
-        let error = if error.is_finite() { error } else { Vec3::ZERO };
+        // What has clipped is cut off on one side, and leans.
+        let error = if error.is_finite() && !self.clipped {
+            error
+        } else {
+            Vec3::ZERO
+        };
         self.bias = (self.bias - error * (self.ki * dt)).map(|b| math::clamp_abs(b, BIAS_MAX));
         self.integrate(rate + error * self.kp, dt);
         rate
@@ -153,7 +160,7 @@ impl Estimator {
     fn calibrate(&mut self, gyro: Vec3, accel: Vec3, dt: f32) {
         if let Some(bias) = self.known_bias {
             let g = accel.norm() * (1.0 / GRAVITY);
-            if !((1.0 - RESUME_ERROR)..=(1.0 + RESUME_ERROR)).contains(&g) {
+            if self.clipped || !((1.0 - RESUME_ERROR)..=(1.0 + RESUME_ERROR)).contains(&g) {
                 self.rest_time = 0.0;
                 return;
             }
@@ -167,7 +174,7 @@ impl Estimator {
         }
         let limit = |v: Vec3, l: f32| v.to_array().iter().all(|x| (-l..=l).contains(x));
         let still = limit(gyro, REST_RATE)
-            && accel != Vec3::ZERO
+            && !self.clipped
             && (self.rest_time < 0.2 || limit(gyro - self.rest_gyro, REST_DEVIATION));
         if !still {
             self.rest_time = 0.0;
