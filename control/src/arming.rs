@@ -68,7 +68,7 @@ arming_checks! {
     RcLost = "radio lost", "fresh frames";
     /// No fresh attitude.
     ImuStale = "inertial sensor silent", "fresh attitudes";
-    /// The gyro has not been calibrated at rest.
+    /// The gyro has not been calibrated at rest, or its attitude is not that of gravity.
     NotCalibrated = "not calibrated", "two seconds at rest";
     /// The arm switch has been on since power-up.
     SwitchOnAtPowerUp = "arm switch on at power-up", "the pilot: arm switch off";
@@ -170,7 +170,7 @@ impl FromIterator<ArmingInhibit> for ArmingInhibits {
 /// Inputs of the arming checks.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Checks {
-    /// Calibration at rest has ended.
+    /// Calibration at rest has ended, and the attitude is that of gravity.
     pub calibrated: bool,
     /// Cosine of the tilt; `None` without a fresh attitude.
     pub cos_tilt: Option<f32>,

@@ -5,6 +5,8 @@
 //! replays run them as one [`FlightChain`], with identical bits for a recorded mission.
 
 mod control;
+#[cfg(test)]
+mod lying_sensor_tests;
 pub(crate) mod messages;
 pub(crate) mod mixing;
 mod sensing;

@@ -14,6 +14,8 @@ pub const CALIBRATION_TIME: f32 = 2.0;
 const REST_RATE: f32 = 0.15;
 /// Departure from the running mean in motion, rad/s: on soft arms the wind rocks the vehicle by half of this.
 const REST_DEVIATION: f32 = 0.08;
+/// Specific force of rest, share of gravity: what weighs nothing falls, what weighs twice as much is no sound sensor's.
+const REST_FORCE: core::ops::RangeInclusive<f32> = 0.5..=1.5;
 /// Specific force error at which the pull has faded out, share of gravity.
 const ACCEL_FADE: f32 = 0.15;
 /// Largest gyro bias accepted, rad/s.
@@ -35,6 +37,8 @@ pub struct Estimator {
     rest_accel: Vec3,
     known_bias: Option<Vec3>,
     calibrated: bool,
+    /// The force of this step has clipped.
+    clipped: bool,
 }
 
 impl Estimator {
@@ -50,6 +54,7 @@ impl Estimator {
             rest_accel: Vec3::ZERO,
             known_bias: None,
             calibrated: false,
+            clipped: false,
         }
     }
 
@@ -83,6 +88,7 @@ impl Estimator {
     // Not inlined: its caller is built for size.
     #[inline(never)]
     pub fn estimate(&mut self, sample: &ImuSample, attitude: &mut Attitude) {
+        self.clipped = sample.clipped;
         let rate = self.step(sample.gyro, sample.accel, sample.dt);
         *attitude = Attitude {
             q: self.q,
@@ -90,6 +96,7 @@ impl Estimator {
             accel: sample.accel,
             gyro_bias: self.bias,
             calibrated: self.calibrated,
+            clipped: sample.clipped,
             dt: sample.dt,
         };
     }
@@ -110,7 +117,12 @@ impl Estimator {
         let weight = 1.0 - excess.abs() * (1.0 / ACCEL_FADE);
         let weight = math::clamp(weight, 0.0, 1.0);
         let error = (accel * -inv).cross(self.q.down_in_body()) * weight;
-        let error = if error.is_finite() { error } else { Vec3::ZERO };
+        // What has clipped is cut off on one side, and leans.
+        let error = if error.is_finite() && !self.clipped {
+            error
+        } else {
+            Vec3::ZERO
+        };
         self.bias = (self.bias - error * (self.ki * dt)).map(|b| math::clamp_abs(b, BIAS_MAX));
         self.integrate(rate + error * self.kp, dt);
         rate
@@ -148,7 +160,7 @@ impl Estimator {
     fn calibrate(&mut self, gyro: Vec3, accel: Vec3, dt: f32) {
         if let Some(bias) = self.known_bias {
             let g = accel.norm() * (1.0 / GRAVITY);
-            if !((1.0 - RESUME_ERROR)..=(1.0 + RESUME_ERROR)).contains(&g) {
+            if self.clipped || !((1.0 - RESUME_ERROR)..=(1.0 + RESUME_ERROR)).contains(&g) {
                 self.rest_time = 0.0;
                 return;
             }
@@ -161,8 +173,9 @@ impl Estimator {
             return;
         }
         let limit = |v: Vec3, l: f32| v.to_array().iter().all(|x| (-l..=l).contains(x));
-        let still =
-            limit(gyro, REST_RATE) && (self.rest_time < 0.2 || limit(gyro - self.rest_gyro, REST_DEVIATION));
+        let still = limit(gyro, REST_RATE)
+            && !self.clipped
+            && (self.rest_time < 0.2 || limit(gyro - self.rest_gyro, REST_DEVIATION));
         if !still {
             self.rest_time = 0.0;
             return;
@@ -177,7 +190,8 @@ impl Estimator {
         let k = dt / self.rest_time;
         self.rest_gyro += (gyro - self.rest_gyro) * k;
         self.rest_accel += (accel - self.rest_accel) * k;
-        if self.rest_time >= CALIBRATION_TIME && self.rest_accel.norm() > 0.5 * GRAVITY {
+        let g = self.rest_accel.norm() * (1.0 / GRAVITY);
+        if self.rest_time >= CALIBRATION_TIME && REST_FORCE.contains(&g) {
             self.start(self.rest_gyro);
         }
     }

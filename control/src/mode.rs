@@ -52,6 +52,7 @@ use crate::arming::ArmingInhibits;
 use crate::bench::{BenchAnswer, BenchRequest};
 use crate::grip::GripState;
 use crate::grip_memory::GripMemory;
+use crate::math::{self, GRAVITY, deg};
 use crate::position;
 use crate::rc::Sticks;
 use crate::remote::{RemoteAnswer, RemoteRequest};
@@ -166,6 +167,21 @@ pub struct Motion {
     pub accel: Vec3,
     /// True once calibration at rest has ended.
     pub calibrated: bool,
+}
+
+/// Largest angle between gravity and the attitude at rest, rad: an accelerometer's bias of 60 mg is 3.4°, and arms sway.
+const UNSEEN_LEAN: f32 = deg(10.0);
+/// Specific force at which the accelerometer says where down is, share of gravity.
+const RESTING_FORCE: core::ops::RangeInclusive<f32> = 0.8..=1.2;
+
+impl Motion {
+    /// At rest the accelerometer says that the vehicle leans otherwise than it is taken to: the gyro's bias has stepped, or it
+    /// has turned faster than the gyro reads.
+    pub(crate) fn leans_unseen(&self) -> bool {
+        let force = self.accel.norm();
+        let along = -self.accel.dot(self.q.down_in_body());
+        RESTING_FORCE.contains(&(force / GRAVITY)) && along < force * math::cos(UNSEEN_LEAN)
+    }
 }
 
 /// Inputs of one step; `None` stands for a stale message.

@@ -15,20 +15,24 @@
 //! | 9 | hold switch | off, off, on |
 //!
 //! Channel 9 came later: a transmitter that leaves it out, or centres it, flies without.
+//!
+//! Counts above the stick's end come from a transmitter that is there (EdgeTX's extended limits send up to 1984, full
+//! resolution up to 2047): the stick is at its end. So it is over SBUS, which has no checksum: to refuse them would
+//! keep out one of four random frames, where header, flags and end of three in a row keep out all but 5e-14. Counts
+//! below the least are what receivers send without a transmitter.
 
 use crate::math::clamp;
 
 /// Channels in a frame.
 pub const CHANNELS: usize = 16;
-const USED: usize = 8;
 /// Counts at the low end of a stick's travel.
 pub const RAW_LOW: u16 = 172;
 /// Counts at the centre.
 pub const RAW_CENTRE: u16 = 992;
 /// Counts at the high end.
 pub const RAW_HIGH: u16 = 1811;
-/// Accepted counts: 885 to 2115 µs. A receiver without transmitter sends less.
-const RAW_VALID: core::ops::RangeInclusive<u16> = 8..=1976;
+/// Least count of a transmitter, 885 µs. A receiver without one sends less.
+const RAW_LEAST: u16 = 8;
 /// Half the travel of a centred stick, counts.
 const RAW_HALF: f32 = 819.5;
 const RAW_SPAN: f32 = 1639.0;
@@ -96,7 +100,7 @@ pub struct Sticks {
     pub arms: ArmChoice,
 }
 
-/// A channel with an implausible count.
+/// A needed channel with a count that no transmitter sends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ChannelError {
     /// Channel, from 1.
@@ -109,14 +113,23 @@ impl Sticks {
     /// Decodes a frame.
     ///
     /// # Errors
-    /// A used channel outside the accepted range; the frame must be dropped.
+    /// A stick, the arm switch or the perch switch below the least count: the frame must be dropped, as its low end would
+    /// lean the vehicle, stop its motors or let go of the pipe. Any other channel then reads as its low position.
     pub fn from_channels(channels: &[u16; CHANNELS]) -> Result<Self, ChannelError> {
-        for (channel, &raw) in (1..).zip(channels.iter().take(USED)) {
-            if !RAW_VALID.contains(&raw) {
+        let &[roll, pitch, throttle, yaw, arm, mode, perch, arms, hold, ..] = channels;
+        let needed = [
+            (1, roll),
+            (2, pitch),
+            (3, throttle),
+            (4, yaw),
+            (5, arm),
+            (7, perch),
+        ];
+        for (channel, raw) in needed {
+            if raw < RAW_LEAST {
                 return Err(ChannelError { channel, raw });
             }
         }
-        let &[roll, pitch, throttle, yaw, arm, mode, perch, arms, hold, ..] = channels;
         Ok(Self {
             roll: centred(roll),
             pitch: -centred(pitch),
@@ -124,7 +137,7 @@ impl Sticks {
             throttle: from_zero(throttle),
             arm_switch: position(arm) == Position::High,
             perch_switch: position(perch) == Position::High,
-            hold_switch: RAW_VALID.contains(&hold) && position(hold) == Position::High,
+            hold_switch: position(hold) == Position::High,
             stick_mode: match position(mode) {
                 Position::Low => StickMode::Angle,
                 Position::Middle => StickMode::Rate,

@@ -2,8 +2,12 @@
 //!
 //! A receiver without its transmitter may repeat the last channels. At 0 % uplink quality in its link statistics no
 //! sticks are published: the link turns stale and the failsafe acts. Sticks resume with the first frame after a quality
-//! above 0 %, or after 1 s without statistics, which some receivers never send. Receivers should be set to "no pulses"
+//! above 0 %, and with nothing else: a receiver may report the loss and then be silent about its link, and channels that
+//! change may be its failsafe's. One that never sends statistics is heard. Receivers should be set to "no pulses"
 //! without a link.
+//!
+//! Channels are read from frames of type 0x16. Those of type 0x17 (some of the channels, CRSF 3) are not: a receiver
+//! sends them only to a vehicle that has agreed to CRSF 3, which this one never does.
 
 use embassy_time::{Duration, Instant};
 use sophie_control::rc::Sticks;
@@ -11,8 +15,6 @@ use sophie_tasks::links::RcState;
 use sophie_tasks::ports::RcDecoder;
 use uf_crsf::{CrsfParser, Packet};
 
-/// Age at which link statistics expire; receivers report at 5 to 10 Hz.
-const STATISTICS_SILENCE: Duration = Duration::from_secs(1);
 /// Ten bits at 420 kbaud.
 const BYTE: Duration = Duration::from_micros(24);
 /// Line pause that ends a frame: twice the longest, 64 bytes. A returning link must not complete an old frame.
@@ -22,8 +24,8 @@ const SILENCE: Duration = Duration::from_millis(3);
 pub struct Decoder {
     parser: CrsfParser,
     state: RcState,
-    /// Last report of 0 % uplink quality.
-    lost: Option<Instant>,
+    /// The last report was of 0 % uplink quality.
+    lost: bool,
     last: Option<Instant>,
     unfinished: bool,
 }
@@ -40,7 +42,7 @@ impl Decoder {
         Self {
             parser: CrsfParser::new(),
             state: RcState::default(),
-            lost: None,
+            lost: false,
             last: None,
             unfinished: false,
         }
@@ -64,9 +66,6 @@ impl RcDecoder for Decoder {
             self.drop_unfinished();
         }
         let mut news = false;
-        self.lost = self
-            .lost
-            .filter(|since| at.saturating_duration_since(*since) < STATISTICS_SILENCE);
         self.unfinished |= !bytes.is_empty();
         while let Some(packet) = self.parser.next_packet(&mut bytes) {
             self.unfinished = !bytes.is_empty();
@@ -74,7 +73,7 @@ impl RcDecoder for Decoder {
                 Ok(Packet::RCChannels(channels)) => match Sticks::from_channels(&channels.0) {
                     Ok(sticks) => {
                         self.state.frames = self.state.frames.wrapping_add(1);
-                        if self.lost.is_none() {
+                        if !self.lost {
                             self.state.sticks = sticks;
                             news = true;
                         }
@@ -82,9 +81,9 @@ impl RcDecoder for Decoder {
                     Err(_) => self.state.errors = self.state.errors.wrapping_add(1),
                 },
                 Ok(Packet::LinkStatistics(link)) => {
-                    self.lost = (link.uplink_link_quality == 0).then_some(at);
+                    self.lost = link.uplink_link_quality == 0;
                     // Earlier frames may be repetitions.
-                    news &= self.lost.is_none();
+                    news &= !self.lost;
                 }
                 Ok(_) => (),
                 Err(_) => self.state.errors = self.state.errors.wrapping_add(1),
@@ -184,16 +183,61 @@ mod tests {
     }
 
     #[test]
-    fn a_report_of_loss_counts_for_a_second() {
+    fn a_report_of_loss_counts_until_a_quality_above_zero_comes() {
+        // ExpressLRS 3.x: two reports at the loss, then none; the last frame goes on for an hour.
         let mut d = Decoder::new();
+        assert_eq!(published(&mut d, &throttle(0.3), 100), Some(30));
         let _ = published(&mut d, &statistics(0), 500);
-        assert_eq!(published(&mut d, &throttle(0.3), 1499), None);
-        assert_eq!(published(&mut d, &throttle(0.3), 1500), Some(30));
+        let _ = published(&mut d, &statistics(0), 600);
+        for ms in (620..3_600_000).step_by(100) {
+            assert_eq!(published(&mut d, &throttle(0.3), ms), None, "{ms}");
+        }
+        // A line that fails or was silent is no good news either, nor is a cut report.
+        d.broken(Instant::from_millis(3_600_000));
+        assert_eq!(published(&mut d, &throttle(0.3), 3_700_000), None);
+        let cut = statistics(50);
+        assert_eq!(published(&mut d, &cut[..9], 3_700_010), None);
+        assert_eq!(published(&mut d, &throttle(0.3), 3_700_020), None);
+        assert_eq!(published(&mut d, &statistics(1), 3_700_030), None);
+        assert_eq!(published(&mut d, &throttle(0.4), 3_700_040), Some(40));
         // A report counts for every frame of its read.
         let read = [throttle(0.1), statistics(0), throttle(0.2)].concat();
-        assert_eq!(published(&mut d, &read, 1600), None);
+        assert_eq!(published(&mut d, &read, 3_700_050), None);
         let read = [throttle(0.1), statistics(50), throttle(0.2)].concat();
-        assert_eq!(published(&mut d, &read, 1700), Some(20));
+        assert_eq!(published(&mut d, &read, 3_700_060), Some(20));
+    }
+
+    #[test]
+    fn a_stick_beyond_its_range_is_held_at_full_and_low_counts_are_a_lost_radio() {
+        let mut d = Decoder::new();
+        let mut seen = |channel: usize, raw: u16, ms: u64| {
+            let mut channels = Sticks {
+                throttle: 0.5,
+                ..Default::default()
+            }
+            .to_channels();
+            channels[channel] = raw;
+            let mut out = [0; 64];
+            let packet = RcChannelsPacked(channels);
+            let n = write_packet_to_buffer(&mut out, PacketAddress::FlightController, &packet).unwrap_or(0);
+            d.take(&out[..n], Instant::from_millis(ms))
+                .map(|state| state.sticks)
+        };
+        // EdgeTX's extended limits end at 1984; full 11 bits at 2047.
+        for (i, raw) in (0..).zip([1976, 1977, 1984, 2047]) {
+            let stick = seen(0, raw, 100 + 20 * i).map(|s| s.roll);
+            assert_eq!(stick, Some(1.0), "{raw}");
+            assert!(seen(15, raw, 110 + 20 * i).is_some());
+        }
+        for (i, raw) in (0..).zip([0, 7]) {
+            assert!(seen(0, raw, 200 + 20 * i).is_none(), "{raw}");
+            assert!(seen(2, raw, 205 + 20 * i).is_none(), "{raw}");
+            assert!(
+                seen(15, raw, 210 + 20 * i).is_some(),
+                "unused: it costs itself alone"
+            );
+        }
+        assert_eq!(d.state.errors, 4);
     }
 
     #[test]

@@ -62,7 +62,13 @@ pub async fn run(links: &Links) -> ! {
 /// Warning that does not affect the modes.
 fn warning(links: &Links, mode: Mode, limit: Option<SightLimit>) -> &'static str {
     let started = Warning::Restarted(links.start.cause);
-    if links.mix.fresh().is_some_and(|m| m.running && m.tilt_fault) {
+    let clipped = links
+        .attitude
+        .fresh_to(Instant::now(), |a| a.clipped)
+        .unwrap_or(false);
+    if clipped {
+        Warning::AccelClips.text()
+    } else if links.mix.fresh().is_some_and(|m| m.running && m.tilt_fault) {
         Warning::ArmTilt.text()
     } else if mode.rotors_stand() && !started.text().is_empty() {
         started.text()

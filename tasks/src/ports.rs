@@ -125,8 +125,8 @@ pub trait Servos {
 
 /// A serial line towards the vehicle: the receiver's or the console's.
 pub trait SerialInput {
-    /// Waits for bytes and puts them at the start of `buffer`; returns how many. The future may be dropped before it is
-    /// ready, and loses nothing then.
+    /// Waits for bytes and puts them at the start of `buffer`; returns how many, at the latest when the line idles. The
+    /// future may be dropped before it is ready, and loses nothing then.
     ///
     /// # Errors
     /// A line error; the next call starts a new frame.
@@ -138,7 +138,12 @@ pub trait SerialInput {
     }
 }
 
-/// The receiver's protocol: frames and counts out of the bytes of its line, however these are cut.
+/// The receiver's protocol: frames and counts out of the bytes of its line.
+///
+/// A read may end anywhere in a frame, and a late one may hold several frames with the pauses between them; but a pause
+/// lies at the start of a read or between the whole frames that the read begins with, as [`SerialInput`] gives them. A
+/// protocol whose frames are found by pauses (SBUS) cannot place one within a read that begins in mid-frame, as only the
+/// read has a time: it publishes nothing then, rather than half of one frame with half of another.
 pub trait RcDecoder {
     /// Takes bytes that were there at `at`; gives the state when they held at least one good frame of channels and
     /// the radio is not known to be lost.

@@ -33,6 +33,8 @@ pub struct ImuSample {
     pub accel: Vec3,
     /// Time since the last sample, s, limited.
     pub dt: f32,
+    /// The accelerometer has been at its full scale within the last half a second.
+    pub clipped: bool,
 }
 
 /// Estimated motion of the body.
@@ -48,6 +50,8 @@ pub struct Attitude {
     pub gyro_bias: Vec3,
     /// Calibration at rest has ended.
     pub calibrated: bool,
+    /// The accelerometer has been at its full scale: the attitude is the gyro's alone.
+    pub clipped: bool,
     /// Time since the last estimate, s.
     pub dt: f32,
 }

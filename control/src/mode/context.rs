@@ -213,7 +213,7 @@ impl Context {
             GripMemory::Unknown => true,
         };
         let inhibits = Checks {
-            calibrated: i.motion.is_some_and(|m| m.calibrated),
+            calibrated: i.motion.is_some_and(|m| m.calibrated && !m.leans_unseen()),
             cos_tilt: i.motion.map(|m| m.q.down_in_body().z),
             sticks: i.sticks,
             switch_seen_off: self.arm_seen_off,

@@ -5,7 +5,7 @@
 //! | arm switch off | stop | stop | stop, arms stay closed |
 //! | radio lost | stop | level, over one place if that is known, sink, stop on what carries | keep closing, keep the grip |
 //! | inertial sensor silent | stop | stop | stop, arms stay closed |
-//! | tipped over | stop | stop | stop, arms stay closed |
+//! | tipped over, or turned faster than the gyro reads | stop | stop | stop, arms stay closed |
 //! | battery critical | - | sink, the pilot still steers | reported; release refused |
 //! | data-ready line silent | stop | sink, the pilot still steers | reported; release refused |
 
@@ -21,6 +21,10 @@ pub const IMU_LOST_TIME: f32 = 0.05;
 pub const TIPPED_TILT: f32 = deg(100.0);
 /// Time beyond [`TIPPED_TILT`], s.
 pub const TIPPED_TIME: f32 = 0.5;
+/// Largest rate that the gyro surely measures, share of its full scale: less bias and filter.
+const GYRO_SATURATED: f32 = 0.98;
+/// Turn at full scale after which the attitude is unknown, rad: twice as fast, it has turned as far again unseen.
+const UNSEEN_TURN: f32 = deg(30.0);
 /// Time below the critical voltage, s: longer than a gust's current peak.
 pub const BATTERY_TIME: f32 = 1.0;
 
@@ -28,6 +32,8 @@ pub const BATTERY_TIME: f32 = 1.0;
 pub struct Dangers {
     imu: Held,
     tipped: Held,
+    saturated: Held,
+    turned_unseen: bool,
     battery: Held,
     /// Set by the port after its own delay.
     line_silent: bool,
@@ -41,6 +47,14 @@ impl Dangers {
             .motion
             .is_some_and(|m| m.q.down_in_body().z < crate::math::cos(TIPPED_TILT));
         self.tipped.step(tipped, dt);
+        // Axes turn by right angles between part and vehicle.
+        let full_scale = deg(p.imu_gyro_range.number());
+        let most = GYRO_SATURATED * full_scale;
+        let saturated = i
+            .motion
+            .is_some_and(|m| m.rate.to_array().iter().any(|x| x.abs() >= most));
+        let time = self.saturated.step(saturated, dt);
+        self.turned_unseen = saturated && time * full_scale >= UNSEEN_TURN;
         self.battery
             .step(i.battery.is_some_and(|v| v < p.battery_critical), dt);
         self.line_silent = i.hardware.contains(ArmingInhibit::ImuLineSilent);
@@ -51,7 +65,7 @@ impl Dangers {
     }
 
     pub fn tipped_over(&self) -> bool {
-        self.tipped.time() >= TIPPED_TIME
+        self.tipped.time() >= TIPPED_TIME || self.turned_unseen
     }
 
     pub fn battery_critical(&self) -> bool {

@@ -51,15 +51,52 @@ fn switches_have_two_or_three_positions() {
 
 #[test]
 fn a_dead_receivers_counts_are_refused_and_named() {
-    assert_eq!(frame(|c| c[2] = 0), Err(ChannelError { channel: 3, raw: 0 }));
+    for (channel, at) in (1..).zip(0..5) {
+        for raw in [0, 7] {
+            assert_eq!(frame(|c| c[at] = raw), Err(ChannelError { channel, raw }));
+        }
+        assert!(frame(|c| c[at] = 8).is_ok());
+    }
+    // The perch switch, which lets go.
+    assert_eq!(frame(|c| c[6] = 0), Err(ChannelError { channel: 7, raw: 0 }));
     assert_eq!(
-        frame(|c| c[7] = 2047),
-        Err(ChannelError {
-            channel: 8,
-            raw: 2047
-        })
+        frame(|c| *c = [0; CHANNELS]),
+        Err(ChannelError { channel: 1, raw: 0 })
     );
-    assert!(frame(|c| c[8] = 2047).is_ok(), "channel 9 means nothing");
+}
+
+#[test]
+fn a_stick_beyond_its_end_is_at_its_end_and_a_switch_too() {
+    for raw in [1812, 1976, 1977, 1984, 2047] {
+        let s = frame(|c| (c[0], c[1], c[2], c[3]) = (raw, raw, raw, raw)).unwrap();
+        assert_eq!(
+            (s.roll, s.pitch, s.throttle, s.yaw),
+            (1.0, -1.0, 1.0, 1.0),
+            "{raw}"
+        );
+        let s = frame(|c| (c[4], c[5], c[6], c[7], c[8]) = (raw, raw, raw, raw, raw)).unwrap();
+        assert!(s.arm_switch && s.perch_switch && s.hold_switch, "{raw}");
+        assert_eq!((s.stick_mode, s.arms), (StickMode::Direct, ArmChoice::Rear));
+    }
+}
+
+#[test]
+fn a_channel_that_nothing_hangs_on_costs_itself_alone() {
+    let sticks = frame(|c| (c[0], c[8]) = (1500, 1811)).unwrap();
+    assert!(sticks.hold_switch);
+    for raw in [0, 7] {
+        // Without a pulse the stick mode is angle, and all arms close.
+        let s = frame(|c| (c[0], c[5], c[7], c[8]) = (1500, raw, raw, 1811)).unwrap();
+        assert_eq!(s, sticks);
+        let s = frame(|c| (c[0], c[8], c[9], c[15]) = (1500, raw, raw, raw)).unwrap();
+        assert_eq!(
+            s,
+            Sticks {
+                hold_switch: false,
+                ..sticks
+            }
+        );
+    }
 }
 
 proptest! {

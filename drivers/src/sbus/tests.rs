@@ -188,6 +188,195 @@ fn a_receiver_without_its_transmitter_publishes_nothing_and_is_heard_again_at_on
     }
 }
 
+/// 300 frames, `period` µs apart, each with another throttle; byte times in µs.
+fn frames_of_many_sticks(period: u64) -> Vec<(u64, u8)> {
+    let frame = |i: u64| {
+        let throttle = (i % 64) as f32 / 64.0;
+        let sticks = Sticks {
+            throttle,
+            roll: -throttle,
+            ..Default::default()
+        };
+        Frame {
+            channels: sticks.to_channels(),
+            ..Default::default()
+        }
+        .encode()
+    };
+    (1..=300)
+        .flat_map(|i| {
+            (1..)
+                .zip(frame(i))
+                .map(move |(k, byte)| (i * period + 120 * k, byte))
+        })
+        .collect()
+}
+
+/// Reads with sticks of `reads`, each of which ends with its last byte; roll and throttle must be of one frame.
+fn read_with_sticks<'a>(reads: impl Iterator<Item = &'a [(u64, u8)]>) -> usize {
+    let mut d = Decoder::new();
+    let mut with_sticks = 0;
+    for read in reads {
+        let bytes: Vec<u8> = read.iter().map(|(_, byte)| *byte).collect();
+        let at = read.last().map_or(0, |(us, _)| *us);
+        if let Some(state) = d.take(&bytes, Instant::from_micros(at)) {
+            let Sticks { roll, throttle, .. } = state.sticks;
+            assert!((roll + throttle).abs() < 2e-3, "{roll} {throttle}");
+            with_sticks += 1;
+        }
+    }
+    with_sticks
+}
+
+#[test]
+fn reads_that_end_where_the_line_idles_lose_no_frame() {
+    for period in [6_300, 7_000, 9_000, 14_000, 15_000] {
+        let line = frames_of_many_sticks(period);
+        // The first has no silence before it, the next two are not trusted yet.
+        let idle = read_with_sticks(line.chunks(FRAME));
+        assert_eq!(idle, 297, "{period} us");
+        // In pieces of a DMA ring's half, of the task's buffer, of a byte.
+        for size in [1, 8, 16] {
+            let pieces = line.chunks(FRAME).flat_map(|frame| frame.chunks(size));
+            assert_eq!(read_with_sticks(pieces), 297, "{period} us, {size} bytes a read");
+        }
+        // Late: three frames and their pauses in one read.
+        let late = line.chunks(3 * FRAME);
+        assert_eq!(read_with_sticks(late), 99, "{period} us");
+    }
+}
+
+#[test]
+fn a_pause_within_a_read_never_makes_a_frame_of_two_halves() {
+    for period in [5_900, 6_300, 7_000, 14_000] {
+        let line = frames_of_many_sticks(period);
+        for size in 1..130 {
+            let seen = read_with_sticks(line.chunks(size));
+            assert!(size > 1 || seen == 297, "{size}: {seen}");
+        }
+    }
+}
+
+/// S.BUS2: a frame of `group`, then the slots of `sensors`, each of 8, with `data`; byte times in µs from `begin`.
+fn with_slots(group: u8, sensors: u8, data: [u8; 2], begin: u64) -> Vec<(u64, u8)> {
+    let mut frame = pilot().encode();
+    frame[24] = 0x04 | group << 4;
+    let byte = |from: u64, i: usize| begin + from + 120 * (i as u64 + 1);
+    let mut line: Vec<_> = frame.iter().enumerate().map(|(i, b)| (byte(0, i), *b)).collect();
+    for slot in (0..8u8).filter(|slot| sensors & 1 << slot != 0) {
+        // Eight slots of 660 us from 2 ms after the frame.
+        let from = 3000 + 2000 + 660 * u64::from(slot);
+        // The slot's number, lowest bit first, in the upper five bits.
+        let id = 0x03 | ((group << 3 | slot).reverse_bits() & 0xF8);
+        let bytes = [id, data[0], data[1]];
+        line.extend(bytes.iter().enumerate().map(|(i, b)| (byte(from, i), *b)));
+    }
+    line
+}
+
+#[test]
+fn sensors_in_every_slot_cost_no_frame() {
+    let values = [
+        [0xC0, 0x2E],
+        [0x0F, 0x0F],
+        [0x00, 0x0F],
+        [HEADER, 0x04],
+        [0xFF, 0xFF],
+    ];
+    for data in values {
+        for sensors in [0xFF, 0x01, 0x80, 0x18, 0xAA] {
+            for size in [1, FRAME + 24] {
+                let mut d = Decoder::new();
+                assert_eq!(published(&mut d, &[0x00], 0), None);
+                let mut seen = 0;
+                for i in 0..80u64 {
+                    let line = with_slots(i as u8 % 4, sensors, data, 15_000 * i + 10_000);
+                    // Reads end where the line idles, a byte each or at a pause of two bytes.
+                    let mut read = Vec::new();
+                    for (at, (us, byte)) in line.iter().enumerate() {
+                        read.push(*byte);
+                        let idle = line.get(at + 1).is_none_or(|(next, _)| next - us > 240);
+                        if idle || read.len() >= size {
+                            seen += u32::from(published(&mut d, &read, *us).is_some());
+                            read.clear();
+                        }
+                    }
+                }
+                assert_eq!(
+                    (seen, d.state.frames, d.state.errors),
+                    (78, 80, 0),
+                    "{data:02x?} {sensors:08b}, {size} bytes a read"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn slots_read_late_cost_three_frames_at_most() {
+    // Two frames with their slots in one read: a header among the slots makes the second uncertain.
+    for (data, sensors, frames) in [
+        ([0xC0, 0x2E], 0xFF, 16),
+        ([0xC0, 0x2E], 0x01, 15),
+        ([HEADER, HEADER], 0xFF, 14),
+        ([HEADER, 0x00], 0x81, 14),
+    ] {
+        let mut d = believing();
+        let bytes = |i: u8| -> Vec<u8> { with_slots(i, sensors, data, 0).iter().map(|(_, b)| *b).collect() };
+        assert_eq!(published(&mut d, &bytes(0), 36_000), Some(30));
+        let late = [bytes(1), bytes(2)].concat();
+        assert_eq!(published(&mut d, &late, 66_000), Some(30));
+        let read = (0..10u8)
+            .filter(|i| {
+                let at = 81_000 + 15_000 * u64::from(*i);
+                published(&mut d, &bytes(i % 4), at) == Some(30)
+            })
+            .count();
+        assert!(
+            read >= 8 && d.state.frames >= frames,
+            "{data:02x?}, {sensors:08b}: {read}, {:?}",
+            d.state
+        );
+    }
+}
+
+#[test]
+fn only_the_bytes_of_eight_slots_are_forgiven_and_only_after_a_frame_that_announces_them() {
+    let mut announces = pilot().encode();
+    announces[24] = 0x14;
+    for (frame, junk, trusted) in [
+        (announces, 24, true),
+        (announces, 25, false),
+        (pilot().encode(), 1, false),
+    ] {
+        for spread in [false, true] {
+            let mut d = believing();
+            assert_eq!(published(&mut d, &frame, 28_000), Some(30));
+            let junk = std::vec![0x55; junk];
+            // At once after the frame, or apart in silences.
+            if spread {
+                for (i, byte) in (1..).zip(&junk) {
+                    assert_eq!(published(&mut d, &[*byte], 28_000 + 5_000 * i), None);
+                }
+            } else {
+                assert_eq!(published(&mut d, &junk, 33_000), None);
+            }
+            assert_eq!(
+                published(&mut d, &pilot().encode(), 200_000).is_some(),
+                trusted,
+                "{spread}"
+            );
+            assert_eq!(d.state.errors == 0, trusted);
+        }
+    }
+    // A frame that lacks a byte is not taken for slots.
+    let mut d = believing();
+    assert_eq!(published(&mut d, &announces, 28_000), Some(30));
+    assert_eq!(published(&mut d, &announces[..24], 43_000), None);
+    assert_eq!(published(&mut d, &announces, 58_000), None);
+    assert_eq!(d.state.errors, 1);
+}
+
 #[test]
 fn a_line_error_costs_the_frame_in_progress_and_trust() {
     let mut d = believing();
@@ -202,7 +391,11 @@ fn a_line_error_costs_the_frame_in_progress_and_trust() {
 }
 
 #[test]
-fn channels_that_no_transmitter_sends_are_garbage() {
+fn counts_of_a_lost_radio_are_garbage_and_those_beyond_full_stick_are_full_stick() {
+    let mut d = believing();
+    let mut full = pilot();
+    full.channels[2] = 2047;
+    assert_eq!(published(&mut d, &full.encode(), 28_000), Some(100));
     let mut d = believing();
     let mut silly = pilot();
     silly.channels[2] = 0;

@@ -317,13 +317,15 @@ impl Aircraft for Bench<'_> {
     }
 
     fn receive(&mut self, bytes: &[u8]) {
-        self.setpoint = [f64::NAN; 3];
-        if self.mode() == Mode::Flight
-            && let Some(sticks) = sticks(self.protocol, bytes)
-        {
-            let angle = self.params.stick_angle;
-            self.setpoint = [sticks.roll * angle, sticks.pitch * angle, f32::NAN].map(f64::from);
-        }
+        self.setpoint = match (self.mode(), sticks(self.protocol, bytes)) {
+            (Mode::Flight, Some(sticks)) => {
+                let angle = self.params.stick_angle;
+                [sticks.roll * angle, sticks.pitch * angle, f32::NAN].map(f64::from)
+            }
+            // What sensors send between frames leaves it.
+            (Mode::Flight, None) => self.setpoint,
+            _ => [f64::NAN; 3],
+        };
         let words = bytes.iter().map(|byte| on_line(self.protocol, *byte));
         self.plan.radio(words, &mut self.wires.receiver);
     }

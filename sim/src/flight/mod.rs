@@ -210,7 +210,7 @@ impl Uplink {
     fn new(scenario: &Scenario) -> Self {
         match scenario.params.rc_protocol {
             RcProtocol::Crsf => Self::Crsf,
-            RcProtocol::Sbus => Self::Sbus(Receiver::default()),
+            RcProtocol::Sbus => Self::Sbus(Receiver::new(scenario.sensors.sbus_slots as usize)),
         }
     }
 
@@ -227,8 +227,9 @@ impl Uplink {
                 }
             }
             Self::Sbus(receiver) => {
-                if let Some(frame) = receiver.step(1e-3, output.channels) {
-                    stack.receive(&frame);
+                let bytes = receiver.step(1e-3, output.channels);
+                if !bytes.is_empty() {
+                    stack.receive(&bytes);
                 }
             }
         }

@@ -8,6 +8,7 @@ use sophie_mixers::Variant;
 
 use super::faults;
 use super::{Assist, BarometerFault, FlowFault, PoseFault, PositionSensor, Scenario, ServoProfile};
+use crate::sbus;
 
 /// One key.
 pub struct Key {
@@ -483,6 +484,11 @@ pub const KEYS: &[Key] = &[
             s.sensors.barometer_fault = barometer_fault(v);
         }),
     },
+    number!(
+        "sensors.sbus_slots",
+        Range::new(0.0, sbus::SLOTS as f64, "sensors"),
+        sensors.sbus_slots
+    ),
     number!("pilot.delay_s", Range::new(0.0, 1.0, "s"), pilot.delay),
     number!("pilot.bandwidth_hz", Range::new(0.2, 20.0, "Hz"), pilot.bandwidth),
     number!("pilot.eye_noise_m", Range::new(0.0, 0.5, "m"), pilot.eye_noise),

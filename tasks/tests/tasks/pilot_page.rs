@@ -8,6 +8,9 @@ use sophie_tasks::warning::Warning;
 
 fn to_do(warning: Warning) -> &'static str {
     match warning {
+        Warning::AccelClips => {
+            "It reads no further than `imu_accel_range`, and its attitude is the gyro's alone. Land; look for a bent propeller, a loose motor or board ([limits](sensors.md#what-an-inertial-sensor-can-lie-about))."
+        }
         Warning::ArmTilt => {
             "Land; `infill`, `gain_k` and the arm's sensor ([calibration](calibration.md#arms))."
         }

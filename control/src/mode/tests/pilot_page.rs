@@ -45,7 +45,9 @@ fn on_reason(reason: Reason) -> &'static str {
         Reason::OnBench => "A builder tries a part at the console: hands off.",
         Reason::IdleTooLong => "Arm again; take off sooner.",
         Reason::BatteryCritical => "It lands: steer it over clear ground. On the pipe it stays: fetch it.",
-        Reason::TippedOver => "Arm switch off. Set it upright, look for damage.",
+        Reason::TippedOver => {
+            "On its side, or turned faster than the gyro reads. Arm switch off; set it upright, look for damage."
+        }
         Reason::PerchSwitchNotOff => "Perch off, then on.",
         Reason::HoldSwitchNotOff => "Hold off, then on.",
         Reason::NoPosition => "Fly on by hand; look at what measures the pose.",
@@ -139,7 +141,9 @@ fn on_inhibit(inhibit: ArmingInhibit) -> &'static str {
         ArmingInhibit::ImuLineSilent => "In the air it sinks while you steer: land. On the pipe it stays.",
         ArmingInhibit::RcLost => "Transmitter on? In the air it sinks; move roll or pitch to take it back.",
         ArmingInhibit::ImuStale => "Rotors have stopped. Power off and on; read the log.",
-        ArmingInhibit::NotCalibrated => "Leave it at rest.",
+        ArmingInhibit::NotCalibrated => {
+            "Leave it at rest, up to 90 s where its attitude is not that of gravity."
+        }
         ArmingInhibit::SwitchOnAtPowerUp => "Arm switch off, then on.",
         ArmingInhibit::ThrottleNotLow => "Throttle down; trim it if it is.",
         ArmingInhibit::PerchSwitchOn => "Perch off.",

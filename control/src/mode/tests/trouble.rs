@@ -13,7 +13,7 @@ use crate::mode::dangers::TIPPED_TIME;
 use crate::mode::failsafe::RESUME_TIME;
 use crate::mode::hold::SPOOL_DOWN_TIME;
 use crate::mode::*;
-use crate::params::Params;
+use crate::params::{ImuGyroRange, Params};
 use crate::rc::ArmChoice;
 use crate::rc::StickMode;
 
@@ -303,6 +303,82 @@ fn a_lost_radio_on_the_pipe_keeps_closing_and_holds() {
         };
         r.expect(0.5, Mode::Disarmed);
         assert_eq!(r.out.tendons, tendons, "perch switch {perch_switch}");
+    }
+}
+
+#[test]
+fn a_turn_at_the_gyros_full_scale_stops_the_rotors_once_it_may_have_hidden_thirty_degrees() {
+    let turning = |dps: f32| {
+        Some(Motion {
+            rate: Vec3::new(1.0, -deg(dps), 0.0),
+            calibrated: true,
+            ..Default::default()
+        })
+    };
+    // 30 degrees are 15 ms at 2000 deg/s and 120 ms at 250, looked at every 10 ms.
+    for (range, dps, steps) in [
+        (ImuGyroRange::Dps2000, 1970.0, 2),
+        (ImuGyroRange::Dps500, 495.0, 7),
+        (ImuGyroRange::Dps250, 247.0, 13),
+    ] {
+        let params = Params {
+            imu_gyro_range: range,
+            ..Params::default()
+        };
+        let mut r = Rig::with(params);
+        r.calibrated();
+        r.run(0.1);
+        r.arm();
+        // Knocks that are shorter, and faster turns that the gyro still measures, are flown.
+        for _ in 0..5 {
+            r.inputs.motion = turning(dps);
+            for _ in 0..steps - 1 {
+                r.step();
+            }
+            r.inputs.motion = turning(0.95 * dps);
+            r.step();
+        }
+        assert_eq!(r.out.mode, Mode::Armed, "{dps}");
+        r.inputs.motion = turning(dps);
+        for _ in 0..steps - 1 {
+            r.step();
+        }
+        assert_eq!(r.out.mode, Mode::Armed, "{dps}");
+        r.step();
+        assert_eq!((r.out.mode, r.out.rotors), (Mode::Disarmed, Setpoint::Stop));
+        assert_eq!(r.out.reason, Some(Reason::TippedOver));
+    }
+}
+
+#[test]
+fn an_attitude_that_is_not_that_of_gravity_does_not_arm() {
+    // The rig's accelerometer reads the weight along body z.
+    for (lean, off) in [
+        (0.0, false),
+        (9.0, false),
+        (-11.0, true),
+        (11.0, true),
+        (180.0, true),
+    ] {
+        let mut r = Rig::new();
+        r.inputs.motion = Some(Motion {
+            q: Quat::from_euler(0.0, deg(lean), 0.0),
+            calibrated: true,
+            ..Default::default()
+        });
+        r.run(0.1);
+        assert_eq!(r.out.mode, Mode::Disarmed);
+        let refused = r.out.inhibits.contains(ArmingInhibit::NotCalibrated);
+        assert_eq!(refused, off, "{lean}");
+    }
+    // Falling or knocked it says nothing of down.
+    for (g, says) in [(0.0, false), (0.7, false), (0.9, true), (1.1, true), (1.3, false)] {
+        let motion = Motion {
+            q: Quat::from_euler(deg(20.0), 0.0, 0.0),
+            accel: Vec3::new(0.0, 0.0, -GRAVITY * g),
+            ..Default::default()
+        };
+        assert_eq!(motion.leans_unseen(), says, "{g}");
     }
 }
 
