@@ -30,6 +30,8 @@ pub struct MotorPulses {
 impl MotorPulses {
     /// Those of the parameters; `None` where `motor_pulse_min`, `_idle` and `_max` do not rise, or the dead zone takes
     /// more than 30 % of the range: no pulse is safe then.
+    // In several tasks: the image has it once, and so the next two.
+    #[inline(never)]
     pub fn from_params(p: &Params) -> Option<Self> {
         let pulses = Self {
             stop_us: p.motor_pulse_min,
@@ -78,6 +80,7 @@ pub const fn by_pulses(p: &Params) -> bool {
 }
 
 /// Least command of a rotor that must turn. With pulses out of order no rotor turns, whatever the command.
+#[inline(never)]
 pub fn least_command(p: &Params) -> f32 {
     match MotorPulses::from_params(p).filter(|_| by_pulses(p)) {
         Some(pulses) => pulses.command(pulses.idle_us) + ROUNDING,
@@ -86,6 +89,7 @@ pub fn least_command(p: &Params) -> f32 {
 }
 
 /// Least thrust of a rotor that turns, N: `thrust_idle`, or at a full battery that of the least command where it is more.
+#[inline(never)]
 pub fn least_thrust(p: &Params) -> f32 {
     let least = ThrustCurve::from_params(p).thrust(least_command(p), FULL_RATIO);
     p.thrust_idle.max(least)

@@ -13,7 +13,8 @@ pub struct ThrustCurve {
     linear: f32,
     half_linear: f32,
     half_linear_squared: f32,
-    /// Share of a rotor that just turns.
+    /// Command of a rotor that just turns, and its share.
+    least_command: f32,
     least: f32,
 }
 
@@ -27,14 +28,15 @@ impl ThrustCurve {
     pub fn from_params(p: &Params) -> Self {
         let quadratic = math::clamp(p.thrust_curve, 0.0, 1.0);
         let half_linear = 0.5 * (1.0 - quadratic);
-        let least = least_command(p);
+        let least_command = least_command(p);
         Self {
             max: p.thrust_max,
             quadratic,
             linear: 1.0 - quadratic,
             half_linear,
             half_linear_squared: half_linear * half_linear + LEAST_SQUARE,
-            least: (quadratic * least + (1.0 - quadratic)) * least,
+            least_command,
+            least: (quadratic * least_command + (1.0 - quadratic)) * least_command,
         }
     }
 
@@ -71,8 +73,8 @@ impl ThrustCurve {
     }
 
     /// Least command of a rotor that must turn.
-    pub fn least_command(&self) -> f32 {
-        self.share_to_command(self.least)
+    pub const fn least_command(&self) -> f32 {
+        self.least_command
     }
 
     /// Thrust (N) of `command` at the voltage ratio `ratio`.

@@ -104,7 +104,7 @@ params! {
     /// Motor protocol: 150, 300 or 600 for DShot, 400 for pulses, at most 400 a second, 125 for OneShot125.
     /// Read by the board at start-up; the paper's controllers take 400.
     motor_protocol: MotorProtocol = MotorProtocol::Dshot300, "1";
-    /// Pulse that stops a motor: the lower end of the controllers' range. OneShot125 takes an eighth of this and the next two.
+    /// Pulse that stops a motor, the lower end of the controllers' range; OneShot125 takes an eighth of all three.
     motor_pulse_min = 1000.0, "us", 800.0 ..= 1500.0;
     /// Lowest pulse at which every rotor keeps turning (`calibrate esc idle`); DShot knows none.
     motor_pulse_idle = 1070.0, "us", 800.0 ..= 2200.0;

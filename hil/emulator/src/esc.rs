@@ -11,6 +11,9 @@ const SILENCE: u64 = 250_000_000;
 /// Standard pulses that a controller takes for a signal, µs (AM32; SimonK up to 2200).
 const SIGNAL: std::ops::RangeInclusive<f64> = 800.0..=2200.0;
 
+/// More than a count of any timer, µs.
+const COUNT: f64 = 0.5;
+
 /// Protocol.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Line {
@@ -43,7 +46,7 @@ pub struct EscStats {
     pub bad: u64,
     /// Shortest and longest between frames, ns.
     pub interval: Option<[u64; 2]>,
-    /// Shortest and longest valid pulse as a standard one, µs.
+    /// Shortest and longest valid pulse above the lower end, as a standard one, µs.
     pub pulse_us: Option<[f64; 2]>,
 }
 
@@ -108,8 +111,10 @@ impl Esc {
                     self.began = None;
                     return None;
                 }
-                let [shortest, longest] = self.stats.pulse_us.unwrap_or([us; 2]);
-                self.stats.pulse_us = Some([shortest.min(us), longest.max(us)]);
+                if us > esc.pulse_min + COUNT {
+                    let [shortest, longest] = self.stats.pulse_us.unwrap_or([us; 2]);
+                    self.stats.pulse_us = Some([shortest.min(us), longest.max(us)]);
+                }
                 esc.drive(us)
             }
         };

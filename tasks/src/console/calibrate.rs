@@ -5,7 +5,7 @@
 use core::fmt;
 
 use embassy_time::{Duration, Timer};
-use sophie_control::bench::{BenchOrder, BenchRefusal, Place, SPIN_DRIVE, SPIN_DRIVE_MAX, Spin};
+use sophie_control::bench::{BenchOrder, Place, SPIN_DRIVE, SPIN_DRIVE_MAX, Spin};
 use sophie_control::calibration::{self, AccelFit, BIAS, Face, FsrFit, SCALES, Samples, Unfit, thousandths};
 use sophie_control::math::{clamp, to_deg};
 use sophie_control::motor_pulses::{MotorPulses, by_pulses};
@@ -475,10 +475,8 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
                 .line(format_args!("{name} has no idle pulse; nothing to store"))
                 .await;
         }
-        let Some(pulses) = MotorPulses::from_params(&self.links.params) else {
-            let why = End::Refused(BenchRefusal::MotorPulses);
-            return self.say_end(format_args!(""), why).await;
-        };
+        // Out of order, the first order is refused.
+        let pulses = MotorPulses::from_params(&self.links.params).unwrap_or(MotorPulses::DIGITAL);
         let mut pulse_us = pulses.pulse_us(0.0) + FIRST_US;
         for rotor in 0..4 {
             let number = rotor + 1;
