@@ -4,6 +4,7 @@ mod gesture;
 
 pub use self::gesture::{GESTURE_TIME, Gesture, GestureWatch};
 use crate::math::cos;
+use crate::motor_pulses::MotorPulses;
 use crate::params::Params;
 use crate::rc::Sticks;
 use crate::wrench::PerArm;
@@ -54,6 +55,8 @@ arming_checks! {
     StorageUnreadable = "stored parameters unreadable", "`save` from the console";
     /// The parameters do not fit into their storage.
     StorageFull = "parameter storage full", "`save` that fits";
+    /// `motor_pulse_min`, `_idle` and `_max` do not rise, or the dead zone takes too much: no pulses are sent.
+    MotorPulses = "motor pulses out of order", "min < idle < max, idle in the lowest 30 %, at the next start";
     /// The vehicle's inertial sensor does not answer.
     ImuAbsent = "inertial sensor absent", "the driver, when the part answers";
     /// Another chip answers in place of the vehicle's inertial sensor.
@@ -215,6 +218,10 @@ impl Checks {
             (ArmingInhibit::BatteryLow, !charged),
             (ArmingInhibit::FsrFault, self.fsr_fault),
             (ArmingInhibit::Overruns, self.late),
+            (
+                ArmingInhibit::MotorPulses,
+                MotorPulses::from_params(params).is_none(),
+            ),
         ];
         reasons
             .into_iter()
@@ -252,6 +259,19 @@ mod tests {
             for b in ArmingInhibit::ALL.into_iter().skip(i + 1) {
                 assert!(a != b && a.text() != b.text(), "{a:?} {b:?}");
             }
+        }
+    }
+
+    #[test]
+    fn pulses_that_do_not_rise_refuse_whatever_the_protocol() {
+        for (idle, refused) in [(1000.0, true), (2000.0, true), (1001.0, false), (1070.0, false)] {
+            let p = Params {
+                motor_pulse_idle: idle,
+                ..Params::default()
+            };
+            let inhibits = good().inhibits(&p);
+            assert_eq!(inhibits.contains(ArmingInhibit::MotorPulses), refused, "{idle}");
+            assert_eq!(inhibits.is_empty(), !refused, "{idle}");
         }
     }
 

@@ -26,20 +26,37 @@ pub const PULSE_MAX_US: f32 = 2500.0;
 pub struct Spin {
     /// Which, 0 to 3.
     pub rotor: usize,
-    /// Share of full drive, at most [`SPIN_DRIVE_MAX`].
+    /// Share of full drive, at most [`SPIN_DRIVE_MAX`]; raised to what turns a rotor.
     pub drive: f32,
+    /// Not raised: looks for the drive that turns it.
+    pub probes: bool,
 }
 
 impl Spin {
-    /// Motor commands, never beyond the limit; none for a rotor that there is not.
-    pub fn commands(&self) -> PerArm<f32> {
+    /// Turns `rotor` at `drive`, or as slowly as its controller can where that is faster.
+    pub const fn at(rotor: usize, drive: f32) -> Self {
+        Self {
+            rotor,
+            drive,
+            probes: false,
+        }
+    }
+
+    /// The drive that it gets, where rotors turn from the command `least` on; 0 beyond the limit.
+    pub fn drive(&self, least: f32) -> f32 {
+        match self.drive {
+            drive if drive <= SPIN_DRIVE_MAX && (self.probes || drive > least) => drive,
+            drive if drive <= SPIN_DRIVE_MAX => least,
+            _ => 0.0,
+        }
+    }
+
+    /// Motor commands, never beyond the limit, where rotors turn from the command `least` on; none for a rotor that there
+    /// is not.
+    pub fn commands(&self, least: f32) -> PerArm<f32> {
         let mut commands = [0.0; 4];
         if let Some(command) = commands.get_mut(self.rotor) {
-            *command = if self.drive <= SPIN_DRIVE_MAX {
-                self.drive
-            } else {
-                0.0
-            };
+            *command = self.drive(least);
         }
         commands
     }
@@ -137,6 +154,8 @@ bench_refusals! {
     PropellersOn = "say 'propellers off' first, once they are";
     /// The motors' path runs at the sensor's pace.
     ImuSilent = "inertial sensor silent: motors wait for it";
+    /// No pulse turns a motor safely.
+    MotorPulses = "motor pulses out of order";
     /// A number is beyond its limits.
     OutOfRange = "out of range";
     /// Who gave the order has not renewed it.
@@ -201,9 +220,9 @@ mod tests {
 
     #[test]
     fn a_drive_beyond_the_limit_or_without_a_rotor_turns_nothing() {
-        let spin = |rotor, drive| Spin { rotor, drive };
+        let spin = Spin::at;
         assert_eq!(
-            spin(2, SPIN_DRIVE_MAX).commands(),
+            spin(2, SPIN_DRIVE_MAX).commands(0.07),
             [0.0, 0.0, SPIN_DRIVE_MAX, 0.0]
         );
         for bad in [
@@ -212,11 +231,20 @@ mod tests {
             spin(0, f32::INFINITY),
             spin(4, 0.08),
         ] {
-            assert_eq!(bad.commands(), [0.0; 4], "{bad:?}");
+            assert_eq!(bad.commands(0.07), [0.0; 4], "{bad:?}");
             assert!(!BenchOrder::Spin(bad).is_allowed(), "{bad:?}");
         }
         assert!(!BenchOrder::Spin(spin(0, 0.0)).is_allowed());
         assert!(BenchOrder::Spin(spin(3, SPIN_DRIVE)).is_allowed());
+    }
+
+    #[test]
+    fn a_motor_that_is_tried_turns_unless_what_turns_it_is_looked_for() {
+        let slow = Spin::at(1, SPIN_DRIVE_MIN);
+        assert_eq!(slow.commands(0.14), [0.0, 0.14, 0.0, 0.0]);
+        assert_eq!(Spin::at(1, 0.1).commands(0.075), [0.0, 0.1, 0.0, 0.0]);
+        let probe = Spin { probes: true, ..slow };
+        assert_eq!(probe.commands(0.14), [0.0, SPIN_DRIVE_MIN, 0.0, 0.0]);
     }
 
     #[test]

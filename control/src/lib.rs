@@ -41,6 +41,7 @@ pub mod math;
 pub mod mixer;
 pub mod mode;
 pub mod motor_map;
+pub mod motor_pulses;
 pub mod mounting;
 pub mod params;
 pub mod position;

@@ -1,6 +1,7 @@
 //! Motor command for a thrust (N) at the battery's voltage, 1 kHz; the voltage comes at 100 Hz.
 
 use crate::math;
+use crate::motor_pulses::least_command;
 use crate::params::Params;
 use crate::wrench::PerArm;
 
@@ -12,6 +13,9 @@ pub struct ThrustCurve {
     linear: f32,
     half_linear: f32,
     half_linear_squared: f32,
+    /// Command of a rotor that just turns, and its share.
+    least_command: f32,
+    least: f32,
 }
 
 /// Least voltage ratio compensated.
@@ -24,22 +28,27 @@ impl ThrustCurve {
     pub fn from_params(p: &Params) -> Self {
         let quadratic = math::clamp(p.thrust_curve, 0.0, 1.0);
         let half_linear = 0.5 * (1.0 - quadratic);
+        let least_command = least_command(p);
         Self {
             max: p.thrust_max,
             quadratic,
             linear: 1.0 - quadratic,
             half_linear,
             half_linear_squared: half_linear * half_linear + LEAST_SQUARE,
+            least_command,
+            least: (quadratic * least_command + (1.0 - quadratic)) * least_command,
         }
     }
 
     /// Command 0..1 for `thrust` (N) at the voltage ratio V/V0; 0 for no thrust.
     pub fn command(&self, thrust: f32, ratio: f32) -> f32 {
-        let [command, ..] = self.commands(&[thrust; 4], ratio);
+        let stopped = Self { least: 0.0, ..*self };
+        let [command, ..] = stopped.commands(&[thrust; 4], ratio);
         command
     }
 
-    /// Commands 0..1 for the rotors' thrusts (N) at the voltage ratio V/V0.
+    /// Commands for the thrusts (N) of rotors that must turn, at the voltage ratio V/V0: from [`least_command`] to 1,
+    /// whatever is asked.
     #[inline(always)]
     pub fn commands(&self, thrusts: &PerArm<f32>, ratio: f32) -> PerArm<f32> {
         let ratio = math::clamp(ratio, LEAST_RATIO, 1.5);
@@ -56,11 +65,16 @@ impl ThrustCurve {
     /// Root of q u² + (1 - q) u = share, in a form that also holds for q = 0.
     #[inline(always)]
     fn share_to_command(&self, share: f32) -> f32 {
-        let share = if share > 0.0 { share } else { 0.0 };
+        let share = if share > self.least { share } else { self.least };
         let square = self.half_linear_squared + self.quadratic * share;
         let sum = self.half_linear + square * math::inv_sqrt_normal(square);
         let command = share / sum;
         if command < 1.0 { command } else { 1.0 }
+    }
+
+    /// Least command of a rotor that must turn.
+    pub const fn least_command(&self) -> f32 {
+        self.least_command
     }
 
     /// Thrust (N) of `command` at the voltage ratio `ratio`.

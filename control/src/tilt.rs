@@ -10,6 +10,7 @@ use core::f32::consts::TAU;
 
 use crate::deflection::{ArmModel, VALID_TILT};
 use crate::filter::LowPass;
+use crate::motor_pulses::least_thrust;
 use crate::params::Params;
 use crate::wrench::PerArm;
 
@@ -44,7 +45,7 @@ impl TiltModel {
     /// Arms at idle thrust without bias.
     pub fn new(p: &Params) -> Self {
         let model = ArmModel::from_params(p);
-        let thrust = p.thrust_idle;
+        let thrust = least_thrust(p);
         let arm = Arm {
             thrust: LowPass::at(thrust),
             lagged: LowPass::at(thrust),

@@ -3,10 +3,10 @@
 use sophie_control::params::{MotorProtocol, Params};
 
 use crate::dshot::Speed;
-use crate::esc_pwm::EscPulse;
+use crate::esc_pwm::{EscPulse, PulseRate};
 
 /// Output to the motor controllers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum EscProtocol {
     /// Digital frames.
     DShot(Speed),
@@ -17,11 +17,12 @@ pub enum EscProtocol {
 impl EscProtocol {
     /// The protocol of `motor_protocol`.
     pub fn from_params(params: &Params) -> Self {
+        let pulse = |rate| Self::Pulse(EscPulse::new(rate, params));
         match params.motor_protocol {
-            MotorProtocol::Oneshot125 => Self::Pulse(EscPulse::OneShot125),
+            MotorProtocol::Oneshot125 => pulse(PulseRate::OneShot125),
             MotorProtocol::Dshot150 => Self::DShot(Speed::Dshot150),
             MotorProtocol::Dshot300 => Self::DShot(Speed::Dshot300),
-            MotorProtocol::Pwm => Self::Pulse(EscPulse::Standard),
+            MotorProtocol::Pwm => pulse(PulseRate::Standard),
             MotorProtocol::Dshot600 => Self::DShot(Speed::Dshot600),
         }
     }

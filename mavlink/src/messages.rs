@@ -15,8 +15,6 @@ use crate::vehicle::Vehicle;
 
 /// The version of the protocol in every heartbeat.
 const MAVLINK_VERSION: u8 = 3;
-/// Pulse of a stopped motor and of a stick's low end, µs.
-const PULSE_LOW: f32 = 1000.0;
 /// Pulse of a centred stick, µs.
 const PULSE_CENTRE: f32 = 1500.0;
 /// From the centre to an end, µs.
@@ -362,9 +360,10 @@ fn channels(sticks: &Sticks) -> [u16; 8] {
     shares.map(|share| (PULSE_CENTRE + PULSE_HALF * share + 0.5) as u16)
 }
 
-/// Motors 1 to 4 as pulses of 1000 to 2000 µs whatever their protocol, tendon servos 5 to 8; 0 for what is not driven.
+/// Motors 1 to 4 as pulses between their ends, those of DShot as 1000 to 2000 µs, tendon servos 5 to 8; 0 for what is not
+/// driven.
 pub fn servo_output_raw(vehicle: &Vehicle, time_boot_ms: u32) -> SERVO_OUTPUT_RAW_DATA {
-    let pulse = |command: f32| (PULSE_LOW + 2.0 * PULSE_HALF * command + 0.5) as u16;
+    let pulse = |command: f32| (vehicle.motor_pulses.pulse_us(command) + 0.5) as u16;
     let [servo1_raw, servo2_raw, servo3_raw, servo4_raw] =
         vehicle.motors.map_or([0; 4], |motors| motors.map(pulse));
     let [servo5_raw, servo6_raw, servo7_raw, servo8_raw] = vehicle

@@ -7,6 +7,7 @@ use sophie_control::calibration::AccelFit;
 use sophie_control::chain::Attitude;
 use sophie_control::grip::GripState;
 use sophie_control::mode::{Mode, Reason};
+use sophie_control::motor_pulses::MotorPulses;
 use sophie_control::params::Params;
 use sophie_control::rc::Sticks;
 use sophie_control::remote::RemoteAnswer;
@@ -40,6 +41,8 @@ pub struct Vehicle {
     pub capacity: f32,
     /// Motor commands, shares of full drive, 0 for a stopped one.
     pub motors: Option<PerArm<f32>>,
+    /// The pulses that these are.
+    pub motor_pulses: MotorPulses,
     /// Pulses of the tendon servos, µs.
     pub servos: Option<PerArm<f32>>,
     /// Tilt of the arms by their own sensors, rad, tip up.
@@ -87,6 +90,7 @@ impl Default for Vehicle {
             battery: None,
             capacity: 0.0,
             motors: None,
+            motor_pulses: MotorPulses::DIGITAL,
             servos: None,
             tilt: [f32::NAN; 4],
             reel: [f32::NAN; 4],

@@ -12,10 +12,13 @@ use sophie_control::motor_map::at_rotors;
 use sophie_control::params::{MotorMap, Params};
 use sophie_control::vector::Vec3;
 use sophie_control::wrench::PerArm;
+use sophie_drivers::esc_protocol::EscProtocol;
+use sophie_drivers::esc_pwm::PulseRate;
 use sophie_tasks::links::Raw;
 use sophie_tasks::ports::{self, AnalogFrame, IMU_BATCH, ImuReading, PortError};
 use sophie_tasks::retained_state::{WORDS, Words};
 
+use crate::plant::esc::{EscSpec, ONESHOT125};
 use crate::plant::{Actuators, Plant, STEP};
 use crate::scenario::{Faults, Scenario};
 use crate::sensors::analog::{BatteryInputs, PIN_VOLTS_PER_COUNT};
@@ -52,6 +55,11 @@ pub struct Board {
     pub accel_bias: [f32; 3],
     /// How the motor outputs are wired.
     wiring: Cell<MotorMap>,
+    /// What the controllers are, and what is sent to them.
+    esc: EscSpec,
+    protocol: Cell<EscProtocol>,
+    /// When the next pulse may start, µs.
+    next_pulse: Cell<u64>,
 }
 
 #[derive(Clone, Copy, Default)]
@@ -83,7 +91,8 @@ impl Board {
     /// That of `scenario`, motors wired as its parameters say.
     #[must_use]
     pub fn of(scenario: &Scenario) -> Self {
-        let board = Self::with(&scenario.params, scenario.streams(), &scenario.faults);
+        let mut board = Self::with(&scenario.params, scenario.streams(), &scenario.faults);
+        board.esc = scenario.vehicle.esc;
         if scenario.sensors.barometer {
             board.sensors.borrow_mut().barometer = Some(Barometer::of(scenario));
         }
@@ -113,6 +122,9 @@ impl Board {
             memory: Cell::new([[0; WORDS]; 2]),
             accel_bias,
             wiring: Cell::new(params.motor_map),
+            esc: EscSpec::default(),
+            protocol: Cell::new(EscProtocol::from_params(params)),
+            next_pulse: Cell::new(0),
             imu_rate: f64::from(params.imu_rate.number()),
         }
     }
@@ -125,6 +137,30 @@ impl Board {
     /// Wires the motors as `map` has it, whatever the parameters say.
     pub fn wire(&self, map: MotorMap) {
         self.wiring.set(map);
+    }
+
+    /// Sends what `params` have to the motor controllers from now on, as a start of the board does.
+    pub fn speaks(&self, params: &Params) {
+        self.protocol.set(EscProtocol::from_params(params));
+        self.next_pulse.set(0);
+    }
+
+    /// The drives that the controllers make of motor commands: of frames the commands, of pulses what their own ends
+    /// say. `None` for commands within the last pulse's period, which start no pulse.
+    fn drives(&self, commands: PerArm<f32>) -> Option<PerArm<f64>> {
+        let EscProtocol::Pulse(pulse) = self.protocol.get() else {
+            return Some(commands.map(f64::from));
+        };
+        let (now, period) = (Instant::now().as_micros(), u64::from(pulse.rate().period_us()));
+        if now < self.next_pulse.get() {
+            return None;
+        }
+        self.next_pulse.set(now + period);
+        let standard = match pulse.rate() {
+            PulseRate::Standard => 1.0,
+            PulseRate::OneShot125 => ONESHOT125,
+        };
+        Some(commands.map(|command| self.esc.drive(standard * f64::from(pulse.pulse_us(command)))))
     }
 
     /// Steps the plant by 1 ms under the last outputs and samples the sensors.
@@ -287,11 +323,12 @@ impl ports::Analog for Port {
 
 impl ports::Motors for Port {
     async fn write(&mut self, commands: PerArm<f32>) -> Instant {
-        let actuators = self.0.actuators.get();
-        self.0.actuators.set(Actuators {
-            motors: at_rotors(&self.0.wiring.get().rotors(), &commands.map(f64::from)),
-            ..actuators
-        });
+        if let Some(drives) = self.0.drives(commands) {
+            self.0.actuators.set(Actuators {
+                motors: at_rotors(&self.0.wiring.get().rotors(), &drives),
+                ..self.0.actuators.get()
+            });
+        }
         Instant::now()
     }
 }

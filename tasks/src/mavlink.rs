@@ -15,6 +15,7 @@ use embassy_time::{Duration, Instant, Timer};
 use heapless::Vec;
 use sophie_control::arming::ArmingInhibit;
 use sophie_control::calibration::AccelFit;
+use sophie_control::motor_pulses::MotorPulses;
 use sophie_control::params::Params;
 use sophie_control::tendon::Reel;
 use sophie_control::wrench::PerArm;
@@ -374,6 +375,7 @@ async fn store(links: &Links, storage: &mut impl Storage, params: &Params) -> Re
 /// What the links say now; a stale message counts as none.
 fn picture(links: &Links, reels: &PerArm<Reel>) -> Vehicle {
     let angles = links.reel_angle.fresh();
+    let pulses = MotorPulses::shown(&links.params);
     Vehicle {
         condition: links.status.fresh().map(|status| Condition {
             mode: status.mode,
@@ -385,7 +387,12 @@ fn picture(links: &Links, reels: &PerArm<Reel>) -> Vehicle {
         sticks: links.rc.fresh().map(|rc| rc.sticks),
         battery: links.battery.fresh(),
         capacity: links.params.battery_capacity,
-        motors: links.mix.fresh().map(|mix| mix.commands),
+        motors: links
+            .mix
+            .fresh()
+            .filter(|_| pulses.is_some())
+            .map(|mix| mix.commands),
+        motor_pulses: pulses.unwrap_or(MotorPulses::DIGITAL),
         servos: angles.map(|angles| {
             let mut pulses = angles;
             for (pulse, reel) in pulses.iter_mut().zip(reels) {

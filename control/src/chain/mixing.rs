@@ -113,7 +113,7 @@ impl<A: Allocation> Mixing<A> {
             tilt_fault: tilt.fault(),
         };
         if let Demand::Spin(spin) = demand {
-            on_bench(out, spin);
+            on_bench(out, spin, self.curve.least_command());
         }
     }
 }
@@ -121,9 +121,9 @@ impl<A: Allocation> Mixing<A> {
 /// One motor instead of four idling ones, out of the flight path.
 #[cold]
 #[inline(never)]
-fn on_bench(out: &mut MixOutput, spin: &Spin) {
+fn on_bench(out: &mut MixOutput, spin: &Spin, least: f32) {
     out.thrusts = [0.0; 4];
-    out.commands = spin.commands();
+    out.commands = spin.commands(least);
 }
 
 #[derive(Clone, Copy, Debug, Default)]

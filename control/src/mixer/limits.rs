@@ -3,6 +3,7 @@
 use crate::desaturation::{Given, desaturate};
 use crate::math;
 use crate::mixer::{Mix, Split};
+use crate::motor_pulses::least_thrust;
 use crate::params::Params;
 use crate::wrench::PerArm;
 
@@ -21,9 +22,9 @@ pub struct Limits {
 
 impl Limits {
     /// From the parameters, with the yaw gate shut.
-    pub const fn new(p: &Params) -> Self {
+    pub fn new(p: &Params) -> Self {
         Self {
-            idle: p.thrust_idle,
+            idle: least_thrust(p),
             max: p.thrust_max,
             yaw_limit: p.yaw_thrust_max,
             gate: p.yaw_gate_thrust,

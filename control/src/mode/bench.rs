@@ -4,6 +4,8 @@ use super::{Inputs, Mode};
 use crate::arming::ArmingInhibit;
 use crate::bench::{BenchAnswer, BenchOrder, BenchRefusal, BenchRequest, BenchState};
 use crate::grip_memory::GripMemory;
+use crate::motor_pulses::MotorPulses;
+use crate::params::Params;
 
 /// What decides whether an order may begin, and go on.
 #[derive(Clone, Copy, Debug)]
@@ -14,16 +16,19 @@ pub struct Table {
     storing: bool,
     /// Fresh attitudes: the motors' path runs.
     motion: bool,
+    /// The motors' pulses are in order.
+    pulses: bool,
 }
 
 impl Table {
-    pub fn new(mode: Mode, grip_memory: GripMemory, inputs: &Inputs) -> Self {
+    pub fn new(mode: Mode, grip_memory: GripMemory, inputs: &Inputs, params: &Params) -> Self {
         Self {
             mode,
             grip_memory,
             arm_switch: inputs.sticks.is_some_and(|s| s.arm_switch),
             storing: inputs.hardware.contains(ArmingInhibit::Storing),
             motion: inputs.motion.is_some(),
+            pulses: MotorPulses::from_params(params).is_some(),
         }
     }
 
@@ -45,6 +50,7 @@ impl Table {
             ),
             (BenchRefusal::PropellersOn, spins && !propellers_off),
             (BenchRefusal::ImuSilent, spins && !self.motion),
+            (BenchRefusal::MotorPulses, spins && !self.pulses),
             (BenchRefusal::OutOfRange, !order.is_allowed()),
         ];
         let ends = *order == BenchOrder::End;

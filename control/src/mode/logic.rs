@@ -58,7 +58,12 @@ impl ModeLogic {
         let sinking = self.context.sinking;
         self.context.rise.step(before, sinking, inputs, dt);
         let inputs = &self.context.rise.apply(inputs);
-        let table = Table::new(before, self.state.behaviour().grip_memory(), inputs);
+        let table = Table::new(
+            before,
+            self.state.behaviour().grip_memory(),
+            inputs,
+            &self.context.params,
+        );
         self.context.bench.step(inputs.bench, &table, dt);
         if let (Some(request), None) = (remote, refused) {
             self.context.obey(request.order);

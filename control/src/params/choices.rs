@@ -72,13 +72,13 @@ macro_rules! choices {
 choices! {
     /// What the motor controllers understand.
     MotorProtocol {
-        /// Pulses of 125 to 250 µs.
+        /// An eighth of the pulses below, one for each command.
         Oneshot125 = 125.0, "oneshot125";
         /// Digital frames of 150 kbit/s.
         Dshot150 = 150.0, "dshot150";
         /// Digital frames of 300 kbit/s.
         Dshot300 = 300.0, "dshot300";
-        /// Pulses of 1 to 2 ms, at most 400 a second.
+        /// Pulses of `motor_pulse_min` to `motor_pulse_max`, at most 400 a second.
         Pwm = 400.0, "pwm";
         /// Digital frames of 600 kbit/s.
         Dshot600 = 600.0, "dshot600";

@@ -101,9 +101,15 @@ params! {
     /// Share of the thrust that grows with the square of the command; the rest is linear (assumed).
     thrust_curve = 0.75, "1", 0.0 ..= 1.0;
 
-    /// Motor protocol: 150, 300 or 600 for DShot, 400 for pulses of 1 to 2 ms, at most 400 a second, 125 for OneShot125.
+    /// Motor protocol: 150, 300 or 600 for DShot, 400 for pulses, at most 400 a second, 125 for OneShot125.
     /// Read by the board at start-up; the paper's controllers take 400.
     motor_protocol: MotorProtocol = MotorProtocol::Dshot300, "1";
+    /// Pulse that stops a motor, the lower end of the controllers' range; OneShot125 takes an eighth of all three.
+    motor_pulse_min = 1000.0, "us", 800.0 ..= 1500.0;
+    /// Lowest pulse at which every rotor keeps turning (`calibrate esc idle`); DShot knows none.
+    motor_pulse_idle = 1070.0, "us", 800.0 ..= 2200.0;
+    /// Pulse of full drive: the upper end.
+    motor_pulse_max = 2000.0, "us", 1200.0 ..= 2200.0;
     /// Which rotor hangs at each motor output (`rotors`): its four digits, each of 1 to 4 once, are the rotors at outputs 1
     /// to 4; 1243 where the wires of 3 and 4 are swapped.
     motor_map: MotorMap = MotorMap::M1234, "1";

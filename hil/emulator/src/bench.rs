@@ -144,7 +144,11 @@ impl<'a> Bench<'a> {
         Self {
             emulator: None,
             firmware,
-            settings: Settings { speed, params },
+            settings: Settings {
+                speed,
+                params,
+                esc: scenario.vehicle.esc,
+            },
             sensors,
             below,
             hands: None,

@@ -3,35 +3,42 @@
 use sophie_control::params::MotorProtocol;
 use sophie_drivers::dshot::{THROTTLE_MAX, THROTTLE_MIN};
 use sophie_drivers::dshot_decoder::{Decoder, LineError};
+use sophie_sim::plant::esc::{EscSpec, ONESHOT125};
 
 /// Silence that stops the motor, ns (assumed; controllers differ between 0.1 and 0.5 s).
 const SILENCE: u64 = 250_000_000;
 
+/// Standard pulses that a controller takes for a signal, µs (AM32; SimonK up to 2200).
+const SIGNAL: std::ops::RangeInclusive<f64> = 800.0..=2200.0;
+
+/// More than a count of any timer, µs.
+const COUNT: f64 = 0.5;
+
 /// Protocol.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Line {
     /// DShot, kbit/s.
     DShot(u32),
-    /// From this many µs (stop) to twice as many.
-    Pulse(u32),
+    /// Pulses of which a standard one is so many times as long, for a controller with its own ends.
+    Pulse(f64, EscSpec),
 }
 
 impl Line {
-    /// The line for `protocol`.
+    /// The line for `protocol` to a controller as built, whatever the board takes it for.
     #[must_use]
-    pub const fn of(protocol: MotorProtocol) -> Self {
+    pub const fn of(protocol: MotorProtocol, esc: EscSpec) -> Self {
         match protocol {
-            MotorProtocol::Oneshot125 => Self::Pulse(125),
+            MotorProtocol::Oneshot125 => Self::Pulse(ONESHOT125, esc),
             MotorProtocol::Dshot150 => Self::DShot(150),
             MotorProtocol::Dshot300 => Self::DShot(300),
-            MotorProtocol::Pwm => Self::Pulse(1000),
+            MotorProtocol::Pwm => Self::Pulse(1.0, esc),
             MotorProtocol::Dshot600 => Self::DShot(600),
         }
     }
 }
 
 /// Input statistics.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EscStats {
     /// Valid frames or pulses.
     pub frames: u64,
@@ -39,6 +46,8 @@ pub struct EscStats {
     pub bad: u64,
     /// Shortest and longest between frames, ns.
     pub interval: Option<[u64; 2]>,
+    /// Shortest and longest valid pulse above the lower end, as a standard one, µs.
+    pub pulse_us: Option<[f64; 2]>,
 }
 
 /// A controller.
@@ -60,7 +69,7 @@ impl Esc {
     pub fn new(line: Line) -> Self {
         let bit = match line {
             Line::DShot(kbit) => 1_000_000 / kbit,
-            Line::Pulse(_) => 0,
+            Line::Pulse(..) => 0,
         };
         Self {
             line,
@@ -95,14 +104,18 @@ impl Esc {
                     }
                 }
             }
-            Line::Pulse(stop) => {
-                let share = width as f64 / (1e3 * f64::from(stop)) - 1.0;
-                if !(-0.1..=1.1).contains(&share) {
+            Line::Pulse(standard, esc) => {
+                let us = 1e-3 * width as f64 * standard;
+                if !SIGNAL.contains(&us) {
                     self.stats.bad += 1;
                     self.began = None;
                     return None;
                 }
-                share.clamp(0.0, 1.0)
+                if us > esc.pulse_min + COUNT {
+                    let [shortest, longest] = self.stats.pulse_us.unwrap_or([us; 2]);
+                    self.stats.pulse_us = Some([shortest.min(us), longest.max(us)]);
+                }
+                esc.drive(us)
             }
         };
         self.began = None;
@@ -171,10 +184,11 @@ mod tests {
 
     #[test]
     fn pulses_are_read_by_their_length() {
-        let mut esc = Esc::new(Line::Pulse(125));
+        let mut esc = Esc::new(Line::of(MotorProtocol::Oneshot125, EscSpec::default()));
         esc.edge(0, true);
         assert_eq!(esc.edge(187_500, false), Some(0));
         assert!((esc.command(200_000) - 0.5).abs() < 1e-9);
+        assert_eq!(esc.stats.pulse_us, Some([1500.0; 2]));
         esc.edge(1_000_000, true);
         assert_eq!(esc.edge(1_400_000, false), None);
         assert_eq!(esc.stats.bad, 1);

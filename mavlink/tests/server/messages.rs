@@ -7,6 +7,8 @@ use sophie_control::battery::Battery;
 use sophie_control::grip::{ArmGrip, ArmState, GripState};
 use sophie_control::math::deg;
 use sophie_control::mode::{Mode, Reason};
+use sophie_control::motor_pulses::MotorPulses;
+use sophie_control::params::{MotorProtocol, Params};
 use sophie_control::rc::{ArmChoice, StickMode, Sticks};
 use sophie_control::vector::{Quat, Vec3};
 use sophie_mavlink::Vehicle;
@@ -212,6 +214,19 @@ fn outputs_are_pulses_and_what_is_not_driven_is_none() {
         [550, 1500, 1501, 2450]
     );
     assert_eq!(o.time_usec, 3000);
+    let dji = Params {
+        motor_protocol: MotorProtocol::Pwm,
+        motor_pulse_min: 1120.0,
+        motor_pulse_idle: 1180.0,
+        motor_pulse_max: 1920.0,
+        ..Params::default()
+    };
+    v.motor_pulses = MotorPulses::shown(&dji).unwrap();
+    let o = servo_output_raw(&v, 3);
+    assert_eq!(
+        [o.servo1_raw, o.servo2_raw, o.servo3_raw, o.servo4_raw],
+        [1120, 1320, 1520, 1920]
+    );
     let o = servo_output_raw(&Vehicle::default(), 3);
     assert_eq!([o.servo1_raw, o.servo8_raw], [0, 0]);
 }

@@ -4,6 +4,7 @@ use sophie_control::desaturation::Patterns;
 use sophie_control::effectiveness::{Effectiveness, Geometry, Inverse, Load};
 use sophie_control::filter::LowPass;
 use sophie_control::mixer::{Split, moment_patterns, stiff};
+use sophie_control::motor_pulses::least_thrust;
 use sophie_control::params::Params;
 use sophie_control::wrench::{Configuration, PerArm, Wrench};
 
@@ -52,7 +53,7 @@ impl Frozen {
     pub fn new(configuration: Configuration, p: &Params) -> Self {
         Self {
             geometry: Geometry::from_params(p, configuration),
-            arms: [DynamicTilt::at(p.thrust_idle, p.notch_hz); 4],
+            arms: [DynamicTilt::at(least_thrust(p), p.notch_hz); 4],
             motor_rate: 1.0 / p.motor_tau,
         }
     }

@@ -3,6 +3,7 @@
 use sophie_control::deflection::{Algorithm1, ArmModel};
 use sophie_control::effectiveness::Geometry;
 use sophie_control::mixer::{Split, stiff};
+use sophie_control::motor_pulses::least_thrust;
 use sophie_control::params::Params;
 use sophie_control::wrench::{Configuration, PerArm, Wrench};
 
@@ -22,7 +23,7 @@ impl Printed {
         Self {
             geometry: Geometry::from_params(p, configuration),
             algorithm_1: Algorithm1::new(ArmModel::from_params(p), p.power_exponent),
-            last: [p.thrust_idle; 4],
+            last: [least_thrust(p); 4],
         }
     }
 }

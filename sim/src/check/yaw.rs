@@ -1,6 +1,7 @@
 //! Check rows of yaw, which bending arms change.
 
 use sophie_control::mixer::{Allocation, Conditions, YAW_FLOOR};
+use sophie_control::motor_pulses::least_thrust;
 use sophie_control::wrench::{PerArm, Wrench, YAW};
 use sophie_mixers::Mixer;
 
@@ -34,7 +35,12 @@ pub fn rows(scenario: &Scenario, built: &Built) -> Vec<Row> {
 
 /// Rotor thrusts that use yaw, N: from the stack's gate to [`TOP`].
 fn range(scenario: &Scenario) -> impl Iterator<Item = f64> {
-    let low = f64::from(scenario.params.yaw_gate_thrust.max(scenario.params.thrust_idle));
+    let low = f64::from(
+        scenario
+            .params
+            .yaw_gate_thrust
+            .max(least_thrust(&scenario.params)),
+    );
     let high = (TOP * scenario.vehicle.rotor.thrust_max).max(low);
     (0..=POINTS).map(move |i| low + (high - low) * f64::from(i) / f64::from(POINTS))
 }
@@ -111,7 +117,7 @@ fn authority(scenario: &Scenario, built: &Built) -> Row {
     let (p, v) = (&scenario.params, &scenario.vehicle);
     let pattern = yaw_thrusts(scenario, built.hover);
     let largest = pattern.iter().fold(0.0, |most: f64, t| most.max(t.abs()));
-    let room = (v.rotor.thrust_max - built.hover).min(built.hover - f64::from(p.thrust_idle));
+    let room = (v.rotor.thrust_max - built.hover).min(built.hover - f64::from(least_thrust(p)));
     let most = room.min(f64::from(p.yaw_thrust_max)).max(0.0);
     let moment = if largest > 0.0 {
         given(scenario, built, built.hover) * most / largest

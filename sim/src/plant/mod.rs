@@ -9,6 +9,7 @@ pub mod battery;
 pub mod beam;
 pub mod body;
 pub mod contact;
+pub mod esc;
 pub mod flexible;
 pub mod gust;
 pub mod hinged;
@@ -49,7 +50,7 @@ const NEAR: f64 = 0.25;
 /// Inputs from the flight stack.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Actuators {
-    /// Command of each motor, 0..1.
+    /// Drive that each controller gives its motor, 0..1.
     pub motors: PerArm<f64>,
     /// Pulse of each servo, µs; 0 is none.
     pub servos: PerArm<f64>,

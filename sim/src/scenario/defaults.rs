@@ -13,6 +13,7 @@ use super::{
 };
 use crate::plant::arm::TABLE_1;
 use crate::plant::body::BodySpec;
+use crate::plant::esc::EscSpec;
 use crate::plant::rotor::RotorSpec;
 
 /// The default mission, every key at its default.
@@ -36,6 +37,7 @@ impl Default for Vehicle {
             servo: ServoProfile::Paper,
             body: BodySpec::default(),
             rotor: RotorSpec::default(),
+            esc: EscSpec::default(),
         }
     }
 }

@@ -419,6 +419,21 @@ pub const KEYS: &[Key] = &[
         Range::new(5.0, 20.0, "N"),
         vehicle.rotor.thrust_max
     ),
+    number!(
+        "vehicle.esc_pulse_min_us",
+        Range::new(800.0, 1400.0, "us"),
+        vehicle.esc.pulse_min
+    ),
+    number!(
+        "vehicle.esc_pulse_idle_us",
+        Range::new(800.0, 1800.0, "us"),
+        vehicle.esc.pulse_idle
+    ),
+    number!(
+        "vehicle.esc_pulse_max_us",
+        Range::new(1500.0, 2300.0, "us"),
+        vehicle.esc.pulse_max
+    ),
     number!("world.gust_force_n", Range::new(0.0, 3.0, "N"), world.gust_force),
     number!(
         "world.gust_moment_nm",

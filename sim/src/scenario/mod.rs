@@ -30,6 +30,7 @@ use sophie_control::wrench::{Configuration, PerArm};
 use sophie_tasks::start::StartCause;
 
 use crate::plant::body::BodySpec;
+use crate::plant::esc::EscSpec;
 use crate::plant::rotor::RotorSpec;
 use crate::streams::Streams;
 
@@ -112,6 +113,8 @@ pub struct Vehicle {
     pub body: BodySpec,
     /// Motors and propellers, all alike.
     pub rotor: RotorSpec,
+    /// Motor controllers, all alike; what the stack takes them for is in its parameters alone.
+    pub esc: EscSpec,
 }
 
 /// How the plant's arms bend.

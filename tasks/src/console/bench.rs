@@ -11,6 +11,7 @@ use sophie_control::bench::{
     SPIN_DRIVE_MAX, SPIN_DRIVE_MIN, SPIN_TIME, Spin,
 };
 use sophie_control::math::{deg, to_deg};
+use sophie_control::motor_pulses::least_command;
 use sophie_control::tendon::Reel;
 
 use super::Console;
@@ -69,9 +70,11 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
                 ))
                 .await;
         };
+        let spin = Spin::at(rotor, drive);
+        let drive = spin.drive(least_command(&self.links.params));
         let (percent, seconds) = (Decimal(drive * 100.0), Decimal(SPIN_TIME));
         let begun = format_args!("motor {number} at {percent:.0} % for {seconds} s; any key stops it");
-        let end = self.order(BenchOrder::Spin(Spin { rotor, drive }), begun).await;
+        let end = self.order(BenchOrder::Spin(spin), begun).await;
         self.say_end(format_args!("motor {number} stopped"), end).await;
     }
 

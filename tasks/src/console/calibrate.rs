@@ -2,10 +2,13 @@
 //!
 //! Results go into the working copy, as `set` does; `save` stores them.
 
+use core::fmt;
+
 use embassy_time::{Duration, Timer};
-use sophie_control::bench::{BenchOrder, Place, SPIN_DRIVE, Spin};
+use sophie_control::bench::{BenchOrder, Place, SPIN_DRIVE, SPIN_DRIVE_MAX, Spin};
 use sophie_control::calibration::{self, AccelFit, BIAS, Face, FsrFit, SCALES, Samples, Unfit, thousandths};
 use sophie_control::math::{clamp, to_deg};
+use sophie_control::motor_pulses::{MotorPulses, by_pulses};
 use sophie_control::mounting::{Direction, Mounting};
 use sophie_control::params::Params;
 use sophie_control::position::{FlowFit, FlowTurns, Round, flow_fit};
@@ -25,8 +28,10 @@ const SAMPLING: Duration = Duration::from_millis(10);
 /// Samples of one round of turning, 8 s, and between two lines that say how it goes.
 const TURNS: u16 = 800;
 const TURNS_SHOWN: u16 = 200;
-/// Step of a servo under the keys, µs: 1.4 degrees.
+/// Step of a servo under the keys, µs: 1.4 degrees; and of a motor's pulse.
 const STEP_US: f32 = 10.0;
+/// First pulse of a motor above its stop, µs: less than any dead zone, and the bench's least drive of every range.
+const FIRST_US: f32 = 30.0;
 
 /// What can be calibrated, and what that buys.
 const WHAT: [(&str, &str); 10] = [
@@ -51,7 +56,10 @@ const WHAT: [(&str, &str); 10] = [
         "flow",
         "scale and mounting of the flow module, by turning it over a floor",
     ),
-    ("esc", "whether the motor controllers understand the protocol"),
+    (
+        "esc",
+        "whether controllers take the protocol; esc idle: pulse that turns all",
+    ),
 ];
 
 const RELEASE: [&str; 4] = [
@@ -94,6 +102,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
             ("servo", [Some(number), None]) => self.calibrate_servo(number).await,
             ("flow", [None, _]) => self.calibrate_flow().await,
             ("esc", [None, _]) => self.calibrate_esc().await,
+            ("esc", [Some("idle"), None]) => self.calibrate_esc_idle().await,
             ("fsr", [Some(number), Some(newton)]) => self.calibrate_fsr(number, newton).await,
             ("arm", [Some(number), None]) => self.calibrate_arm(number).await,
             _ => {
@@ -421,43 +430,109 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
 
     /// Each controller in turn; what the builder sees says whether it understands.
     async fn calibrate_esc(&mut self) {
-        let protocol = Params::row("motor_protocol");
-        let value = self.links.params.get("motor_protocol").unwrap_or_default();
-        let name = protocol
-            .and_then(|row| row.choice(value))
-            .map_or("", |choice| choice.name);
+        let name = self.motor_protocol();
+        let pulses = by_pulses(&self.links.params);
+        if pulses {
+            self.out
+                .line(format_args!(
+                    "it teaches no ends: BLHeli, AM32, Afro by their makers' procedure, DJI never"
+                ))
+                .await;
+        }
         for rotor in 0..4 {
             let number = rotor + 1;
-            let spin = Spin {
-                rotor,
-                drive: SPIN_DRIVE,
-            };
             let begun = format_args!("motor {number} by {name}");
-            match self.order(BenchOrder::Spin(spin), begun).await {
-                End::Done => (),
-                end => return self.say_end(format_args!("motor {number} stopped"), end).await,
-            }
-            match self.ask("did it turn, evenly, and beep no more? y or n: ").await {
-                Some(b'y') => (),
-                Some(b'n') => {
+            match self.turns(Spin::at(rotor, SPIN_DRIVE), begun).await {
+                Some(true) => (),
+                Some(false) => {
                     self.out
                         .line(format_args!(
                             "controller {number} does not take {name}, or has no power"
                         ))
                         .await;
-                    return self
-                        .out
-                        .line(format_args!(
-                            "another: 'set motor_protocol pwm', 'save', and again"
-                        ))
-                        .await;
+                    let next = if pulses {
+                        "or turns later: 'calibrate esc idle'; motor_pulse_min and _max are its ends"
+                    } else {
+                        "another: 'set motor_protocol pwm', 'save', and again"
+                    };
+                    return self.out.line(format_args!("{next}")).await;
                 }
-                _ => return self.out.line(format_args!("ended")).await,
+                None => return,
             }
         }
         self.out
             .line(format_args!("all four controllers take {name}; nothing to store"))
             .await;
+    }
+
+    /// Raises each motor's pulse until the builder sees it turn: at rest friction is largest, so what turns it keeps it
+    /// turning. The last one to begin counts.
+    async fn calibrate_esc_idle(&mut self) {
+        if !by_pulses(&self.links.params) {
+            let name = self.motor_protocol();
+            return self
+                .out
+                .line(format_args!("{name} has no idle pulse; nothing to store"))
+                .await;
+        }
+        // Out of order, the first order is refused.
+        let pulses = MotorPulses::from_params(&self.links.params).unwrap_or(MotorPulses::DIGITAL);
+        let mut pulse_us = pulses.pulse_us(0.0) + FIRST_US;
+        for rotor in 0..4 {
+            let number = rotor + 1;
+            loop {
+                let (drive, shown) = (pulses.command(pulse_us), Decimal(pulse_us));
+                if drive > SPIN_DRIVE_MAX {
+                    return self
+                        .out
+                        .line(format_args!(
+                            "not taken: motor {number} does not turn: power? motor_pulse_min, motor_pulse_max?"
+                        ))
+                        .await;
+                }
+                let spin = Spin {
+                    probes: true,
+                    ..Spin::at(rotor, drive)
+                };
+                match self
+                    .turns(spin, format_args!("motor {number} at {shown:.0} us"))
+                    .await
+                {
+                    Some(true) => break,
+                    Some(false) => pulse_us += STEP_US,
+                    None => return,
+                }
+            }
+        }
+        self.put_all(&["motor_pulse_idle"], [pulse_us]).await;
+    }
+
+    /// The name of the protocol in force.
+    fn motor_protocol(&self) -> &'static str {
+        let value = self.in_force("motor_protocol");
+        let row = Params::row("motor_protocol");
+        row.and_then(|row| row.choice(value))
+            .map_or("", |choice| choice.name)
+    }
+
+    /// Spins a motor and asks; `None` when it was ended.
+    async fn turns(&mut self, spin: Spin, begun: fmt::Arguments<'_>) -> Option<bool> {
+        let number = spin.rotor + 1;
+        match self.order(BenchOrder::Spin(spin), begun).await {
+            End::Done => (),
+            end => {
+                self.say_end(format_args!("motor {number} stopped"), end).await;
+                return None;
+            }
+        }
+        match self.ask("did it turn, evenly, and beep no more? y or n: ").await {
+            Some(b'y') => Some(true),
+            Some(b'n') => Some(false),
+            _ => {
+                self.out.line(format_args!("ended")).await;
+                None
+            }
+        }
     }
 
     /// Says what to do, waits for a key, and samples a rest of two seconds; `None` when it was ended.

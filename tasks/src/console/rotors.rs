@@ -58,10 +58,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
     async fn look_at(&mut self, output: usize, rotor: usize) -> Option<Seen> {
         let (number, seconds) = (output + 1, Decimal(SPIN_TIME));
         loop {
-            let spin = Spin {
-                rotor,
-                drive: SPIN_DRIVE,
-            };
+            let spin = Spin::at(rotor, SPIN_DRIVE);
             let begun = format_args!("output {number} turns for {seconds} s");
             match self.order(BenchOrder::Spin(spin), begun).await {
                 End::Done => (),

@@ -214,10 +214,7 @@ fn a_console_or_a_sensor_that_dies_stops_a_motor() {
     let mut table = Table::set();
     table.says("propellers off", 200);
     // A console that orders and is heard of no more.
-    let order = BenchOrder::Spin(Spin {
-        rotor: 2,
-        drive: 0.08,
-    });
+    let order = BenchOrder::Spin(Spin::at(2, 0.08));
     table.begins("");
     let request = BenchRequest { number: 1000, order };
     table.rig.links.bench.send(Instant::now(), request);

@@ -3,7 +3,7 @@
 use embassy_time::Instant;
 use sophie_control::calibration::Face;
 use sophie_control::ground::{Flow, GroundView, Range};
-use sophie_control::params::{MotorMap, Params};
+use sophie_control::params::{MotorMap, MotorProtocol, Params};
 use sophie_control::vector::{Quat, Vec3};
 use sophie_tasks::ports::ImuReading;
 
@@ -375,6 +375,113 @@ fn the_controllers_protocol_is_judged_by_what_the_builder_sees() {
     table.presses("yyy", 2500);
     let said = table.presses("y", 300);
     assert_eq!(said[1], "all four controllers take dshot300; nothing to store");
+}
+
+fn dji() -> Params {
+    Params {
+        motor_protocol: MotorProtocol::Pwm,
+        motor_pulse_min: 1120.0,
+        motor_pulse_idle: 1130.0,
+        motor_pulse_max: 1920.0,
+        ..Params::DEFAULT
+    }
+}
+
+#[test]
+fn the_idle_pulse_is_what_turns_the_last_motor() {
+    let mut table = Table::with(UNLOADED, dji());
+    table.says("propellers off", 100);
+    // Motors that turn from 1160, 1180, 1150 and 1175 us on.
+    let said = table.says("calibrate esc idle", 1000);
+    assert_eq!(said, ["motor 1 at 1150 us"]);
+    let command = table.motors.commands.get()[0];
+    assert!((command - 30.0 / 800.0).abs() < 1e-6, "{command}");
+    table.run(1500);
+    let mut said = Vec::new();
+    for key in ["n", "y", "n", "n", "y", "y"] {
+        said.extend(table.presses(key, 2500));
+    }
+    said.extend(table.presses("y", 300));
+    let said: Vec<_> = said.iter().filter(|line| line.starts_with("motor")).collect();
+    assert_eq!(
+        said,
+        [
+            "motor 1 at 1160 us",
+            "motor 2 at 1160 us",
+            "motor 2 at 1170 us",
+            "motor 2 at 1180 us",
+            "motor 3 at 1180 us",
+            "motor 4 at 1180 us",
+            "motor_pulse_idle 1130 -> 1180 us, in force after save",
+        ]
+    );
+    // Tried by hand it turns at what is in force at least.
+    let said = table.says("motor 1 2", 2500);
+    assert_eq!(said[0], "motor 1 at 2 % for 2 s; any key stops it");
+}
+
+#[test]
+fn a_motor_that_never_turns_leaves_the_idle_pulse_as_it_is() {
+    let mut table = Table::with(UNLOADED, dji());
+    table.says("propellers off", 100);
+    table.says("calibrate esc idle", 2500);
+    for _ in 0..6 {
+        table.presses("n", 2500);
+    }
+    let said = table.presses("n", 300);
+    assert_eq!(
+        said[1],
+        "not taken: motor 1 does not turn: power? motor_pulse_min, motor_pulse_max?"
+    );
+    assert_eq!(table.says("changes", 100), ["no changes"]);
+    // What is typed instead of an answer ends it, and so does a key while it turns.
+    table.says("calibrate esc idle", 2500);
+    assert_eq!(table.presses("x", 300)[1], "ended");
+    table.says("calibrate esc idle", 1000);
+    assert_eq!(table.presses("x", 300), ["motor 1 stopped by a key"]);
+    assert_eq!(table.motors.commands.get(), [0.0; 4]);
+}
+
+#[test]
+fn pulses_out_of_order_turn_nothing_and_frames_have_none() {
+    let params = Params {
+        motor_pulse_idle: 1070.0,
+        ..dji()
+    };
+    let mut table = Table::with(UNLOADED, params);
+    table.says("propellers off", 100);
+    let refused = ["refused: motor pulses out of order"];
+    for command in ["motor 1", "calibrate esc idle"] {
+        assert_eq!(table.says(command, 300), refused, "{command}");
+    }
+    let said = table.says("calibrate esc", 300);
+    assert_eq!(
+        said,
+        [
+            "it teaches no ends: BLHeli, AM32, Afro by their makers' procedure, DJI never",
+            refused[0]
+        ]
+    );
+    let mut table = Table::set();
+    assert_eq!(
+        table.says("calibrate esc idle", 100),
+        ["dshot300 has no idle pulse; nothing to store"]
+    );
+}
+
+#[test]
+fn a_dead_zone_wider_than_the_bench_s_drive_is_jumped_over() {
+    // PX4's F450 turns from 1230 us on.
+    let params = Params {
+        motor_pulse_idle: 1230.0,
+        ..dji()
+    };
+    let mut table = Table::with(UNLOADED, params);
+    table.says("propellers off", 100);
+    let said = table.says("motor 3", 1000);
+    assert_eq!(said, ["motor 3 at 14 % for 2 s; any key stops it"]);
+    let command = table.motors.commands.get()[2];
+    assert!((command - 110.0 / 800.0).abs() < 1e-5, "{command}");
 }
 
 #[test]

@@ -103,10 +103,7 @@ fn what_was_wound_up_goes_with_every_change_but_one_between_rate_and_angle() {
     let direct = Setpoint::Direct {
         wrench: Wrench::default(),
     };
-    let spin = Spin {
-        rotor: 0,
-        drive: 0.08,
-    };
+    let spin = Spin::at(0, 0.08);
     let tried = Bench::new().run(1, Setpoint::Spin(spin), 0);
     assert_eq!(tried, Demand::Spin(spin));
     for (between, then, kept) in [

@@ -115,7 +115,7 @@ fn yaw_is_given_in_the_air_and_not_on_the_pipe_and_stopped_rotors_get_nothing() 
         mix.running && mix.thrusts == [Params::default().thrust_idle; 4],
         "{mix:?}"
     );
-    let spin = |drive| Demand::Spin(Spin { rotor: 1, drive });
+    let spin = |drive| Demand::Spin(Spin::at(1, drive));
     let mix = bench.run(1, &spin(0.08), &nothing);
     assert!(
         mix.running && mix.thrusts == [0.0; 4] && mix.commands == [0.0, 0.08, 0.0, 0.0],

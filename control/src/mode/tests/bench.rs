@@ -10,10 +10,7 @@ use crate::bench::{
 use crate::mode::*;
 use crate::rc::ArmChoice;
 
-const SPIN: BenchOrder = BenchOrder::Spin(Spin {
-    rotor: 2,
-    drive: SPIN_DRIVE,
-});
+const SPIN: BenchOrder = BenchOrder::Spin(Spin::at(2, SPIN_DRIVE));
 const PLACE: BenchOrder = BenchOrder::Place(Place {
     servo: 1,
     pulse_us: 1500.0,
@@ -191,7 +188,7 @@ fn silence_of_the_console_ends_an_order_for_good() {
 fn numbers_beyond_the_limits_never_begin() {
     let mut r = Rig::without_propellers();
     for (rotor, drive) in [(4, 0.08), (0, 0.121), (0, 0.0), (0, -0.08), (0, f32::NAN)] {
-        let order = BenchOrder::Spin(Spin { rotor, drive });
+        let order = BenchOrder::Spin(Spin::at(rotor, drive));
         assert_eq!(
             r.order(order),
             BenchState::Refused(BenchRefusal::OutOfRange),
@@ -210,7 +207,7 @@ fn numbers_beyond_the_limits_never_begin() {
 }
 
 fn order() -> impl Strategy<Value = BenchOrder> {
-    let spin = (0usize..5, -0.1f32..0.3).prop_map(|(rotor, drive)| BenchOrder::Spin(Spin { rotor, drive }));
+    let spin = (0usize..5, -0.1f32..0.3).prop_map(|(rotor, drive)| BenchOrder::Spin(Spin::at(rotor, drive)));
     let place = (0usize..5, 400.0f32..2600.0)
         .prop_map(|(servo, pulse_us)| BenchOrder::Place(Place { servo, pulse_us }));
     let words = prop_oneof![1 => Just(BenchOrder::End), 4 => Just(BenchOrder::PropellersOff)];
@@ -251,7 +248,7 @@ proptest! {
                 prop_assert!(spin.rotor < 4 && spin.drive > 0.0 && spin.drive <= SPIN_DRIVE_MAX);
                 prop_assert!(order == Some(BenchOrder::Spin(spin)), "{order:?}");
                 prop_assert!(turning <= SPIN_TIME + DT, "{turning} s");
-                prop_assert!(spin.commands().iter().filter(|c| **c > 0.0).count() == 1);
+                prop_assert!(spin.commands(0.07).iter().filter(|c| **c > 0.0).count() == 1);
             }
         }
     }

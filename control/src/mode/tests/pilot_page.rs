@@ -134,6 +134,9 @@ fn on_inhibit(inhibit: ArmingInhibit) -> &'static str {
         ArmingInhibit::StorageForeign => "Console: `list`, then `save`.",
         ArmingInhibit::StorageUnreadable => "Console: `list`, set what is lost, `save`.",
         ArmingInhibit::StorageFull => "Console: `reset` some parameters, `save`.",
+        ArmingInhibit::MotorPulses => {
+            "`motor_pulse_min` below `_idle` below `_max`, as your controllers have it ([wiring](wiring.md#motors))."
+        }
         ArmingInhibit::ImuAbsent => "Power off and on; then the board is broken.",
         ArmingInhibit::ImuWrongPart => "This board's revision is not supported.",
         ArmingInhibit::ImuSelfTest => "Power off and on, at rest; then the part is broken.",

@@ -156,10 +156,7 @@ fn a_kill_on_the_pipe_keeps_the_arms_closed() {
 fn disarming_ends_what_is_tried_on_the_bench() {
     for order in [Disarm, Kill] {
         let mut r = Rig::disarmed();
-        let spin = BenchOrder::Spin(Spin {
-            rotor: 0,
-            drive: SPIN_DRIVE,
-        });
+        let spin = BenchOrder::Spin(Spin::at(0, SPIN_DRIVE));
         for (number, order) in (1..).zip([BenchOrder::PropellersOff, spin]) {
             r.inputs.bench = Some(BenchRequest { number, order });
             r.step();

@@ -32,6 +32,7 @@ use rigless::soc::Width;
 use rigless::time::{NO_DEADLINE, VirtualNanos};
 use sophie_control::params::{FlowPort, Params};
 use sophie_control::wrench::PerArm;
+use sophie_sim::plant::esc::EscSpec;
 
 use self::board::Wired;
 use self::chip::{Chip, Clock, Options};
@@ -80,6 +81,8 @@ pub struct Settings {
     pub speed: f64,
     /// Stored parameters.
     pub params: Params,
+    /// Motor controllers as built.
+    pub esc: EscSpec,
 }
 
 /// An emulated board.
@@ -107,7 +110,7 @@ impl Emulator {
             let loader = Image::new(Path::new("loader"), loader.bytes, Some(loader.at));
             images.push(loader.map_err(|e| format!("emulator: {e}"))?);
         }
-        let line = esc::Line::of(settings.params.motor_protocol);
+        let line = esc::Line::of(settings.params.motor_protocol, settings.esc);
         let receiver = serial::Setup::of(settings.params.rc_protocol, kind);
         let (wires, wires_in) = sync_channel(1);
         let (pins_out, pins) = sync_channel(1);

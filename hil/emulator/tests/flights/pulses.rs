@@ -2,6 +2,7 @@
 
 use sophie_control::params::MotorProtocol;
 use sophie_emulator::wires::BoardFault;
+use sophie_sim::plant::esc::EscSpec;
 
 use super::*;
 
@@ -60,4 +61,34 @@ fn so_is_a_short_pulse() {
 fn so_is_a_digital_frame() {
     // DMA completes the frame.
     ends(MotorProtocol::Dshot300, [900.0, 13_000.0], 120.0);
+}
+
+/// A DJI 430 Lite, whose pulses the emulated controllers read by its own ends from what the compare registers make.
+#[test]
+fn controllers_get_the_pulses_of_their_own_ends() {
+    let mut scenario = hover(AIRBORNE);
+    scenario.vehicle.esc = EscSpec {
+        pulse_min: 1120.0,
+        pulse_idle: 1180.0,
+        pulse_max: 1920.0,
+    };
+    let p = &mut scenario.params;
+    p.motor_protocol = MotorProtocol::Pwm;
+    (p.motor_pulse_min, p.motor_pulse_idle, p.motor_pulse_max) = (1120.0, 1190.0, 1920.0);
+    let flight = fly_small(&scenario, &[]);
+    let flies = logged_at(&flight, 0.0, "FLIGHT").unwrap_or_else(|| panic!("{}", log(&flight)));
+    for esc in flight.board.run.escs {
+        // 400 a second, rotors from their idle on; the last pulse below full drive.
+        assert!(esc.bad == 0 && esc.frames > 1500, "{esc:?}");
+        let [shortest, longest] = esc.pulse_us.unwrap();
+        assert!(shortest >= 1189.5 && longest <= 1920.5, "{esc:?}");
+    }
+    let turns = |s: &Sample| s.thrust.iter().all(|thrust| *thrust > 0.1);
+    assert!(samples(&flight, flies + 0.5, AIRBORNE).count() > 50);
+    assert!(
+        samples(&flight, flies + 0.5, AIRBORNE).all(turns),
+        "{}",
+        log(&flight)
+    );
+    assert_eq!(flight.gaps, [], "{}", log(&flight));
 }

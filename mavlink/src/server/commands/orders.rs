@@ -134,10 +134,7 @@ impl Server {
             return Some(self.deny("motor 1 to 4, one, in percent"));
         };
         let order = if percent > 0.0 {
-            BenchOrder::Spin(Spin {
-                rotor: rotor as usize - 1,
-                drive: percent / 100.0,
-            })
+            BenchOrder::Spin(Spin::at(rotor as usize - 1, percent / 100.0))
         } else {
             BenchOrder::End
         };

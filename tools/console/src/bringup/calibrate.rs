@@ -2,6 +2,7 @@
 
 use sophie_control::decimal;
 
+use super::checks::takes_pulses;
 use super::walk::{Stop, Verdict, Walk};
 use super::{Judged, Step};
 
@@ -134,7 +135,23 @@ pub(super) fn esc(walk: &mut Walk<'_>, _: &Step) -> Judged {
     if let Some(refused) = walk.propellers_off()? {
         return Ok(Verdict::of(false, vec![refused]));
     }
-    calibrated(walk, "calibrate esc")
+    // What turns the motors first: it is in force, after a restart, when the protocol is tried.
+    let idle = if takes_pulses(walk.session)? {
+        let idle = calibrated(walk, "calibrate esc idle")?;
+        if !idle.passed {
+            return Ok(idle);
+        }
+        if let Some(refused) = walk.propellers_off()? {
+            return Ok(Verdict::of(false, vec![refused]));
+        }
+        idle
+    } else {
+        Verdict::default()
+    };
+    let mut verdict = calibrated(walk, "calibrate esc")?;
+    verdict.figures.splice(0..0, idle.figures);
+    verdict.parameters.extend(idle.parameters);
+    Ok(verdict)
 }
 
 pub(super) fn rotors(walk: &mut Walk<'_>, _: &Step) -> Judged {

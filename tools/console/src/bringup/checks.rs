@@ -16,6 +16,8 @@ const SETUP: [&str; 6] = [
     "battery_critical",
     "infill",
 ];
+/// The ends of controllers that take pulses.
+const PULSES: [&str; 3] = ["motor_pulse_min", "motor_pulse_idle", "motor_pulse_max"];
 /// What `status` says of a storage that only a save makes sound.
 const UNSOUND: [&str; 3] = [
     "stored parameters unreadable",
@@ -89,6 +91,11 @@ pub(super) fn setup(walk: &mut Walk<'_>, _: &Step) -> Judged {
     let mut said = Vec::new();
     for name in SETUP {
         said.push(set_up(walk, name)?);
+        if name == "motor_protocol" && takes_pulses(walk.session)? {
+            for name in PULSES {
+                said.push(set_up(walk, name)?);
+            }
+        }
     }
     let status = walk.ready()?;
     let unsound = status
@@ -103,8 +110,10 @@ pub(super) fn setup(walk: &mut Walk<'_>, _: &Step) -> Judged {
         walk.ready()?;
     }
     let kept = walk.keep(&said)?;
+    let pulses = takes_pulses(walk.session)?;
     let rows = parameters::listed(walk.session)?;
-    let rows = rows.into_iter().filter(|listed| SETUP.contains(&&*listed.name));
+    let asked = |name: &str| SETUP.contains(&name) || pulses && PULSES.contains(&name);
+    let rows = rows.into_iter().filter(|listed| asked(&listed.name));
     let rows: Vec<parameters::Listed> = rows.collect();
     let figures = rows
         .iter()
@@ -112,6 +121,13 @@ pub(super) fn setup(walk: &mut Walk<'_>, _: &Step) -> Judged {
     let mut verdict = Verdict::of(true, figures.collect());
     verdict.parameters = kept;
     Ok(verdict)
+}
+
+/// The motor controllers take pulses, by what is set.
+pub(super) fn takes_pulses(session: &mut Session) -> Result<bool, Failure> {
+    let rows = parameters::listed(session)?;
+    let protocol = rows.iter().find(|listed| listed.name == "motor_protocol");
+    Ok(protocol.is_some_and(|listed| matches!(&*listed.value, "400" | "125")))
 }
 
 /// Shows a parameter and takes another value for it; the console's line of a change, empty without.
