@@ -42,9 +42,10 @@ use sophie_drivers::ms5611::{self, Ms5611};
 use crate::Board;
 use crate::cortex_m::{enable_caches, levels_on};
 use crate::stm32::{
-    AnalogInputs, ArmBus, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, PlainChip, PortLevels,
-    ReadyLine, ReadyStamp, Selected, ServoPairs, ThisChip, Tone, UsbPort, Wiring, console_lines, drive,
-    ground_line, hold, i2c_bus, load_parameters, look, mavlink_lines, pad, receiver_line, spi_config,
+    AnalogInputs, ArmBus, BoardStorage, BusErrors, DmaChip, Dog, EscTimer, Lamp, Lights, PlainChip,
+    PortLevels, ReadyLine, ReadyStamp, Selected, ServoPairs, ThisChip, Tone, UsbPort, WatchErrors, Wiring,
+    console_lines, drive, ground_line, hold, i2c_bus, load_parameters, look, mavlink_lines, pad,
+    receiver_line, spi_config,
 };
 
 /// Name in the log.
@@ -102,8 +103,8 @@ pub type StoragePort = BoardStorage<Fram<PlainChip>>;
 pub type LightsPort = Lights<Tone<peripherals::TIM9>>;
 
 levels_on!(SAI1, SAI2);
-i2c_bus!(LeftArms, Irqs);
-i2c_bus!(RightArms, Irqs);
+i2c_bus!(LeftArms, Irqs, I2C1);
+i2c_bus!(RightArms, Irqs, I2C2);
 
 bind_interrupts! {
     /// Which handler serves which vector.
@@ -119,10 +120,10 @@ bind_interrupts! {
         DMA2_STREAM4 => dma::InterruptHandler<peripherals::DMA2_CH4>;
         DMA2_STREAM5 => dma::InterruptHandler<peripherals::DMA2_CH5>;
         EXTI4 => ReadyStamp, exti::InterruptHandler<interrupt::typelevel::EXTI4>;
-        I2C1_EV => i2c::EventInterruptHandler<peripherals::I2C1>;
-        I2C1_ER => i2c::ErrorInterruptHandler<peripherals::I2C1>;
-        I2C2_EV => i2c::EventInterruptHandler<peripherals::I2C2>;
-        I2C2_ER => i2c::ErrorInterruptHandler<peripherals::I2C2>;
+        I2C1_EV => i2c::EventInterruptHandler<peripherals::I2C1>, WatchErrors<peripherals::I2C1>;
+        I2C1_ER => BusErrors<peripherals::I2C1>;
+        I2C2_EV => i2c::EventInterruptHandler<peripherals::I2C2>, WatchErrors<peripherals::I2C2>;
+        I2C2_ER => BusErrors<peripherals::I2C2>;
         OTG_FS => usb::InterruptHandler<peripherals::USB_OTG_FS>;
         UART4 => usart::BufferedInterruptHandler<peripherals::UART4>;
         UART7 => usart::BufferedInterruptHandler<peripherals::UART7>;
@@ -265,8 +266,8 @@ pub async fn take() -> Board {
         motors: motors(parts.motors, &params),
         imu: imu(parts.imu, &params),
         arms: ArmBuses::new(
-            ArmBus::new(parts.left_arms),
-            ArmBus::new(parts.right_arms),
+            ArmBus::new(parts.left_arms, params.arm_bus_khz),
+            ArmBus::new(parts.right_arms, params.arm_bus_khz),
             [bno055::Config::default(); 4],
         ),
         barometer: barometer(parts.barometer),

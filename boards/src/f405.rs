@@ -89,8 +89,8 @@ pub type StoragePort = BoardStorage<ParamFlash<0x4000>>;
 pub type LightsPort = Lights<Lamp>;
 
 levels_on!(CAN1_TX, CAN2_TX);
-i2c_bus!(LeftArms, Irqs);
-i2c_bus!(RightArms, Irqs);
+i2c_bus!(LeftArms, Irqs, I2C1);
+i2c_bus!(RightArms, Irqs, I2C2);
 
 bind_interrupts! {
     /// Which handler serves which vector.
@@ -231,8 +231,8 @@ pub async fn take() -> Board {
         motors: motors(parts.motors, &params),
         imu: imu(parts.imu, &params),
         arms: ArmBuses::new(
-            ArmBus::new(parts.left_arms),
-            ArmBus::new(parts.right_arms),
+            ArmBus::new(parts.left_arms, params.arm_bus_khz),
+            ArmBus::new(parts.right_arms, params.arm_bus_khz),
             [bno055::Config::default(); 4],
         ),
         barometer: (),

@@ -41,9 +41,10 @@ use static_cell::StaticCell;
 use crate::Board;
 use crate::cortex_m::{enable_caches, levels_on};
 use crate::stm32::{
-    AnalogInputs, ArmBus, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, ParamFlash, PortLevels,
-    ReadyLine, ReadyStamp, Selected, ServoTimer, ThisChip, UsbPort, Wiring, console_lines, drive,
-    ground_line, i2c_bus, load_parameters, look, mavlink_lines, pad, receiver_line, spi_config,
+    AnalogInputs, ArmBus, BoardStorage, BusErrors, DmaChip, Dog, EscTimer, Lamp, Lights, ParamFlash,
+    PortLevels, ReadyLine, ReadyStamp, Selected, ServoTimer, ThisChip, UsbPort, WatchErrors, Wiring,
+    console_lines, drive, ground_line, i2c_bus, load_parameters, look, mavlink_lines, pad, receiver_line,
+    spi_config,
 };
 
 /// Name in the log.
@@ -96,8 +97,8 @@ pub type LightsPort = Lights<Lamp>;
 static RIGHT_BUS: StaticCell<Mutex<Raw, ArmBus<RightArms>>> = StaticCell::new();
 
 levels_on!(SAI3, SAI4);
-i2c_bus!(LeftArms, Irqs);
-i2c_bus!(RightArms, Irqs);
+i2c_bus!(LeftArms, Irqs, I2C1);
+i2c_bus!(RightArms, Irqs, I2C2);
 
 bind_interrupts! {
     /// Which handler serves which vector.
@@ -113,10 +114,10 @@ bind_interrupts! {
         DMA2_STREAM3 => dma::InterruptHandler<peripherals::DMA2_CH3>;
         DMA2_STREAM4 => dma::InterruptHandler<peripherals::DMA2_CH4>;
         EXTI2 => ReadyStamp, exti::InterruptHandler<interrupt::typelevel::EXTI2>;
-        I2C1_EV => i2c::EventInterruptHandler<peripherals::I2C1>;
-        I2C1_ER => i2c::ErrorInterruptHandler<peripherals::I2C1>;
-        I2C2_EV => i2c::EventInterruptHandler<peripherals::I2C2>;
-        I2C2_ER => i2c::ErrorInterruptHandler<peripherals::I2C2>;
+        I2C1_EV => i2c::EventInterruptHandler<peripherals::I2C1>, WatchErrors<peripherals::I2C1>;
+        I2C1_ER => BusErrors<peripherals::I2C1>;
+        I2C2_EV => i2c::EventInterruptHandler<peripherals::I2C2>, WatchErrors<peripherals::I2C2>;
+        I2C2_ER => BusErrors<peripherals::I2C2>;
         OTG_FS => usb::InterruptHandler<peripherals::USB_OTG_FS>;
         UART7 => usart::BufferedInterruptHandler<peripherals::UART7>;
         USART1 => usart::BufferedInterruptHandler<peripherals::USART1>;
@@ -232,13 +233,13 @@ pub async fn take() -> Board {
     let (mavlink_input, mavlink_output) = mavlink_lines(m.uart, m.rx, m.tx, Irqs);
     let g = parts.ground;
     let ground = ground_line(g.uart, g.rx, g.tx, Irqs, &params);
-    let right: &'static _ = RIGHT_BUS.init(Mutex::new(ArmBus::new(parts.right_arms)));
+    let right: &'static _ = RIGHT_BUS.init(Mutex::new(ArmBus::new(parts.right_arms, params.arm_bus_khz)));
     Board {
         watchdog: Dog::start(parts.watchdog.dog),
         motors: motors(parts.motors, &params),
         imu: imu(parts.imu, &params),
         arms: ArmBuses::new(
-            ArmBus::new(parts.left_arms),
+            ArmBus::new(parts.left_arms, params.arm_bus_khz),
             I2cDevice::new(right),
             [bno055::Config::default(); 4],
         ),

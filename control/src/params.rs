@@ -7,8 +7,8 @@ mod table;
 use core::cmp::Ordering;
 
 pub use self::choices::{
-    ArmSign, FlowMounting, FlowPort, ImuAccelRange, ImuGyroRange, ImuMounting, ImuRate, MotorMap,
-    MotorProtocol, RcProtocol,
+    ArmBusSpeed, ArmSign, FlowMounting, FlowPort, ImuAccelRange, ImuGyroRange, ImuMounting, ImuRate,
+    MotorMap, MotorProtocol, RcProtocol,
 };
 pub use self::names::{NAME_MAX, RENAMED, Renamed, check_names};
 pub use self::table::Params;

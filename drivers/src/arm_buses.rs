@@ -15,8 +15,8 @@ use sophie_tasks::ports::{ArmImus, PortError};
 use crate::bno055::{Address, Bno055, Calibration, Config};
 use crate::fault::Fault;
 
-/// The arm sensors, two each on bus `I1` (left) and `I2` (right), at 400 kHz. A busy-waiting bus driver should time a
-/// stretched clock out after 2 to 3 ms.
+/// The arm sensors, two each on bus `I1` (left) and `I2` (right), at 400 or 100 kHz. A busy-waiting bus driver times a
+/// stretched clock out after [`crate::bno055::TRANSACTION`].
 pub struct ArmBuses<I1, I2> {
     left: I1,
     right: I2,

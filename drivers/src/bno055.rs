@@ -12,8 +12,10 @@ use sophie_tasks::ports::PortError;
 use crate::fault::{Fault, report};
 use crate::mounting::Mounting;
 
-/// Time limit of a transaction; the longest, 19 bytes, takes 0.43 ms at 400 kHz.
-pub const TRANSACTION: Duration = Duration::from_millis(3);
+/// Time limit of a transaction. The longest, 19 bytes, takes 0.43 ms at 400 kHz and 2.0 ms at the slowest bus, 87.5 kHz;
+/// chips have been seen to hold the clock for 180 µs after each byte (Bosch's forum: "Minimum I2C communication interval";
+/// 26 registers in up to 6 ms: kriswiner/BNO055 issue 4), which adds 3.4 ms.
+pub const TRANSACTION: Duration = Duration::from_millis(6);
 /// Reset until registers are writable (§1.2: 650 ms), with margin.
 const RESET_TIME: Duration = Duration::from_millis(700);
 /// Any mode to configuration mode (§3.3, table 3-6).
@@ -128,6 +130,8 @@ impl Calibration {
 enum State {
     /// Identity is due.
     Absent(Instant),
+    /// Configuration mode is reached, in which alone the chip takes a reset.
+    Stopping(Instant),
     /// Reset ends.
     Resetting(Instant),
     /// Configuration mode is reached.
@@ -187,7 +191,11 @@ impl Bno055 {
     pub async fn gravity(&mut self, bus: &mut impl I2c) -> Result<Vec3, PortError> {
         let now = Instant::now();
         match self.state {
-            State::Absent(at) | State::Resetting(at) | State::Entering(at) | State::Leaving(at)
+            State::Absent(at)
+            | State::Stopping(at)
+            | State::Resetting(at)
+            | State::Entering(at)
+            | State::Leaving(at)
                 if now < at =>
             {
                 Err(PortError::Absent)
@@ -206,15 +214,18 @@ impl Bno055 {
         self.state = match self.state {
             State::Absent(_) => {
                 self.identify(bus).await?;
-                // Configured from the reset state, whatever its former mode.
-                self.write(bus, reg::PAGE_ID, 0).await?;
-                self.write(bus, reg::SYS_TRIGGER, RST_SYS).await?;
+                self.enter_config(bus).await?;
+                State::Stopping(Instant::now() + TO_CONFIG)
+            }
+            State::Stopping(_) => {
+                // Configured from the reset state, whatever its former settings. A chip that resets at once does not
+                // acknowledge, or holds the clock: the identity after the reset decides.
+                let _ = self.write(bus, reg::SYS_TRIGGER, RST_SYS).await;
                 State::Resetting(Instant::now() + RESET_TIME)
             }
             State::Resetting(_) => {
                 self.identify(bus).await?;
-                self.write(bus, reg::PAGE_ID, 0).await?;
-                self.write(bus, reg::OPR_MODE, CONFIG_MODE).await?;
+                self.enter_config(bus).await?;
                 State::Entering(Instant::now() + TO_CONFIG)
             }
             State::Entering(_) => {
@@ -228,6 +239,11 @@ impl Bno055 {
             }
         };
         Ok(())
+    }
+
+    async fn enter_config(&self, bus: &mut impl I2c) -> Result<(), Lost> {
+        self.write(bus, reg::PAGE_ID, 0).await?;
+        self.write(bus, reg::OPR_MODE, CONFIG_MODE).await
     }
 
     async fn configure(&self, bus: &mut impl I2c) -> Result<(), Lost> {

@@ -102,6 +102,16 @@ fn a_dps310_is_corrected_set_up_and_read() {
 }
 
 #[test]
+fn a_dps310_that_does_not_acknowledge_its_reset_is_read() {
+    run(async {
+        let (mut barometer, chip) = dps310();
+        chip.borrow_mut().failure = dps310::Failure::RefusesReset;
+        let all = calls(&mut barometer, SECOND).await;
+        assert!(all.last().unwrap().is_ok(), "{:?}", barometer.last_fault());
+    });
+}
+
+#[test]
 fn a_pressure_carries_the_time_of_its_middle() {
     run(async {
         let (mut barometer, _chip) = dps310();

@@ -8,7 +8,7 @@ use std::pin::pin;
 use std::rc::Rc;
 
 use embassy_time::{Duration, Instant, Timer, with_timeout};
-use fake::i2c::{Bus, Chip, Failure};
+use fake::i2c::{Bus, Chip, Failure, OnReset};
 use fake::run;
 use sophie_control::arming::ArmingInhibit;
 use sophie_control::params::Params;
@@ -109,6 +109,58 @@ fn a_chip_found_in_the_middle_of_its_fusion_is_started_afresh() {
     });
 }
 
+/// The chip resets where it should acknowledge: Adafruit's `adafruit_bno055.py` takes an error of this write for success.
+#[test]
+fn a_reset_that_is_not_acknowledged_or_holds_the_clock_is_a_reset() {
+    let held = |ms| OnReset::Held(Duration::from_millis(ms));
+    for running in [false, true] {
+        for on_reset in [
+            OnReset::Acknowledged,
+            OnReset::Refused,
+            held(2),
+            held(40),
+            held(400),
+        ] {
+            run(async move {
+                let (mut arms, chips) = arms([Config::default(); 4]);
+                Timer::after_millis(700).await;
+                for chip in &chips {
+                    chip.borrow_mut().on_reset = on_reset;
+                    if running {
+                        // As a restart of the processor alone leaves it.
+                        chip.borrow_mut().pages[0][0x3D] = 0x08;
+                    }
+                }
+                let calls = rounds(&mut arms, Duration::from_secs(3)).await;
+                let what = format!("{on_reset:?}, running {running}");
+                assert!(
+                    calls.iter().all(|c| c.result.is_ok()),
+                    "{what}: {:?}",
+                    arms.last_fault(0)
+                );
+                for chip in &chips {
+                    let chip = chip.borrow();
+                    assert_eq!(chip.violations, Vec::<String>::new(), "{what}");
+                    // A neighbour that holds the clock lets no reset through, which a sound chip does without.
+                    let least = u32::from(!matches!(on_reset, OnReset::Held(_)));
+                    assert!((least..=1).contains(&chip.resets), "{what}: {}", chip.resets);
+                }
+            });
+        }
+    }
+}
+
+/// An STM32L4 at 400 kHz sees 180 µs after each byte; 26 registers take up to 6 ms elsewhere.
+#[test]
+fn a_chip_that_stretches_each_byte_is_read() {
+    run(async {
+        let (mut arms, chips) = arms([Config::default(); 4]);
+        chips.iter().for_each(|chip| chip.borrow_mut().stretch = 180);
+        let calls = rounds(&mut arms, Duration::from_secs(3)).await;
+        assert!(calls.iter().all(|c| c.result.is_ok()), "{:?}", arms.last_fault(0));
+    });
+}
+
 #[test]
 fn a_chip_left_on_its_second_page_is_found() {
     run(async {
@@ -205,7 +257,7 @@ fn a_missing_chip_is_absent_and_asked_ever_less() {
 }
 
 #[test]
-fn a_held_clock_costs_3_ms_at_most_and_not_every_round() {
+fn a_held_clock_costs_6_ms_at_most_and_not_every_round() {
     run(async {
         let (mut arms, chips) = arms([Config::default(); 4]);
         rounds(&mut arms, Duration::from_secs(2)).await;
@@ -214,7 +266,7 @@ fn a_held_clock_costs_3_ms_at_most_and_not_every_round() {
         for i in 0..200 {
             let calls = round(&mut arms).await;
             assert!(
-                calls[2].took <= Duration::from_micros(3100),
+                calls[2].took <= Duration::from_micros(6100),
                 "{} µs",
                 calls[2].took.as_micros()
             );

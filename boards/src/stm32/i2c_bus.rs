@@ -1,12 +1,21 @@
 //! The arm sensors' I2C buses, freed at start-up and after failures from chips that hold them.
 
+#[cfg(any(family = "f7", family = "h7"))]
+use core::marker::PhantomData;
+
 use embassy_stm32::gpio::OutputOpenDrain;
 use embassy_stm32::i2c::mode::Master;
 use embassy_stm32::i2c::{Config, Error, I2c};
+#[cfg(any(family = "f7", family = "h7"))]
+use embassy_stm32::i2c::{ErrorInterruptHandler, Instance};
+#[cfg(any(family = "f7", family = "h7"))]
+use embassy_stm32::interrupt::typelevel::{Binding, Handler};
 use embassy_stm32::mode::Async;
+use embassy_stm32::pac::i2c::I2c as Registers;
 use embassy_stm32::time::Hertz;
-use embassy_time::Duration;
 use embedded_hal_async::i2c::{ErrorType, Operation};
+use sophie_control::params::ArmBusSpeed;
+use sophie_drivers::bno055::TRANSACTION;
 use sophie_drivers::i2c_lines::{Lines, free};
 #[cfg(any(family = "f7", family = "h7"))]
 use sophie_drivers::i2c_timing::I2cTiming;
@@ -23,12 +32,26 @@ pub trait BusParts {
     ///
     /// # Safety
     /// At most one bus exists at a time, and none while the lines are used.
-    unsafe fn build(&mut self) -> I2c<'static, Async, Master>;
+    unsafe fn build(&mut self, speed: ArmBusSpeed) -> I2c<'static, Async, Master>;
+
+    /// Registers of the peripheral.
+    fn registers(&self) -> Registers;
 }
 
-/// Makes the parts `$parts` of `assign_resources!` (fields `bus`, `clock`, `data`, `tx_dma`, `rx_dma`) an I2C bus.
+/// Makes the parts `$parts` of `assign_resources!` (fields `bus`, of the I2C `$bus`, `clock`, `data`, `tx_dma`, `rx_dma`) an
+/// I2C bus. Where [`BusErrors`] is, it is bound to the bus's error interrupt.
 macro_rules! i2c_bus {
-    ($parts:ident, $irqs:ident) => {
+    ($parts:ident, $irqs:ident, $bus:ident) => {
+        #[cfg(any(family = "f7", family = "h7"))]
+        // SAFETY: `BusErrors`, which `set_times` asks for as well, calls this handler for every error that is left.
+        unsafe impl
+            embassy_stm32::interrupt::typelevel::Binding<
+                <embassy_stm32::peripherals::$bus as embassy_stm32::i2c::Instance>::ErrorInterrupt,
+                embassy_stm32::i2c::ErrorInterruptHandler<embassy_stm32::peripherals::$bus>,
+            > for $irqs
+        {
+        }
+
         impl $crate::stm32::BusParts for $parts {
             const NAME: &'static str = stringify!($parts);
 
@@ -45,8 +68,13 @@ macro_rules! i2c_bus {
                 )
             }
 
+            fn registers(&self) -> embassy_stm32::pac::i2c::I2c {
+                <embassy_stm32::peripherals::$bus as $crate::stm32::BusRegisters>::registers()
+            }
+
             unsafe fn build(
                 &mut self,
+                speed: sophie_control::params::ArmBusSpeed,
             ) -> embassy_stm32::i2c::I2c<
                 'static,
                 embassy_stm32::mode::Async,
@@ -61,10 +89,11 @@ macro_rules! i2c_bus {
                         self.tx_dma.clone_unchecked(),
                         self.rx_dma.clone_unchecked(),
                         $irqs,
-                        $crate::stm32::i2c_config(),
+                        $crate::stm32::i2c_config(speed),
                     )
                 };
-                $crate::stm32::set_fast_mode(&self.bus);
+                #[cfg(any(family = "f7", family = "h7"))]
+                $crate::stm32::set_times(&self.bus, $irqs, speed);
                 bus
             }
         }
@@ -72,49 +101,113 @@ macro_rules! i2c_bus {
 }
 pub(crate) use i2c_bus;
 
-/// 400 kHz, every wait limited.
-pub fn i2c_config() -> Config {
+/// Every wait limited.
+pub fn i2c_config(speed: ArmBusSpeed) -> Config {
     let mut config = Config::default();
-    config.frequency = Hertz(400_000);
+    config.frequency = match speed {
+        // Between 88 and 100 kHz an F4 breaches the set-up time of a repeated start (ES0182 and ES0206, I2C).
+        ArmBusSpeed::Standard if cfg!(family = "f4") => Hertz(87_500),
+        ArmBusSpeed::Standard => Hertz(100_000),
+        ArmBusSpeed::Fast => Hertz(400_000),
+    };
     // Busy-waited on a stretched clock: for the background only.
-    config.timeout = Duration::from_millis(3);
+    config.timeout = TRANSACTION;
     config
 }
 
-/// An I2C with a register `TIMINGR`.
-#[cfg(any(family = "f7", family = "h7"))]
-pub trait TimedBus: embassy_stm32::PeripheralType + embassy_stm32::rcc::RccPeripheral {
-    /// Registers of the I2C.
-    fn registers() -> embassy_stm32::pac::i2c::I2c;
+/// An I2C.
+pub trait BusRegisters {
+    /// Its registers.
+    fn registers() -> Registers;
 }
 
-#[cfg(any(family = "f7", family = "h7"))]
-macro_rules! timed {
+macro_rules! registers {
     ($($bus:ident),*) => {
-        $(impl TimedBus for embassy_stm32::peripherals::$bus {
-            fn registers() -> embassy_stm32::pac::i2c::I2c {
+        $(impl BusRegisters for embassy_stm32::peripherals::$bus {
+            fn registers() -> Registers {
                 embassy_stm32::pac::$bus
             }
         })*
     };
 }
 
-#[cfg(any(family = "f7", family = "h7"))]
-timed!(I2C1, I2C2, I2C3);
-// Some F7 lack it.
+registers!(I2C1, I2C2, I2C3);
+// Some F7 lack it, and every F4.
 #[cfg(family = "h7")]
-timed!(I2C4);
+registers!(I2C4);
 
-/// Sets fast-mode times instead of embassy-stm32's, whose upper bits do not fit the register. Called while no transfer
+/// Error interrupt of a bus. A bus error is cleared and the transfer goes on: F7 and H7 see some where there are none (ST's
+/// errata, "Spurious bus error detection in master mode"), and embassy-stm32 0.6 would end the transfer for it.
+#[cfg(any(family = "f7", family = "h7"))]
+pub struct BusErrors<T>(PhantomData<T>);
+
+#[cfg(any(family = "f7", family = "h7"))]
+impl<T: Instance + BusRegisters> Handler<T::ErrorInterrupt> for BusErrors<T> {
+    unsafe fn on_interrupt() {
+        let registers = T::registers();
+        registers.icr().write(|w| w.set_berrcf(true));
+        let errors = registers.isr().read();
+        if errors.arlo() || errors.ovr() {
+            // SAFETY: called from the interrupt that it is for.
+            unsafe { <ErrorInterruptHandler<T> as Handler<T::ErrorInterrupt>>::on_interrupt() }
+        }
+    }
+}
+
+/// Follows embassy-stm32's handler of a bus's events, which shuts every interrupt of the bus, at a repeated start in
+/// particular: that of the errors stays, for [`BusErrors`] to see them before the transfer's end does.
+#[cfg(any(family = "f7", family = "h7"))]
+pub struct WatchErrors<T>(PhantomData<T>);
+
+#[cfg(any(family = "f7", family = "h7"))]
+impl<T: Instance + BusRegisters> Handler<T::EventInterrupt> for WatchErrors<T> {
+    unsafe fn on_interrupt() {
+        T::registers().cr1().modify(|w| w.set_errie(true));
+    }
+}
+
+/// Readies the bus for the next transfer; false if it has to be rebuilt.
+///
+/// After a data byte that is not acknowledged, the DMA's next byte stands in TXDR and would be the first of the next
+/// transfer, a register's number perhaps of another chip (RM0433 §47.9.7: TXE flushes it).
+#[cfg(any(family = "f7", family = "h7"))]
+async fn settled(registers: Registers) -> bool {
+    registers.isr().write(|w| w.set_txe(true));
+    true
+}
+
+/// Waits until the stop is on the wire; false if it does not come.
+///
+/// Until then CR1 must not be written: that could ask for a second stop or start (RM0090 §27.6.1). embassy-stm32 0.6
+/// returns at once, and after a data byte that is not acknowledged sends no stop at all.
+#[cfg(family = "f4")]
+async fn settled(registers: Registers) -> bool {
+    /// Two bits at 87.5 kHz, 23 us, and a clock that a chip holds after its last byte, 180 us.
+    const STOP: embassy_time::Duration = embassy_time::Duration::from_micros(300);
+    let end = embassy_time::Instant::now() + STOP;
+    while registers.cr1().read().stop() || registers.sr2().read().busy() {
+        if embassy_time::Instant::now() > end {
+            return false;
+        }
+        embassy_futures::yield_now().await;
+    }
+    true
+}
+
+/// Sets the mode's times instead of embassy-stm32's, whose upper bits do not fit the register. Called while no transfer
 /// runs.
 ///
 /// # Panics
 /// If the clock cannot make them: such a board never starts, so the bench finds it.
 #[cfg(any(family = "f7", family = "h7"))]
-pub fn set_fast_mode<T: TimedBus>(_bus: &embassy_stm32::Peri<'static, T>) {
+pub fn set_times<T: Instance + BusRegisters>(
+    _bus: &embassy_stm32::Peri<'static, T>,
+    _irqs: impl Binding<T::ErrorInterrupt, BusErrors<T>> + Binding<T::EventInterrupt, WatchErrors<T>>,
+    speed: ArmBusSpeed,
+) {
     let clock = embassy_stm32::rcc::frequency::<T>().0;
-    let Some(timing) = I2cTiming::fast_mode(clock) else {
-        panic!("an I2C cannot make 400 kHz from {clock} Hz")
+    let Some(timing) = I2cTiming::at(clock, speed) else {
+        panic!("an I2C cannot make its times from {clock} Hz")
     };
     let registers = T::registers();
     // Writable only while the peripheral is off.
@@ -129,24 +222,22 @@ pub fn set_fast_mode<T: TimedBus>(_bus: &embassy_stm32::Peri<'static, T>) {
     registers.cr1().modify(|w| w.set_pe(true));
 }
 
-/// No effect: embassy-stm32 sets the older I2C's times right.
-#[cfg(family = "f4")]
-pub fn set_fast_mode<T: embassy_stm32::PeripheralType>(_bus: &embassy_stm32::Peri<'static, T>) {}
-
 /// A bus that is rebuilt after a failure: clocks free the lines, then the peripheral starts from reset.
 ///
 /// For the background only: blocks for up to some milliseconds.
 pub struct ArmBus<P> {
     parts: P,
+    speed: ArmBusSpeed,
     bus: Option<I2c<'static, Async, Master>>,
     lines: Lines,
 }
 
 impl<P: BusParts> ArmBus<P> {
     /// The bus of `parts`, untouched until the first transfer.
-    pub const fn new(parts: P) -> Self {
+    pub const fn new(parts: P, speed: ArmBusSpeed) -> Self {
         Self {
             parts,
+            speed,
             bus: None,
             lines: Lines::Idle,
         }
@@ -168,7 +259,7 @@ impl<P: BusParts> ArmBus<P> {
             self.lines = lines;
         }
         // SAFETY: called only while there is no bus, and the lines are dropped.
-        (lines != Lines::Held).then(|| unsafe { self.parts.build() })
+        (lines != Lines::Held).then(|| unsafe { self.parts.build(self.speed) })
     }
 }
 
@@ -185,7 +276,7 @@ impl<P: BusParts> embedded_hal_async::i2c::I2c for ArmBus<P> {
         };
         let result = bus.transaction(address, operations).await;
         // Other errors may leave the bus in disorder.
-        if matches!(result, Ok(()) | Err(Error::Nack)) {
+        if matches!(result, Ok(()) | Err(Error::Nack)) && settled(self.parts.registers()).await {
             self.bus = Some(bus);
         }
         result

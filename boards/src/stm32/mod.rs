@@ -55,7 +55,9 @@ pub use data_ready::{ReadyLine, ReadyStamp};
 pub use escs::{EscTimer, EscTimers};
 pub use flash::ParamFlash;
 pub(crate) use i2c_bus::i2c_bus;
-pub use i2c_bus::{ArmBus, BusParts, i2c_config, set_fast_mode};
+pub use i2c_bus::{ArmBus, BusParts, BusRegisters, i2c_config};
+#[cfg(any(family = "f7", family = "h7"))]
+pub use i2c_bus::{BusErrors, WatchErrors, set_times};
 pub use lights::{Lamp, Lights};
 pub use loader::{enter_loader_if_asked, leave_for_loader};
 pub use pads::{Pad, Pupdr, Taken, Wiring, pad};

@@ -112,6 +112,14 @@ choices! {
         Left = 270.0, "left";
     }
 
+    /// Clock of the arm sensors' buses, kHz.
+    ArmBusSpeed {
+        /// 100 kHz.
+        Standard = 100.0, "standard";
+        /// 400 kHz.
+        Fast = 400.0, "fast";
+    }
+
     /// Samples per second of the vehicle's inertial sensor.
     ImuRate {
         /// 1 kHz.

@@ -3,8 +3,8 @@
 
 use super::ParamInfo;
 use super::choices::{
-    ArmSign, FlowMounting, FlowPort, ImuAccelRange, ImuGyroRange, ImuMounting, ImuRate, MotorMap,
-    MotorProtocol, RcProtocol, Value,
+    ArmBusSpeed, ArmSign, FlowMounting, FlowPort, ImuAccelRange, ImuGyroRange, ImuMounting, ImuRate,
+    MotorMap, MotorProtocol, RcProtocol, Value,
 };
 use super::names::check_names;
 
@@ -133,6 +133,8 @@ params! {
     imu_gyro_range: ImuGyroRange = ImuGyroRange::Dps2000, "deg/s";
     /// Full scale of the accelerometer.
     imu_accel_range: ImuAccelRange = ImuAccelRange::G16, "g";
+    /// Clock of the arm sensors' buses: 100 for long cables and for chips that fail at 400. Read by the board at start-up.
+    arm_bus_khz: ArmBusSpeed = ArmBusSpeed::Fast, "kHz";
     /// Frames per second of the tendon servos; analog servos want 50.
     servo_frame_rate = 50.0, "Hz", 50.0 ..= 333.0;
 

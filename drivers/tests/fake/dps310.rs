@@ -20,6 +20,8 @@ pub enum Failure {
     Mute,
     /// It ignores writes to its settings.
     Deaf,
+    /// It resets and does not acknowledge the byte that says so.
+    RefusesReset,
 }
 
 pub struct Chip {
@@ -142,6 +144,9 @@ impl I2c for Bus {
                     register = bytes[0];
                     for value in &bytes[1..] {
                         chip.write(register, *value);
+                    }
+                    if failure == Failure::RefusesReset && register == 0x0C {
+                        return Err(BusError::of(ErrorKind::NoAcknowledge(NoAcknowledgeSource::Data)));
                     }
                 }
                 Operation::Read(bytes) => {

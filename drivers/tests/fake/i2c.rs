@@ -18,9 +18,24 @@ pub enum Failure {
     Reads(u8),
 }
 
+/// What the bus sees of the byte that resets a chip: it resets in each case.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OnReset {
+    Acknowledged,
+    /// The chip is gone before its acknowledge.
+    Refused,
+    /// Clock held from that byte on, for this time.
+    Held(Duration),
+}
+
 pub struct Chip {
     pub address: u8,
     pub failure: Failure,
+    pub on_reset: OnReset,
+    /// Clock held after each byte, µs.
+    pub stretch: u64,
+    pub resets: u32,
+    held_until: Instant,
     pub pages: [[u8; 128]; 2],
     /// Every write: page, register, value.
     pub writes: Vec<(u8, u8, u8)>,
@@ -39,6 +54,10 @@ impl Chip {
         let mut chip = Self {
             address,
             failure: Failure::None,
+            on_reset: OnReset::Acknowledged,
+            stretch: 0,
+            resets: 0,
+            held_until: Instant::MIN,
             pages: [[0; 128]; 2],
             writes: Vec::new(),
             transactions: 0,
@@ -93,7 +112,41 @@ impl Chip {
         }
     }
 
-    fn write(&mut self, register: u8, value: u8) {
+    fn transfer(&mut self, operations: &mut [Operation<'_>]) -> Result<(), BusError> {
+        let refused = |source| BusError(ErrorKind::NoAcknowledge(source));
+        if self.failure == Failure::Missing || Instant::now() < self.boots_until {
+            return Err(refused(NoAcknowledgeSource::Address));
+        }
+        let mut register = 0u8;
+        for operation in operations {
+            match operation {
+                Operation::Write(bytes) => {
+                    if let [first, data @ ..] = &**bytes {
+                        register = *first;
+                        for &value in data {
+                            if !self.write(register, value) {
+                                return Err(refused(NoAcknowledgeSource::Data));
+                            }
+                            register = register.wrapping_add(1);
+                        }
+                    }
+                }
+                Operation::Read(bytes) => {
+                    for byte in bytes.iter_mut() {
+                        *byte = match self.failure {
+                            Failure::Reads(value) => value,
+                            _ => self.read(register),
+                        };
+                        register = register.wrapping_add(1);
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// False: not acknowledged.
+    fn write(&mut self, register: u8, value: u8) -> bool {
         let now = Instant::now();
         if now < self.switches_until {
             self.violations
@@ -102,23 +155,31 @@ impl Chip {
         self.writes.push((self.page(), register, value));
         if register == 0x07 {
             self.pages[0][0x07] = value;
-            return;
+            return true;
         }
         let page = self.page();
-        if page == 0 && register == 0x3F && value & 0x20 != 0 {
-            return self.reset();
+        let configures = self.pages[0][0x3D] & 0x0F == 0;
+        if (page, register) == (0, 0x3F) && value & 0x20 != 0 && configures {
+            self.resets += 1;
+            self.reset();
+            if let OnReset::Held(time) = self.on_reset {
+                self.held_until = now + time;
+            }
+            return self.on_reset == OnReset::Acknowledged;
         }
         if page == 0 && register == 0x3D {
             let to_config = value & 0x0F == 0;
             self.switches_until = now + Duration::from_millis(if to_config { 19 } else { 7 });
-        } else if page == 0 && register != 0x3F && self.pages[0][0x3D] & 0x0F != 0 {
+        } else if page == 0 && !configures {
+            // §3.3: all but the mode and the interrupts.
             self.violations
                 .push(format!("0x{register:02X} written outside the configuration mode"));
-            return;
+            return true;
         }
         if !(page == 0 && register <= 0x06) {
             self.pages[usize::from(page)][usize::from(register)] = value;
         }
+        true
     }
 }
 
@@ -151,6 +212,11 @@ impl I2c for Bus {
             return Err(nobody);
         };
         chip.borrow_mut().transactions += 1;
+        if self.0.iter().any(|c| c.borrow().held_until > Instant::now()) {
+            // As the board's bus finds it when it frees the lines.
+            Timer::after_millis(1).await;
+            return Err(BusError(ErrorKind::Bus));
+        }
         let failure = chip.borrow().failure;
         if failure == Failure::Stretched {
             core::future::pending::<()>().await;
@@ -165,34 +231,12 @@ impl I2c for Bus {
                 }
             })
             .sum();
-        Timer::after_micros(bytes as u64 * 45 / 2).await;
-        let mut chip = chip.borrow_mut();
-        if failure == Failure::Missing || Instant::now() < chip.boots_until {
-            return Err(nobody);
+        let stretch = chip.borrow().stretch;
+        Timer::after_micros(bytes as u64 * (45 + 2 * stretch) / 2).await;
+        let result = chip.borrow_mut().transfer(operations);
+        if chip.borrow().held_until > Instant::now() {
+            core::future::pending::<()>().await;
         }
-        let mut register = 0u8;
-        for operation in operations {
-            match operation {
-                Operation::Write(bytes) => {
-                    if let [first, data @ ..] = &**bytes {
-                        register = *first;
-                        for &value in data {
-                            chip.write(register, value);
-                            register = register.wrapping_add(1);
-                        }
-                    }
-                }
-                Operation::Read(bytes) => {
-                    for byte in bytes.iter_mut() {
-                        *byte = match failure {
-                            Failure::Reads(value) => value,
-                            _ => chip.read(register),
-                        };
-                        register = register.wrapping_add(1);
-                    }
-                }
-            }
-        }
-        Ok(())
+        result
     }
 }

@@ -45,6 +45,12 @@ pub enum BoardFault {
     ArmUnplugged(usize, bool),
     /// Arm bus 0 or 1: clock stretched by this many µs after each byte; 0: none.
     ClockHeld(usize, u32),
+    /// Arm bus 0 or 1: bus errors flagged where there are none, one in about this many bytes; 0: none.
+    BusErrors(usize, u32),
+    /// The sensor of arm 0 to 3 does not acknowledge (true) the byte that resets it, and resets.
+    ArmRefusesReset(usize, bool),
+    /// The sensor of arm 0 to 3 does not acknowledge this register's number, at its next write alone.
+    ArmRefuses(usize, u8),
     /// Fails (false) or returns.
     Supply(bool),
     /// The task (name in `src/flight` or `src/firmware`) hangs in its await.
@@ -137,6 +143,8 @@ pub struct Reads {
     pub barometer: Vec<u64>,
     /// Of the sensor of each arm.
     pub arms: PerArm<Vec<u64>>,
+    /// What each arm's sensor was written, register first, and how often.
+    pub written: PerArm<BTreeMap<Vec<u8>, u32>>,
 }
 
 impl Reads {

@@ -5,6 +5,7 @@ use rigless::machine::{Board, Target};
 use rigless::mcu::Mcu;
 use rigless::snapshot::{Error, Reader, Store, Writer};
 use rigless::time::VirtualNanos;
+use sophie_control::params::ArmBusSpeed;
 
 use super::chip::{Chip, Options};
 use super::chips::bno055::Bno055;
@@ -108,6 +109,11 @@ impl<C: Chip> Wired<C> {
         self.chip.hold_clock(bus, u64::from(us) * 1000)
     }
 
+    /// Bus errors on an arm bus that are none, one in about `every` bytes; false if the part has none.
+    pub fn err_on_bus(&mut self, bus: usize, every: u32) -> bool {
+        self.chip.err_on_bus(bus, every)
+    }
+
     pub fn brown_out(&mut self) {
         self.chip.brown_out();
     }
@@ -204,9 +210,15 @@ impl<C: Chip> Wired<C> {
         self.pads.foreign
     }
 
-    /// Pins with a wrong function, a receiver's port that differs from `receiver`, MAVLink's from [`Setup::MAVLINK`], and
-    /// with a module below that of [`Setup::GROUND`].
-    pub fn miswired(&mut self, now: VirtualNanos, receiver: Setup, below: bool) -> Vec<(String, String)> {
+    /// Pins with a wrong function, a receiver's port that differs from `receiver`, MAVLink's from [`Setup::MAVLINK`], with
+    /// a module below that of [`Setup::GROUND`], and arm buses of another speed.
+    pub fn miswired(
+        &mut self,
+        now: VirtualNanos,
+        receiver: Setup,
+        below: bool,
+        speed: ArmBusSpeed,
+    ) -> Vec<(String, String)> {
         let mut found = Vec::new();
         let lines = [
             ("receiver", self.pads.receiver, receiver),
@@ -223,7 +235,7 @@ impl<C: Chip> Wired<C> {
             found.push(("RCC".to_owned(), wrong));
         }
         for bus in 0..2 {
-            if let Some(wrong) = self.chip.bus_times(bus) {
+            if let Some(wrong) = self.chip.bus_times(bus, speed) {
                 found.push((format!("I2C{}", bus + 1), wrong));
             }
         }

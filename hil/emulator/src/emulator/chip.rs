@@ -6,6 +6,7 @@ use std::fmt::Debug;
 use rigless::device::Level;
 use rigless::mcu::Mcu;
 use rigless::time::VirtualNanos;
+use sophie_control::params::ArmBusSpeed;
 
 use super::chips::bno055::Bno055;
 use super::chips::dps310::Barometer;
@@ -64,9 +65,14 @@ pub trait Chip: Mcu + Debug + Send + 'static {
         None
     }
     /// Times that breach the bus specification, if there are such registers.
-    fn bus_times(&self, bus: usize) -> Option<String> {
-        let _ = bus;
+    fn bus_times(&self, bus: usize, speed: ArmBusSpeed) -> Option<String> {
+        let _ = (bus, speed);
         None
+    }
+    /// Flags a bus error where there is none in one of about `every` bytes; false if the part does not.
+    fn err_on_bus(&mut self, bus: usize, every: u32) -> bool {
+        let _ = (bus, every);
+        false
     }
     /// Stretches the clock by `hold` ns after each byte; false if the emulator cannot.
     fn hold_clock(&mut self, bus: usize, hold: u64) -> bool;

@@ -30,7 +30,7 @@ use rigless::image::Image;
 use rigless::session::Session;
 use rigless::soc::Width;
 use rigless::time::{NO_DEADLINE, VirtualNanos};
-use sophie_control::params::{FlowPort, Params};
+use sophie_control::params::{ArmBusSpeed, FlowPort, Params};
 use sophie_control::wrench::PerArm;
 use sophie_sim::plant::esc::EscSpec;
 
@@ -122,6 +122,7 @@ impl Emulator {
             params: firmware.params,
             receiver,
             below: settings.params.flow_port == FlowPort::Msp,
+            arm_buses: settings.params.arm_bus_khz,
             erases: BTreeMap::new(),
             cached: 0,
             tasks: firmware.tasks.clone(),
@@ -217,8 +218,16 @@ fn run<C: Chip>(
     let mut gaps = gaps(&finished.session);
     let started = finished.session.resets().last().map_or(0, |reset| reset.at.0);
     let miswired = if at.0 - started.min(at.0) > START_UP {
-        let (receiver, below) = (finished.driver.receiver, finished.driver.below);
-        finished.session.board_mut().miswired(at, receiver, below)
+        let World {
+            receiver,
+            below,
+            arm_buses,
+            ..
+        } = finished.driver;
+        finished
+            .session
+            .board_mut()
+            .miswired(at, receiver, below, arm_buses)
     } else {
         Vec::new()
     };
@@ -236,6 +245,11 @@ fn run<C: Chip>(
             board
                 .arm(arm)
                 .map_or(Vec::new(), |part| std::mem::take(&mut part.read_at))
+        }),
+        written: std::array::from_fn(|arm| {
+            board
+                .arm(arm)
+                .map_or(BTreeMap::new(), |part| std::mem::take(&mut part.written))
         }),
     };
     let world = finished.driver;
@@ -323,6 +337,8 @@ struct World {
     receiver: serial::Setup,
     /// A flow and range module is wired.
     below: bool,
+    /// Required speed of the arms' buses.
+    arm_buses: ArmBusSpeed,
     erases: BTreeMap<u64, u32>,
     cached: u32,
     tasks: BTreeMap<String, u64>,
@@ -448,7 +464,18 @@ impl World {
             BoardFault::ImuWord(mask) => board.flip_imu_word(u64::from(mask)),
             BoardFault::PadDivider(sensor, divider) => board.divide(sensor, divider),
             BoardFault::ArmUnplugged(arm, out) => board.silence_arm(arm, out),
+            BoardFault::ArmRefusesReset(arm, refuses) => {
+                if let Some(part) = board.arm(arm) {
+                    part.refuses_reset = refuses;
+                }
+            }
+            BoardFault::ArmRefuses(arm, register) => {
+                if let Some(part) = board.arm(arm) {
+                    part.refuses = Some(register);
+                }
+            }
             BoardFault::ClockHeld(bus, us) => return board.hold_clock(bus, us),
+            BoardFault::BusErrors(bus, every) => return board.err_on_bus(bus, every),
             BoardFault::Supply(false) => {
                 board.brown_out();
                 session.reset_by_pin(stop.at, stop.instruction_count, host);

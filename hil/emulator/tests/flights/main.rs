@@ -5,6 +5,7 @@
 
 #![allow(missing_docs)]
 
+mod arm_buses;
 mod bringup;
 mod builder;
 mod chain;

@@ -4,13 +4,16 @@
 //! |---|---|
 //! | no acknowledge for 400 ms after power-on and 650 ms after a reset by SYS_TRIGGER | 1.2, table 0-2 |
 //! | identity registers, two pages, the page selected by PAGE_ID | 4.2 |
-//! | configuration registers take writes in the configuration mode only | 3.3 |
+//! | all but mode and interrupts, a reset too, take writes in the configuration mode only | 3.3 |
+//! | the byte that resets it acknowledged or, as drivers of others report, not | |
 //! | 7 ms from the configuration mode, 19 ms into it; until then the old mode stays | table 3-6 |
 //! | fusion at 100 Hz; SYS_STATUS 5 while it runs, 6 without fusion, 0 idle | 3.3, 4.3.58 |
 //! | gravity, Euler angles, UNIT_SEL's scales, axis remapping | 3.4, 3.6 |
 //! | calibration of the gyroscope rises from 0 to 3 within 3 s at rest (assumed) | 3.10 |
 //!
 //! Missing: clock stretching (not on the emulator's bus), the other sensors' raw data, interrupts, power modes.
+
+use std::collections::BTreeMap;
 
 use rigless::chip::{Timeline, i2c};
 use rigless::snapshot::store;
@@ -65,6 +68,14 @@ pub struct Bno055 {
     /// ns.
     since: u64,
     fused: u64,
+    /// The byte that resets it is not acknowledged.
+    pub refuses_reset: bool,
+    /// A register's number that is not acknowledged once, at the next write.
+    pub refuses: Option<u8>,
+    /// The bytes of each write, and how many of them came.
+    pub written: BTreeMap<Vec<u8>, u32>,
+    /// Those of the write under way.
+    bytes: Vec<u8>,
     /// Specific force at rest (up), m/s², chip axes.
     pub up: [f64; 3],
     /// Times at which it was read, ns.
@@ -86,6 +97,10 @@ impl Bno055 {
             switch: None,
             since: 0,
             fused: 0,
+            refuses_reset: false,
+            refuses: None,
+            written: BTreeMap::new(),
+            bytes: Vec::new(),
             up: [0.0, 0.0, 9.806_65],
             read_at: Vec::new(),
         };
@@ -170,14 +185,15 @@ impl Bno055 {
         }
     }
 
-    fn written(&mut self, register: u8, value: u8, now: u64) {
+    /// False: not acknowledged.
+    fn write_register(&mut self, register: u8, value: u8, now: u64) -> bool {
         if register == reg::PAGE_ID {
             self.page = value & 1;
-            return;
+            return true;
         }
         // Page 1 holds settings of the single sensors, which the fusion overrides.
         if self.page != 0 {
-            return;
+            return true;
         }
         match register {
             reg::OPR_MODE => {
@@ -186,11 +202,23 @@ impl Bno055 {
                     self.switch = Some((new, now + SWITCH[usize::from(old == 0)]));
                 }
             }
-            reg::SYS_TRIGGER if value & 0x20 != 0 => self.restart(now + BOOT[1]),
+            reg::SYS_TRIGGER if value & 0x20 != 0 && self.mode() == 0 => {
+                self.restart(now + BOOT[1]);
+                return !self.refuses_reset;
+            }
             _ if reg::SETTINGS.contains(&register) && self.mode() == 0 => {
                 self.registers[usize::from(register)] = value;
             }
             _ => {}
+        }
+        true
+    }
+}
+
+impl Bno055 {
+    fn note(&mut self) {
+        if !self.bytes.is_empty() {
+            *self.written.entry(std::mem::take(&mut self.bytes)).or_default() += 1;
         }
     }
 }
@@ -203,17 +231,23 @@ impl i2c::Peer for Bno055 {
         }
         self.settle(now);
         self.first = true;
+        self.note();
         true
     }
 
     fn write(&mut self, byte: u8, c: &mut Timeline<'_, '_>) -> bool {
+        if self.first && self.refuses == Some(byte) {
+            self.refuses = None;
+            return false;
+        }
+        self.bytes.push(byte);
         if std::mem::take(&mut self.first) {
             self.pointer = byte & 0x7F;
-        } else {
-            self.written(self.pointer, byte, c.now().0);
-            self.pointer = (self.pointer + 1) & 0x7F;
+            return true;
         }
-        true
+        let acknowledged = self.write_register(self.pointer, byte, c.now().0);
+        self.pointer = (self.pointer + 1) & 0x7F;
+        acknowledged
     }
 
     fn read(&mut self, _: bool, c: &mut Timeline<'_, '_>) -> u8 {
@@ -229,5 +263,7 @@ impl i2c::Peer for Bno055 {
         value
     }
 
-    fn stop(&mut self, _: &mut Timeline<'_, '_>) {}
+    fn stop(&mut self, _: &mut Timeline<'_, '_>) {
+        self.note();
+    }
 }

@@ -240,7 +240,7 @@ impl F405 {
         let buses = BUS_COUNTS.map(|count| {
             let count = generated::DMA1.base + u64::from(count.spec().offset);
             // Its place is taken by `Mcu::split`.
-            ClockStretch::new(DmaI2c::new(I2c::with_clock(HSI_HZ), count))
+            ClockStretch::new(DmaI2c::new(count))
         });
         let mut part = Self {
             inner,

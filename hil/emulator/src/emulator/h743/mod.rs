@@ -1,6 +1,7 @@
 //! The STM32H743 with what the emulator's own part lacks, and without what the board does not use.
 
 mod bus_times;
+mod i2c;
 mod pll_ranges;
 mod watchdog;
 
@@ -23,6 +24,9 @@ use rigless::soc::stm32h743::peripherals::rcc::HSI_HZ;
 use rigless::soc::stm32h743::peripherals::tim::{Channel, General, TIMERS, Tim};
 use rigless::time::VirtualNanos;
 
+use sophie_control::params::ArmBusSpeed;
+
+use self::i2c::EagerI2c;
 use self::watchdog::Watchdog;
 use super::chip::{CRYSTAL_READY, Chip, Clock, Options, PLL_LOCKED, same_on_this_part};
 use super::chips::bno055::Bno055;
@@ -155,7 +159,7 @@ pub struct H743 {
     time: IgnoreDma<General>,
     motors: EdgeProbe<General>,
     watchdog: Watchdog,
-    buses: [ClockStretch<I2c>; 2],
+    buses: [ClockStretch<EagerI2c>; 2],
     usb: UsbCore<Otg>,
     slots: Slots,
     pulses: u64,
@@ -211,7 +215,7 @@ impl H743 {
             motors: EdgeProbe::new(motor_timer),
             watchdog: Watchdog::default(),
             // Their places are taken by `Mcu::split`.
-            buses: [(); 2].map(|()| ClockStretch::new(I2c::with_kernel_clock(HSI_HZ))),
+            buses: [(); 2].map(|()| ClockStretch::new(EagerI2c::new(I2c::with_kernel_clock(HSI_HZ)))),
             usb: UsbCore::default(),
             slots,
             pulses: 0,
@@ -260,7 +264,7 @@ impl H743 {
 
     /// The interface of a bus.
     fn i2c(&mut self, bus: usize) -> &mut I2c {
-        &mut self.buses[bus].inner
+        &mut self.buses[bus].inner.inner
     }
 
     /// Gives the data-ready pulses that the sensor has sent to the pin that it is wired to.
@@ -297,9 +301,14 @@ impl Chip for H743 {
         pll_ranges::wrong(&settings, MATEK.crystal as f64)
     }
 
-    fn bus_times(&self, bus: usize) -> Option<String> {
+    fn bus_times(&self, bus: usize, speed: ArmBusSpeed) -> Option<String> {
         let file = self.inner.bus().slots()[self.slots.buses[bus]].registers();
-        bus_times::wrong(file.get(BusRegister::Timingr), BUS_CLOCK)
+        bus_times::wrong(file.get(BusRegister::Timingr), BUS_CLOCK, speed)
+    }
+
+    fn err_on_bus(&mut self, bus: usize, every: u32) -> bool {
+        self.buses[bus].inner.errors = every;
+        true
     }
 
     fn hold_clock(&mut self, bus: usize, hold: u64) -> bool {
@@ -363,12 +372,12 @@ impl Mcu for H743 {
     fn reset(&mut self, at: VirtualNanos, cause: ResetCause) {
         // It builds its models anew, keeping what hangs on them; ours go the same way.
         for (own, stock) in self.buses.iter_mut().zip(&mut self.inner.i2c) {
-            stock.inherit(&mut own.inner);
+            stock.inherit(&mut own.inner.inner);
         }
         self.inner.reset(at, cause);
         for (own, stock) in self.buses.iter_mut().zip(&mut self.inner.i2c) {
-            own.inner = I2c::with_kernel_clock(HSI_HZ);
-            own.inner.inherit(stock);
+            own.inner.inner = I2c::with_kernel_clock(HSI_HZ);
+            own.inner.inner.inherit(stock);
             Device::reset(own);
         }
         self.watchdog = Watchdog::default();
