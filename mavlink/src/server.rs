@@ -19,7 +19,7 @@ use crate::budget::Budget;
 use crate::dialect::*;
 use crate::files::FILES;
 use crate::frame::{Encoder, Frame};
-use crate::ftp::{Ftp, PAYLOAD};
+use crate::ftp::Ftp;
 use crate::inputs::attitude::OffboardAttitude;
 use crate::inputs::pose::Pose;
 use crate::inputs::{Inputs, Refusal};
@@ -45,15 +45,6 @@ pub enum Order {
     Restart,
 }
 
-/// The files, and who reads them.
-struct Files {
-    ftp: Ftp,
-    /// Who asked last: pieces go there.
-    reader: Peer,
-    /// The answer that waits. Another request replaces it: who misses it asks again.
-    answer: Option<[u8; PAYLOAD]>,
-}
-
 /// The server of one link.
 pub struct Server {
     /// Number of the line in signatures.
@@ -65,7 +56,7 @@ pub struct Server {
     texts: Texts,
     parameters: Parameters,
     answers: Deque<Answer, ANSWERS>,
-    files: Files,
+    ftp: Ftp,
     shell: Shell,
     inputs: Inputs,
     mode: Option<Mode>,
@@ -90,14 +81,7 @@ impl Server {
             texts: Texts::new(),
             parameters: Parameters::new(params),
             answers: Deque::new(),
-            files: Files {
-                ftp: Ftp::new(&FILES),
-                reader: Peer {
-                    system: 0,
-                    component: 0,
-                },
-                answer: None,
-            },
+            ftp: Ftp::new(&FILES),
             shell: Shell::new(),
             inputs: Inputs::new(),
             mode: None,
@@ -273,10 +257,7 @@ impl Server {
                 MavSeverity::MAV_SEVERITY_WARNING,
                 format_args!("signing key refused: console only"),
             ),
-            Request::File(file) => {
-                self.files.answer = self.files.ftp.answer(&file.payload);
-                self.files.reader = from;
-            }
+            Request::File(file) => self.ftp.ask(from, &file.payload),
             Request::Serial(serial) => self.shell.obey(serial, from, now),
         }
     }

@@ -4,7 +4,7 @@ use mavlink_core::MessageData;
 use sophie_control::mode::Mode;
 
 use super::answer::Answer;
-use super::{Files, Server};
+use super::Server;
 use crate::budget::RESERVE;
 use crate::dialect::*;
 use crate::files::{GENERAL_CRC, GENERAL_URI};
@@ -160,8 +160,7 @@ impl Server {
         {
             return None;
         }
-        let Files { ftp, reader, answer } = &mut self.files;
-        let payload = answer.take().or_else(|| ftp.piece())?;
+        let (reader, payload) = self.ftp.answer()?;
         Some(self.encoder.encode(&FILE_TRANSFER_PROTOCOL_DATA {
             target_network: 0,
             target_system: reader.system,
