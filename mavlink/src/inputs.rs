@@ -102,7 +102,7 @@ struct Arrival {
 #[derive(Clone, Copy, Debug, Default)]
 struct Stream {
     of: Option<Source>,
-    /// When the last that was taken was measured, µs since the start.
+    /// When the last that was taken was measured, µs since the start; 0 before the first.
     measured_at: u64,
     /// When it arrived, µs.
     taken_at: u64,
@@ -184,7 +184,7 @@ impl Inputs {
             return Err(Refusal::Source);
         }
         let time = self.clocks.time(stamp, source.peer, now)?;
-        let in_order = stream.of.is_none() || time.at > stream.measured_at;
+        let in_order = stream.measured_at == 0 || time.at > stream.measured_at;
         in_order.then_some(time).ok_or(Refusal::Late)
     }
 
@@ -273,15 +273,15 @@ impl Inputs {
                 ..flow
             });
             // A sensor's own message says its reach as well: beside it a flow's range is left.
-            let before = self.ground.range.map_or(0, |range| range.at_us);
-            let range = range.map(|(range, age_us)| Range {
-                at_us: time.at.saturating_sub(age_us),
-                ..range
-            });
-            if self.stream(Input::Range).silent(now)
-                && let Some(range) = range.filter(|range| range.at_us > before)
+            if let Some((range, age_us)) = range
+                && let Some(ranges) = self.streams.get_mut(Input::Range as usize)
+                && ranges.silent(now)
             {
-                self.ground.range = Some(range);
+                let at_us = time.at.saturating_sub(age_us);
+                if at_us > ranges.measured_at {
+                    ranges.measured_at = at_us;
+                    self.ground.range = Some(Range { at_us, ..range });
+                }
             }
             self.saw();
         }

@@ -135,13 +135,19 @@ impl Clocks {
             return;
         };
         let way = now.saturating_sub(asked_at);
-        if i64::try_from(asked_at.saturating_mul(1000)) != Ok(ours) || way > clock.way {
+        if i64::try_from(asked_at.saturating_mul(1000)) != Ok(ours) || way > WAY_MAX {
+            return;
+        }
+        let middle = i64::try_from(asked_at.saturating_add(way / 2)).unwrap_or(i64::MAX);
+        let offset = (theirs / 1000).saturating_sub(middle);
+        // Each is known to half of its way: what is farther off than both is another clock, whose sender started again.
+        let other = clock.offset.is_some_and(|known| known.abs_diff(offset) > WAY_MAX);
+        if way > clock.way && !other {
             return;
         }
         clock.asked_at = None;
         clock.way = way;
-        let middle = i64::try_from(asked_at.saturating_add(way / 2)).unwrap_or(i64::MAX);
-        clock.offset = Some((theirs / 1000).saturating_sub(middle));
+        clock.offset = Some(offset);
     }
 
     /// When what `from` sent with the time `stamp` of its clock, and arrived at `now`, was measured.

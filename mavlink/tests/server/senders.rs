@@ -321,6 +321,36 @@ fn a_sender_that_starts_again_with_another_clock_is_late_until_it_has_answered()
 }
 
 #[test]
+fn a_new_clock_is_believed_by_a_slower_answer_as_well() {
+    let mut station = known();
+    let again = Sender {
+        ahead: 1_000_000,
+        ..VIO
+    };
+    // The first was known by answers at once, which later ones are measured against.
+    station.now += 1_000_000;
+    let grew = grown(&mut station, |station| {
+        for _ in 0..3 {
+            again.pose(station, 0);
+            let from = station.sent.len();
+            station.run(1000);
+            for question in station.since::<TIMESYNC_DATA>(from) {
+                let at = question.ts1 as u64 / 1000;
+                station.now = at + 80_000;
+                let answer = TIMESYNC_DATA {
+                    tc1: ((at + 40_000 + again.ahead) * 1000) as i64,
+                    ts1: question.ts1,
+                    target_system: 1,
+                    target_component: 1,
+                };
+                again.say(station, &answer);
+            }
+        }
+    });
+    assert_eq!((grew.late, grew.poses), (1, 2), "{grew:?}");
+}
+
+#[test]
 fn another_source_comes_after_two_seconds_of_silence_as_a_reset() {
     let standby = Sender {
         component: 198,
@@ -452,6 +482,14 @@ fn two_sensors_below_do_not_interleave() {
     station.now += 3_000_000;
     other.flow(&mut station, 3.0);
     assert_eq!(view(&mut station).range.unwrap().distance, Some(3.0));
+    // A sensor comes first again, not with a time before that of the flow's range.
+    let grew = grown(&mut station, |station| {
+        VIO.range(station, 5_000, 25);
+        station.now += 20_000;
+        VIO.range(station, 5_000, 25);
+    });
+    assert_eq!((grew.views, grew.late), (1, 1));
+    assert_eq!(view(&mut station).range.unwrap().distance, Some(1.2));
 }
 
 #[test]
