@@ -75,7 +75,12 @@ impl Line {
             (Escape::Begun, b'[' | b'O') => self.escape = Escape::Within,
             (Escape::Within, b' '..=b'?') => (),
             (Escape::Within, b'@'..=b'~') => self.escape = Escape::None,
-            (Escape::None, 0x1B) if self.text.is_empty() => self.escape = Escape::Begun,
+            (Escape::None, 0x1B) => {
+                self.escape = Escape::Begun;
+                if !self.text.is_empty() {
+                    self.spoil(LineError::NotText);
+                }
+            }
             (Escape::None, 0x08 | 0x7F) => {
                 if self.text.pop().is_some() {
                     let _ = echo.extend_from_slice(b"\x08 \x08");
