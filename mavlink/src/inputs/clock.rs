@@ -50,17 +50,17 @@ impl Stamp {
     }
 
     /// The same by the vehicle's clock, µs, which is `offset` behind and shows `now`. Of the times that a short stamp stands
-    /// for, the nearest.
-    fn by(self, offset: i64, now: u64) -> Option<u64> {
-        match self {
-            Self::Micros(theirs) => theirs.checked_add_signed(offset.checked_neg()?),
+    /// for, the nearest. What is before the start comes out far ahead.
+    fn by(self, offset: i64, now: u64) -> u64 {
+        let theirs = match self {
+            Self::Micros(theirs) => theirs,
             Self::Millis(theirs) => {
-                let sent = now.checked_add_signed(offset)? / 1000;
-                let age = i64::from((sent as u32).wrapping_sub(theirs).cast_signed());
-                let theirs = sent.checked_add_signed(-age)?.checked_mul(1000)?;
-                theirs.checked_add_signed(offset.checked_neg()?)
+                let sent = now.wrapping_add_signed(offset) / 1000;
+                let age = (sent as u32).wrapping_sub(theirs).cast_signed();
+                sent.wrapping_add_signed(-i64::from(age)).wrapping_mul(1000)
             }
-        }
+        };
+        theirs.wrapping_sub(offset.cast_unsigned())
     }
 }
 
@@ -152,21 +152,28 @@ impl Clocks {
 
     /// When what `from` sent with the time `stamp` of its clock, and arrived at `now`, was measured.
     pub(super) fn time(&self, stamp: Stamp, from: Peer, now: u64) -> Result<Time, Refusal> {
-        let recent = |at: &u64| *at <= now.saturating_add(AHEAD_MAX) && now.saturating_sub(*at) <= AGE_MAX;
-        let clock = self.known.iter().flatten().find(|clock| clock.of == from);
-        let offset = clock.and_then(|clock| clock.offset).filter(|_| stamp.given());
-        let by_offset = offset.and_then(|offset| stamp.by(offset, now));
-        let by_vehicle = stamp.by(0, now).filter(|_| stamp.given());
-        // A clock that agrees by chance must not win over one that is known.
-        let (at, source) = match (by_offset.filter(recent), by_vehicle.filter(recent)) {
-            (Some(at), _) => (at, TimeSource::Offset),
-            (None, Some(at)) => (at, TimeSource::Vehicle),
-            (None, None) if offset.is_some() => return Err(Refusal::Late),
-            (None, None) => (now, TimeSource::Receipt),
+        let receipt = Time {
+            at: now,
+            source: TimeSource::Receipt,
         };
-        Ok(Time {
-            at: at.min(now),
-            source,
-        })
+        if !stamp.given() {
+            return Ok(receipt);
+        }
+        let clock = self.known.iter().flatten().find(|clock| clock.of == from);
+        let offset = clock.and_then(|clock| clock.offset);
+        // A clock that agrees by chance must not win over one that is known.
+        for (offset, source) in [(offset, TimeSource::Offset), (Some(0), TimeSource::Vehicle)] {
+            let Some(offset) = offset else {
+                continue;
+            };
+            let at = stamp.by(offset, now);
+            if at <= now.saturating_add(AHEAD_MAX) && now.saturating_sub(at) <= AGE_MAX {
+                return Ok(Time {
+                    at: at.min(now),
+                    source,
+                });
+            }
+        }
+        offset.map_or(Ok(receipt), |_| Err(Refusal::Late))
     }
 }
