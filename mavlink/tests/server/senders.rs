@@ -321,7 +321,7 @@ fn a_sender_that_starts_again_with_another_clock_is_late_until_it_has_answered()
 }
 
 #[test]
-fn a_new_clock_is_believed_by_a_slower_answer_as_well() {
+fn a_new_clock_counts_by_a_slower_answer_as_well() {
     let mut station = known();
     let again = Sender {
         ahead: 1_000_000,
