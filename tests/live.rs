@@ -387,7 +387,10 @@ fn pymavlink_sends_poses_and_attitudes_and_reads_them_at_the_console() {
     let inputs = inputs.unwrap();
     assert!(!inputs.starts_with("0 poses, 0 "), "{inputs}");
     // Two that arrive at once have no order: the second is late.
-    assert!(inputs.contains("; refused 0 frame, 2 value, "), "{inputs}");
+    assert!(
+        inputs.contains("; refused 0 system, 0 source, 0 frame, 2 value, "),
+        "{inputs}"
+    );
 }
 
 /// Every parameter of the table, by name.

@@ -15,6 +15,7 @@ use sophie_control::mode::{Mode, Reason};
 use sophie_control::params::Params;
 use sophie_control::rc::{ArmChoice, StickMode, Sticks};
 use sophie_control::vector::{Quat, Vec3};
+use sophie_mavlink::inputs::Inputs;
 use sophie_mavlink::signing::Stored;
 use sophie_mavlink::{Condition, Order, Server, Signing, Vehicle};
 
@@ -108,6 +109,7 @@ fn main() -> std::io::Result<()> {
     let vehicle = picture();
     let mut server = Server::new(Params::DEFAULT, BUDGET);
     let mut signing = Signing::new(Stored::None);
+    let mut inputs = Inputs::new(&Params::DEFAULT);
     let start = Instant::now();
     let mut bytes = [0; 512];
     while start.elapsed() < LONGEST {
@@ -119,11 +121,12 @@ fn main() -> std::io::Result<()> {
                 now,
                 &vehicle,
                 &mut signing,
+                &mut inputs,
             ),
             Err(error) if error.kind() == ErrorKind::WouldBlock => (),
             Err(_) => break,
         }
-        while let Some(frame) = server.send(now, &vehicle, &mut signing) {
+        while let Some(frame) = server.send(now, &vehicle, &mut signing, &mut inputs) {
             line.write_all(frame)?;
         }
         match server.order(now, &vehicle) {

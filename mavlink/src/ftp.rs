@@ -1,10 +1,13 @@
 //! Files over MAVLink's FTP, read only: what a ground station needs to know of the parameters.
 //!
-//! A file's session is its number, so the server remembers no reader: any number of them may read at once, a request that
-//! is repeated gets its answer again, and a reader that leaves without a word leaves nothing open. Only a burst is
-//! remembered, one at a time; a reader whose burst another one ends asks for the rest.
+//! A file's session is its number, and what is due goes to who asked: any number of readers may read at once, a request that is
+//! repeated gets its answer again, and a reader that leaves without a word leaves nothing open. [`BURSTS`] readers are sent
+//! bursts by turns; a further one gets a burst of one piece and asks for the next, as the protocol has it.
+
+use heapless::Deque;
 
 use crate::files::{File, crc32};
+use crate::requests::Peer;
 
 /// Bytes of the message's payload: a header and data.
 pub const PAYLOAD: usize = 251;
@@ -12,6 +15,10 @@ pub const PAYLOAD: usize = 251;
 const HEADER: usize = 12;
 /// Bytes of a file in a message at most.
 const DATA: usize = PAYLOAD - HEADER;
+/// Readers that are sent bursts at once.
+const BURSTS: usize = 4;
+/// Answers that wait at most: one for each reader, and its burst. What finds no room is asked for again.
+const WAITING: usize = 2 * BURSTS;
 
 /// Requests, by their numbers in the protocol.
 mod op {
@@ -97,127 +104,182 @@ impl Head {
     }
 }
 
-/// A file that is sent piece by piece without being asked for each.
+/// What a request is answered with.
 #[derive(Clone, Copy, Debug)]
-struct Burst {
-    file: &'static File,
-    /// Head of the piece that is next.
-    next: Head,
-    /// Bytes in a piece.
-    size: usize,
+enum Answer {
+    Done,
+    Refused(Refusal),
+    Number(u32),
+    /// The directory, from the head's offset on.
+    List,
+    /// This many bytes of the session's file, from the head's offset on.
+    Piece(u8),
+    /// The same, of a burst.
+    Burst {
+        size: u8,
+        /// The rest follows.
+        goes_on: bool,
+    },
+}
+
+/// An answer that waits for room on the line.
+#[derive(Clone, Copy, Debug)]
+struct Waiting {
+    to: Peer,
+    head: Head,
+    answer: Answer,
+}
+
+impl Waiting {
+    const fn bursts(&self) -> bool {
+        matches!(self.answer, Answer::Burst { .. })
+    }
 }
 
 /// The server of some files.
 pub struct Ftp {
     files: &'static [File],
-    burst: Option<Burst>,
+    waiting: Deque<Waiting, WAITING>,
 }
 
 impl Ftp {
     /// A server of `files`, at most 255, each by its path.
     pub const fn new(files: &'static [File]) -> Self {
-        Self { files, burst: None }
+        Self {
+            files,
+            waiting: Deque::new(),
+        }
     }
 
-    /// The answer to a request; none to what is an answer itself, nor to the request for a burst, whose pieces
-    /// [`Self::piece`] has.
-    pub fn answer(&mut self, payload: &[u8; PAYLOAD]) -> Option<[u8; PAYLOAD]> {
+    /// Takes a request of `from`; what is an answer itself is let be.
+    pub fn ask(&mut self, from: Peer, payload: &[u8; PAYLOAD]) {
         let request = Head::of(payload);
         if matches!(request.op, op::ACK | op::NAK) {
-            return None;
+            return;
         }
-        let head = Head {
-            sequence: request.sequence.wrapping_add(1),
-            op: op::ACK,
-            request: request.op,
-            ..request
-        };
         let data = payload
             .get(HEADER..)
             .and_then(|data| data.get(..usize::from(request.size)));
-        let path = data.map(path);
-        match self.obey(request, head, path) {
-            Ok(answer) => answer,
-            Err(refusal) => Some(Head { op: op::NAK, ..head }.with(&[refusal as u8])),
-        }
-    }
-
-    /// True while pieces of a burst are due.
-    pub const fn bursting(&self) -> bool {
-        self.burst.is_some()
-    }
-
-    /// The next piece of the burst.
-    pub fn piece(&mut self) -> Option<[u8; PAYLOAD]> {
-        let burst = self.burst.as_mut()?;
-        let from = burst.next.offset as usize;
-        let Some(rest) = burst.file.bytes.get(from..).filter(|rest| !rest.is_empty()) else {
-            self.burst = None;
-            return None;
+        let mut head = Head {
+            sequence: request.sequence.wrapping_add(1),
+            op: op::ACK,
+            request: request.op,
+            burst_complete: false,
+            ..request
         };
-        let piece = rest.get(..burst.size).unwrap_or(rest);
-        let last = piece.len() == rest.len();
-        let payload = Head {
-            burst_complete: last,
-            ..burst.next
+        let answer = match self.obey(from, &mut head, data.map(path)) {
+            Ok(answer) => answer,
+            Err(refusal) => {
+                head.op = op::NAK;
+                Answer::Refused(refusal)
+            }
+        };
+        let new = Waiting {
+            to: from,
+            head,
+            answer,
+        };
+        // The newest request counts: who misses the answer to one before asks again.
+        let mut waiting = self.waiting.iter_mut();
+        match waiting.find(|old| old.to == from && old.bursts() == new.bursts()) {
+            Some(old) => *old = new,
+            None => {
+                let _ = self.waiting.push_back(new);
+            }
         }
-        .with(piece);
-        burst.next.offset = burst.next.offset.saturating_add(piece.len() as u32);
-        burst.next.sequence = burst.next.sequence.wrapping_add(1);
-        if last {
-            self.burst = None;
-        }
-        Some(payload)
     }
 
-    fn obey(
-        &mut self,
-        request: Head,
-        head: Head,
-        path: Option<&[u8]>,
-    ) -> Result<Option<[u8; PAYLOAD]>, Refusal> {
-        match request.op {
-            op::NONE | op::TERMINATE_SESSION | op::RESET_SESSIONS => {
-                self.burst = None;
-                Ok(Some(head.with(&[])))
+    /// The next that is due, and to whom.
+    pub fn answer(&mut self) -> Option<(Peer, [u8; PAYLOAD])> {
+        let Waiting { to, head, answer } = self.waiting.pop_front()?;
+        let payload = match answer {
+            Answer::Done => head.with(&[]),
+            Answer::Refused(refusal) => head.with(&[refusal as u8]),
+            Answer::Number(number) => head.with(&number.to_le_bytes()),
+            Answer::List => head.with(&self.list(head.offset)),
+            Answer::Piece(size) => head.with(self.piece(head, size).0),
+            Answer::Burst { size, goes_on } => {
+                let (piece, more) = self.piece(head, size);
+                if more && goes_on {
+                    let next = Head {
+                        offset: head.offset.saturating_add(piece.len() as u32),
+                        sequence: head.sequence.wrapping_add(1),
+                        ..head
+                    };
+                    let rest = Waiting {
+                        to,
+                        head: next,
+                        answer,
+                    };
+                    let _ = self.waiting.push_back(rest);
+                }
+                let burst_complete = !(more && goes_on);
+                Head {
+                    burst_complete,
+                    ..head
+                }
+                .with(piece)
             }
-            op::LIST_DIRECTORY => self.list(head, path.ok_or(Refusal::InvalidDataSize)?).map(Some),
+        };
+        Some((to, payload))
+    }
+
+    fn obey(&mut self, from: Peer, head: &mut Head, path: Option<&[u8]>) -> Result<Answer, Refusal> {
+        match head.request {
+            op::NONE => Ok(Answer::Done),
+            op::TERMINATE_SESSION | op::RESET_SESSIONS => {
+                self.forget(from);
+                Ok(Answer::Done)
+            }
+            op::LIST_DIRECTORY => {
+                let path = path.ok_or(Refusal::InvalidDataSize)?;
+                if !path.is_empty() && path != b"." {
+                    return Err(Refusal::FileNotFound);
+                }
+                let more = (head.offset as usize) < self.files.len();
+                more.then_some(Answer::List).ok_or(Refusal::EndOfFile)
+            }
             op::OPEN_FILE_RO | op::CALC_FILE_CRC32 => {
                 let (session, file) = self.find(path.ok_or(Refusal::InvalidDataSize)?)?;
-                let (head, number) = if request.op == op::OPEN_FILE_RO {
-                    (Head { session, ..head }, file.bytes.len() as u32)
-                } else {
-                    (head, crc32(file.bytes))
-                };
-                Ok(Some(head.with(&number.to_le_bytes())))
+                if head.request == op::CALC_FILE_CRC32 {
+                    return Ok(Answer::Number(crc32(file.bytes)));
+                }
+                head.session = session;
+                Ok(Answer::Number(file.bytes.len() as u32))
             }
-            op::READ_FILE => {
-                let rest = self.rest(request)?;
-                Ok(Some(head.with(rest.get(..wanted(request)).unwrap_or(rest))))
-            }
-            op::BURST_READ_FILE => {
-                self.rest(request)?;
-                let file = self.session(request)?;
-                let size = wanted(request);
-                self.burst = Some(Burst {
-                    file,
-                    next: head,
-                    size,
-                });
-                Ok(None)
+            op::READ_FILE | op::BURST_READ_FILE => {
+                let file = self.files.get(usize::from(head.session));
+                if rest(file.ok_or(Refusal::InvalidSession)?, *head).is_empty() {
+                    return Err(Refusal::EndOfFile);
+                }
+                let size = wanted(head.size);
+                if head.request == op::READ_FILE {
+                    return Ok(Answer::Piece(size));
+                }
+                let others = self.waiting.iter().filter(|w| w.bursts() && w.to != from);
+                let goes_on = others.count() < BURSTS;
+                Ok(Answer::Burst { size, goes_on })
             }
             op::CREATE_FILE..=op::RENAME => Err(Refusal::FileProtected),
             _ => Err(Refusal::UnknownCommand),
         }
     }
 
-    /// The entries of the one directory from the one that is asked for on, as many as fit: `F`, name, tab, size, 0.
-    fn list(&self, head: Head, path: &[u8]) -> Result<[u8; PAYLOAD], Refusal> {
-        if !path.is_empty() && path != b"." {
-            return Err(Refusal::FileNotFound);
+    /// Drops what is due to `reader`.
+    fn forget(&mut self, reader: Peer) {
+        for _ in 0..self.waiting.len() {
+            if let Some(waiting) = self.waiting.pop_front()
+                && waiting.to != reader
+            {
+                let _ = self.waiting.push_back(waiting);
+            }
         }
-        let mut entries = heapless::Vec::<u8, DATA>::new();
-        for file in self.files.iter().skip(head.offset as usize) {
+    }
+
+    /// The entries of the one directory from the one at `offset` on, as many as fit: `F`, name, tab, size, 0.
+    fn list(&self, offset: u32) -> heapless::Vec<u8, DATA> {
+        let mut entries = heapless::Vec::new();
+        for file in self.files.iter().skip(offset as usize) {
             let mut entry = heapless::String::<64>::new();
             let written =
                 core::fmt::write(&mut entry, format_args!("F{}\t{}\0", file.path, file.bytes.len()));
@@ -225,10 +287,7 @@ impl Ftp {
                 break;
             }
         }
-        if entries.is_empty() {
-            return Err(Refusal::EndOfFile);
-        }
-        Ok(head.with(&entries))
+        entries
     }
 
     /// The file at `path` with its session.
@@ -238,28 +297,27 @@ impl Ftp {
         found.ok_or(Refusal::FileNotFound)
     }
 
-    fn session(&self, request: Head) -> Result<&'static File, Refusal> {
-        self.files
-            .get(usize::from(request.session))
-            .ok_or(Refusal::InvalidSession)
-    }
-
-    /// What the file of the session has from the offset on.
-    fn rest(&self, request: Head) -> Result<&'static [u8], Refusal> {
-        let file = self.session(request)?;
-        let rest = file.bytes.get(request.offset as usize..).unwrap_or_default();
-        if rest.is_empty() {
-            return Err(Refusal::EndOfFile);
+    /// `size` bytes of what the head's session and offset point at, or what there is; true where more follows.
+    fn piece(&self, head: Head, size: u8) -> (&'static [u8], bool) {
+        let file = self.files.get(usize::from(head.session));
+        let rest = file.map_or(&[][..], |file| rest(file, head));
+        match rest.split_at_checked(size.into()) {
+            Some((piece, more)) => (piece, !more.is_empty()),
+            None => (rest, false),
         }
-        Ok(rest)
     }
 }
 
-/// Bytes that a read asks for: 0 asks for as many as fit.
-fn wanted(request: Head) -> usize {
-    match usize::from(request.size) {
-        0 => DATA,
-        size => size.min(DATA),
+/// What `file` has from the head's offset on.
+fn rest(file: &File, head: Head) -> &'static [u8] {
+    file.bytes.get(head.offset as usize..).unwrap_or_default()
+}
+
+/// Bytes that a read asks for by its `size`: 0 asks for as many as fit.
+fn wanted(size: u8) -> u8 {
+    match size {
+        0 => DATA as u8,
+        size => size.min(DATA as u8),
     }
 }
 

@@ -1,5 +1,8 @@
-//! What others measure and wish: an external pose, flow and range, and an offboard attitude, checked, in the vehicle's axes, with the time
-//! of measurement. The position hold flies by the poses; nothing flies by the attitudes yet.
+//! What others measure and wish: an external pose, flow and range, the place of the pipe, and an offboard attitude, checked, in
+//! the vehicle's axes, with the time of measurement. The position hold flies by the poses; nothing flies by the attitudes yet.
+//!
+//! Each input has one source at a time: two that alternate would have two origins, mountings or pipes. What is refused changes
+//! nothing.
 
 pub mod attitude;
 pub mod clock;
@@ -8,20 +11,32 @@ pub mod pose;
 pub mod target;
 
 use self::attitude::OffboardAttitude;
-use self::clock::Clock;
+use self::clock::{AGE_MAX, Clocks, Stamp, Time};
 use self::pose::{ExternalPose, Pose};
-use crate::dialect::{DISTANCE_SENSOR_DATA, LANDING_TARGET_DATA, OPTICAL_FLOW_RAD_DATA};
+use crate::dialect::{
+    DISTANCE_SENSOR_DATA, LANDING_TARGET_DATA, OPTICAL_FLOW_RAD_DATA, SET_ATTITUDE_TARGET_DATA,
+};
+use crate::frame::SYSTEM;
 use crate::requests::Peer;
-use sophie_control::ground::GroundView;
+use sophie_control::ground::{Flow, GroundView, Range};
+use sophie_control::params::{FlowPort, Params};
 use sophie_control::target::PipeTarget;
 use sophie_control::vector::{Quat, Vec3};
 
 /// Squared length of a quaternion may be off by this much: senders round, and do not always normalise.
 const QUATERNION_TOLERANCE: f32 = 0.02;
+/// Silence of a source after which another may be it, µs: four periods of the slowest input, `LANDING_TARGET`. Not less than
+/// the oldest that is taken, so that no other source's time lies before the last one's.
+const SILENCE: u64 = 2_000_000;
+const _: () = assert!(SILENCE >= AGE_MAX);
 
 /// Why an input was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
+    /// Its sender belongs to a system whose inputs are not wanted.
+    System,
+    /// It has another source already.
+    Source,
     /// Its axes are not known here.
     Frame,
     /// A value is no number, out of bounds, or said by its sender to be bad.
@@ -41,6 +56,10 @@ pub struct Counts {
     pub targets: u32,
     /// Attitudes taken.
     pub attitudes: u32,
+    /// Refused for their senders' system.
+    pub system: u32,
+    /// Refused beside another source.
+    pub source: u32,
     /// Refused for their axes.
     pub frame: u32,
     /// Refused for their values.
@@ -49,64 +68,90 @@ pub struct Counts {
     pub late: u32,
 }
 
-impl core::ops::Add for Counts {
-    type Output = Self;
+/// What has a source of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Input {
+    Pose,
+    Flow,
+    Range,
+    Target,
+    Attitude,
+}
 
-    fn add(self, more: Self) -> Self {
-        Self {
-            poses: self.poses.saturating_add(more.poses),
-            views: self.views.saturating_add(more.views),
-            targets: self.targets.saturating_add(more.targets),
-            attitudes: self.attitudes.saturating_add(more.attitudes),
-            frame: self.frame.saturating_add(more.frame),
-            value: self.value.saturating_add(more.value),
-            late: self.late.saturating_add(more.late),
-        }
+/// How many these are.
+const INPUTS: usize = 5;
+
+/// Where an input comes from: its sender, and which of that sender's sensors or messages.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Source {
+    peer: Peer,
+    sensor: u8,
+}
+
+/// A message that arrived.
+#[derive(Clone, Copy, Debug)]
+struct Arrival {
+    input: Input,
+    source: Source,
+    stamp: Stamp,
+    /// µs since the start.
+    now: u64,
+}
+
+/// The source of an input.
+#[derive(Clone, Copy, Debug, Default)]
+struct Stream {
+    of: Option<Source>,
+    /// When the last that was taken was measured, µs since the start; 0 before the first.
+    measured_at: u64,
+    /// When it arrived, µs.
+    taken_at: u64,
+}
+
+impl Stream {
+    fn silent(&self, now: u64) -> bool {
+        self.of.is_none() || now.saturating_sub(self.taken_at) > SILENCE
     }
 }
 
-/// The newest inputs of a line.
-#[derive(Clone, Debug, Default)]
+/// The newest inputs of all lines.
+#[derive(Clone, Debug)]
 pub struct Inputs {
-    /// The senders' clock.
-    pub(crate) clock: Clock,
+    /// The senders' clocks.
+    pub(crate) clocks: Clocks,
+    /// The system whose inputs are taken beside the vehicle's own; 0 for none.
+    other_system: u8,
+    /// Flow and range come from the vehicle's own port.
+    own_module: bool,
+    streams: [Stream; INPUTS],
     pose: Option<ExternalPose>,
-    attitude: Option<OffboardAttitude>,
+    /// Resets of the newest pose, and what they are more than its source's: another source is a reset as well.
+    resets: u8,
+    more_resets: u8,
+    attitude: Option<(u64, OffboardAttitude)>,
     target: Option<PipeTarget>,
-    /// When the place of the pipe before was measured, µs.
-    target_at: u64,
     ground: GroundView,
     /// Something of it has come since it was taken.
     seen: bool,
-    /// When the pose before was measured, µs.
-    measured_at: u64,
     counts: Counts,
 }
 
 impl Inputs {
     /// Before the first.
-    pub const fn new() -> Self {
+    pub fn new(params: &Params) -> Self {
         Self {
-            clock: Clock::new(),
+            clocks: Clocks::default(),
+            other_system: params.mav_inputs_sys as u8,
+            own_module: params.flow_port != FlowPort::Closed,
+            streams: [Stream::default(); INPUTS],
             pose: None,
+            resets: 0,
+            more_resets: 0,
             attitude: None,
             target: None,
-            target_at: 0,
-            ground: GroundView {
-                flow: None,
-                range: None,
-            },
+            ground: GroundView::default(),
             seen: false,
-            measured_at: 0,
-            counts: Counts {
-                poses: 0,
-                views: 0,
-                targets: 0,
-                attitudes: 0,
-                frame: 0,
-                value: 0,
-                late: 0,
-            },
+            counts: Counts::default(),
         }
     }
 
@@ -115,91 +160,198 @@ impl Inputs {
         self.counts
     }
 
-    /// Takes a pose that `from` sent with the time `usec` of its clock and that arrived at `now`, µs since the start. True
-    /// where the sender is to be asked for its time.
-    pub(crate) fn pose(&mut self, pose: Result<Pose, Refusal>, usec: u64, from: Peer, now: u64) -> bool {
-        let stamped = pose.and_then(|pose| {
-            let time = self.clock.time(usec, from, now)?;
-            // 0 before the first.
-            let in_order = self.measured_at == 0 || time.at > self.measured_at;
-            in_order.then_some((pose, time)).ok_or(Refusal::Late)
-        });
-        match stamped {
-            Ok((pose, time)) => {
-                count(&mut self.counts.poses);
-                self.measured_at = time.at;
-                self.pose = Some(ExternalPose {
-                    pose,
-                    measured_at: time.at,
-                    received_at: now,
-                    clock: time.source,
-                });
-            }
-            Err(refusal) => self.refuse(refusal),
+    fn stream(&self, input: Input) -> Stream {
+        self.streams.get(input as usize).copied().unwrap_or_default()
+    }
+
+    /// The time of measurement of what arrived, whose content is `sound` or is refused for it. Changes nothing.
+    fn judge(&self, arrival: &Arrival, sound: Result<(), Refusal>) -> Result<Time, Refusal> {
+        let &Arrival {
+            input,
+            source,
+            stamp,
+            now,
+        } = arrival;
+        // An attitude is addressed to this vehicle, as a command is.
+        let system = source.peer.system;
+        if input != Input::Attitude && system != SYSTEM && (system == 0 || system != self.other_system) {
+            return Err(Refusal::System);
         }
-        self.clock.due(from, now)
+        sound?;
+        let stream = self.stream(input);
+        let own = self.own_module && matches!(input, Input::Flow | Input::Range);
+        if own || (stream.of != Some(source) && !stream.silent(now)) {
+            return Err(Refusal::Source);
+        }
+        let time = self.clocks.time(stamp, source.peer, now)?;
+        let in_order = stream.measured_at == 0 || time.at > stream.measured_at;
+        in_order.then_some(time).ok_or(Refusal::Late)
+    }
+
+    /// The time of measurement where the arrival is taken, and whether its sender is to be asked for its time.
+    fn take(&mut self, arrival: &Arrival, sound: Result<(), Refusal>) -> (Option<Time>, bool) {
+        let &Arrival {
+            input, source, now, ..
+        } = arrival;
+        let taken = self.judge(arrival, sound);
+        if let Ok(time) = taken {
+            if let Some(stream) = self.streams.get_mut(input as usize) {
+                *stream = Stream {
+                    of: Some(source),
+                    measured_at: time.at,
+                    taken_at: now,
+                };
+            }
+            let streams = &self.streams;
+            self.clocks.keep(source.peer, |peer| {
+                streams.iter().filter_map(|s| s.of).any(|of| of.peer == peer)
+            });
+        }
+        if let Err(refusal) = taken {
+            self.refuse(refusal);
+        }
+        // One whose clock is kept and that is late may have a new clock: it started again.
+        let asks = matches!(taken, Ok(_) | Err(Refusal::Late)) && self.clocks.due(source.peer, now);
+        (taken.ok(), asks)
+    }
+
+    /// Takes a pose that `from` sent in message `id` with the time `usec` of its clock and that arrived at `now`, µs since the
+    /// start. True where the sender is to be asked for its time.
+    pub(crate) fn pose(
+        &mut self,
+        pose: Result<Pose, Refusal>,
+        id: u32,
+        usec: u64,
+        from: Peer,
+        now: u64,
+    ) -> bool {
+        let arrival = Arrival {
+            input: Input::Pose,
+            source: Source {
+                peer: from,
+                sensor: id as u8,
+            },
+            stamp: Stamp::Micros(usec),
+            now,
+        };
+        let before = self.stream(Input::Pose).of;
+        let (time, asks) = self.take(&arrival, pose.as_ref().map(|_| ()).map_err(|why| *why));
+        if let (Some(time), Ok(mut pose)) = (time, pose) {
+            count(&mut self.counts.poses);
+            if before.is_some_and(|before| before != arrival.source) {
+                let next = self.resets.wrapping_add(1);
+                self.more_resets = next.wrapping_sub(pose.resets);
+            }
+            pose.resets = pose.resets.wrapping_add(self.more_resets);
+            self.resets = pose.resets;
+            self.pose = Some(ExternalPose {
+                pose,
+                measured_at: time.at,
+                received_at: now,
+                clock: time.source,
+            });
+        }
+        asks
     }
 
     /// Takes a flow, and the range that comes with it, as [`Self::pose`] takes a pose.
     pub(crate) fn flow(&mut self, m: &OPTICAL_FLOW_RAD_DATA, from: Peer, now: u64) -> bool {
-        let before = self.ground.flow.map_or(0, |flow| flow.until_us);
-        let taken = self.clock.time(m.time_usec, from, now).and_then(|time| {
-            let (flow, range) = ground::flow(m, time.at)?;
-            (flow.until_us > before)
-                .then_some((flow, range))
-                .ok_or(Refusal::Late)
-        });
-        match taken {
-            Ok((flow, range)) => {
-                self.ground.flow = Some(flow);
-                self.ground.range = range.or(self.ground.range);
-                self.saw();
+        let seen = ground::flow(m);
+        let arrival = Arrival {
+            input: Input::Flow,
+            source: Source {
+                peer: from,
+                sensor: m.sensor_id,
+            },
+            stamp: Stamp::Micros(m.time_usec),
+            now,
+        };
+        let (time, asks) = self.take(&arrival, seen.map(|_| ()));
+        if let (Some(time), Ok((flow, range))) = (time, seen) {
+            self.ground.flow = Some(Flow {
+                until_us: time.at,
+                ..flow
+            });
+            // A sensor's own message says its reach as well: beside it a flow's range is left.
+            if let Some((range, age_us)) = range
+                && let Some(ranges) = self.streams.get_mut(Input::Range as usize)
+                && ranges.silent(now)
+            {
+                let at_us = time.at.saturating_sub(age_us);
+                if at_us > ranges.measured_at {
+                    ranges.measured_at = at_us;
+                    self.ground.range = Some(Range { at_us, ..range });
+                }
             }
-            Err(refusal) => self.refuse(refusal),
+            self.saw();
         }
-        self.clock.due(from, now)
+        asks
     }
 
     /// Takes a range, as [`Self::pose`] takes a pose.
     pub(crate) fn range(&mut self, m: &DISTANCE_SENSOR_DATA, from: Peer, now: u64) -> bool {
-        let before = self.ground.range.map_or(0, |range| range.at_us);
-        let usec = u64::from(m.time_boot_ms) * 1000;
-        let taken = self.clock.time(usec, from, now).and_then(|time| {
-            let range = ground::range(m, time.at)?;
-            (range.at_us > before).then_some(range).ok_or(Refusal::Late)
-        });
-        match taken {
-            Ok(range) => {
-                self.ground.range = Some(range);
-                self.saw();
-            }
-            Err(refusal) => self.refuse(refusal),
+        let range = ground::range(m);
+        let arrival = Arrival {
+            input: Input::Range,
+            source: Source {
+                peer: from,
+                sensor: m.id,
+            },
+            stamp: Stamp::Millis(m.time_boot_ms),
+            now,
+        };
+        let (time, asks) = self.take(&arrival, range.map(|_| ()));
+        if let (Some(time), Ok(range)) = (time, range) {
+            self.ground.range = Some(Range {
+                at_us: time.at,
+                ..range
+            });
+            self.saw();
         }
-        self.clock.due(from, now)
+        asks
     }
 
     /// Takes the place of the pipe, as [`Self::pose`] takes a pose.
     pub(crate) fn target(&mut self, m: &LANDING_TARGET_DATA, from: Peer, now: u64) -> bool {
-        let taken = self.clock.time(m.time_usec, from, now).and_then(|time| {
-            let target = target::target(m, time.at)?;
-            (target.at_us > self.target_at)
-                .then_some(target)
-                .ok_or(Refusal::Late)
-        });
-        match taken {
-            Ok(target) => {
-                count(&mut self.counts.targets);
-                self.target_at = target.at_us;
-                self.target = Some(target);
-            }
-            Err(refusal) => self.refuse(refusal),
+        let target = target::target(m);
+        let arrival = Arrival {
+            input: Input::Target,
+            source: Source {
+                peer: from,
+                sensor: m.target_num,
+            },
+            stamp: Stamp::Micros(m.time_usec),
+            now,
+        };
+        let (time, asks) = self.take(&arrival, target.map(|_| ()));
+        if let (Some(time), Ok(target)) = (time, target) {
+            count(&mut self.counts.targets);
+            self.target = Some(PipeTarget {
+                at_us: time.at,
+                ..target
+            });
         }
-        self.clock.due(from, now)
+        asks
     }
 
-    /// The place of the pipe that has come since the last call.
-    pub const fn take_target(&mut self) -> Option<PipeTarget> {
-        self.target.take()
+    /// Takes an attitude, as [`Self::pose`] takes a pose.
+    pub(crate) fn attitude(&mut self, m: &SET_ATTITUDE_TARGET_DATA, from: Peer, now: u64) -> bool {
+        let attitude = OffboardAttitude::of(m);
+        let arrival = Arrival {
+            input: Input::Attitude,
+            source: Source {
+                peer: from,
+                sensor: 0,
+            },
+            stamp: Stamp::Millis(m.time_boot_ms),
+            now,
+        };
+        let (time, asks) = self.take(&arrival, attitude.map(|_| ()));
+        if let (Some(time), Ok(attitude)) = (time, attitude) {
+            count(&mut self.counts.attitudes);
+            self.attitude = Some((time.at, attitude));
+        }
+        asks
     }
 
     const fn saw(&mut self) {
@@ -207,34 +359,30 @@ impl Inputs {
         self.seen = true;
     }
 
-    /// Flow and range, where something of them has come since the last call.
-    pub fn take_ground(&mut self) -> Option<GroundView> {
-        core::mem::take(&mut self.seen).then_some(self.ground)
-    }
-
-    /// Takes an attitude that arrived.
-    pub(crate) fn attitude(&mut self, attitude: Result<OffboardAttitude, Refusal>) {
-        match attitude {
-            Ok(attitude) => {
-                count(&mut self.counts.attitudes);
-                self.attitude = Some(attitude);
-            }
-            Err(refusal) => self.refuse(refusal),
-        }
-    }
-
     /// The pose that has come since the last call.
     pub const fn take_pose(&mut self) -> Option<ExternalPose> {
         self.pose.take()
     }
 
-    /// The attitude that has come since the last call.
-    pub const fn take_attitude(&mut self) -> Option<OffboardAttitude> {
+    /// Flow and range, where something of them has come since the last call.
+    pub fn take_ground(&mut self) -> Option<GroundView> {
+        core::mem::take(&mut self.seen).then_some(self.ground)
+    }
+
+    /// The place of the pipe that has come since the last call.
+    pub const fn take_target(&mut self) -> Option<PipeTarget> {
+        self.target.take()
+    }
+
+    /// The attitude that has come since the last call, and when it was wished, µs since the start.
+    pub const fn take_attitude(&mut self) -> Option<(u64, OffboardAttitude)> {
         self.attitude.take()
     }
 
     const fn refuse(&mut self, refusal: Refusal) {
         count(match refusal {
+            Refusal::System => &mut self.counts.system,
+            Refusal::Source => &mut self.counts.source,
             Refusal::Frame => &mut self.counts.frame,
             Refusal::Value => &mut self.counts.value,
             Refusal::Late => &mut self.counts.late,

@@ -34,8 +34,9 @@ pub struct Parameters {
     copy: Params,
     /// When the newest change came, µs; `None` where all is stored.
     changed_at: Option<u64>,
-    /// The next of a list that was asked for.
-    listing: Option<u16>,
+    /// The next of a list that was asked for, and how many are still to be said.
+    next: u16,
+    listed: u16,
 }
 
 impl Parameters {
@@ -44,7 +45,8 @@ impl Parameters {
         Self {
             copy: params,
             changed_at: None,
-            listing: None,
+            next: 0,
+            listed: 0,
         }
     }
 
@@ -110,15 +112,22 @@ impl Parameters {
         Some(Place(at as u16))
     }
 
-    /// Begins a list of all.
+    /// Begins a list of all. What was said of one under way counts for who asked before: it goes on, once round, for all
+    /// hear it, and begun again at each question it would never end.
     pub fn list(&mut self) {
-        self.listing = Some(0);
+        if self.listed == 0 {
+            self.next = 0;
+        }
+        self.listed = Params::TABLE.len() as u16;
     }
 
     /// The next of the list.
     pub fn listed(&mut self) -> Option<Place> {
-        let at = self.listing?;
-        self.listing = (usize::from(at) + 1 < Params::TABLE.len()).then_some(at + 1);
+        self.listed = self.listed.checked_sub(1)?;
+        let at = self.next;
+        let following = at + 1;
+        let more = usize::from(following) < Params::TABLE.len();
+        self.next = if more { following } else { 0 };
         Some(Place(at))
     }
 

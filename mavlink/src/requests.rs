@@ -19,7 +19,7 @@ pub struct Peer {
 pub struct Command {
     /// Its number.
     pub number: u16,
-    /// Its parameters: none of those that are obeyed uses a place on earth.
+    /// Its parameters, NaN for one that is not given: none of those that are obeyed uses a place on earth.
     pub params: [f32; 7],
 }
 
@@ -129,9 +129,11 @@ pub fn request(frame: &Frame<'_>) -> Option<Request> {
         }
         COMMAND_INT_DATA::ID => {
             let m: COMMAND_INT_DATA = message(frame)?;
-            let params = [
-                m.param1, m.param2, m.param3, m.param4, m.x as f32, m.y as f32, m.z,
-            ];
+            let [x, y] = [m.x, m.y].map(|whole| match whole {
+                i32::MAX => f32::NAN,
+                whole => whole as f32,
+            });
+            let params = [m.param1, m.param2, m.param3, m.param4, x, y, m.z];
             let command = Command {
                 number: m.command,
                 params,

@@ -6,6 +6,7 @@ mod send;
 pub mod shell;
 
 use heapless::Deque;
+use mavlink_core::MessageData;
 use sophie_control::mode::Mode;
 use sophie_control::params::Params;
 
@@ -19,10 +20,9 @@ use crate::budget::Budget;
 use crate::dialect::*;
 use crate::files::FILES;
 use crate::frame::{Encoder, Frame};
-use crate::ftp::{Ftp, PAYLOAD};
-use crate::inputs::attitude::OffboardAttitude;
+use crate::ftp::Ftp;
+use crate::inputs::Inputs;
 use crate::inputs::pose::Pose;
-use crate::inputs::{Inputs, Refusal};
 use crate::parameters::{Parameters, Place, Refused};
 use crate::parser::Parser;
 use crate::requests::{Peer, Request, request};
@@ -45,15 +45,6 @@ pub enum Order {
     Restart,
 }
 
-/// The files, and who reads them.
-struct Files {
-    ftp: Ftp,
-    /// Who asked last: pieces go there.
-    reader: Peer,
-    /// The answer that waits. Another request replaces it: who misses it asks again.
-    answer: Option<[u8; PAYLOAD]>,
-}
-
 /// The server of one link.
 pub struct Server {
     /// Number of the line in signatures.
@@ -65,9 +56,8 @@ pub struct Server {
     texts: Texts,
     parameters: Parameters,
     answers: Deque<Answer, ANSWERS>,
-    files: Files,
+    ftp: Ftp,
     shell: Shell,
-    inputs: Inputs,
     mode: Option<Mode>,
     /// When another's heartbeat came last, µs.
     heard_at: Option<u64>,
@@ -90,16 +80,8 @@ impl Server {
             texts: Texts::new(),
             parameters: Parameters::new(params),
             answers: Deque::new(),
-            files: Files {
-                ftp: Ftp::new(&FILES),
-                reader: Peer {
-                    system: 0,
-                    component: 0,
-                },
-                answer: None,
-            },
+            ftp: Ftp::new(&FILES),
             shell: Shell::new(),
-            inputs: Inputs::new(),
             mode: None,
             heard_at: None,
             restart_at: None,
@@ -121,8 +103,16 @@ impl Server {
         self.parameters.follow(params);
     }
 
-    /// Takes `bytes` that arrived at `now`, µs since the start, as far as `signing` lets it.
-    pub fn receive(&mut self, bytes: &[u8], now: u64, vehicle: &Vehicle, signing: &mut Signing) {
+    /// Takes `bytes` that arrived at `now`, µs since the start, as far as `signing` lets it. What others measured goes into the
+    /// `inputs` of all lines.
+    pub fn receive(
+        &mut self,
+        bytes: &[u8],
+        now: u64,
+        vehicle: &Vehicle,
+        signing: &mut Signing,
+        inputs: &mut Inputs,
+    ) {
         for &byte in bytes {
             let Some(frame) = self.parser.push(byte, now) else {
                 continue;
@@ -132,7 +122,7 @@ impl Server {
                 && signing.takes(&frame, now)
             {
                 let peer = peer(&frame);
-                self.obey(&asked, peer, now, vehicle);
+                self.obey(&asked, peer, now, vehicle, inputs);
             }
         }
     }
@@ -173,17 +163,6 @@ impl Server {
         &mut self.shell
     }
 
-    /// What others have measured and wished.
-    pub const fn inputs(&mut self) -> &mut Inputs {
-        &mut self.inputs
-    }
-
-    fn pose(&mut self, pose: Result<Pose, Refusal>, usec: u64, from: Peer, now: u64) {
-        if self.inputs.pose(pose, usec, from, now) {
-            self.answer(Answer::AskTime);
-        }
-    }
-
     fn acknowledge(&mut self, command: u16, to: Peer, result: MavResult, progress: u8) {
         self.answer(Answer::Ack {
             command,
@@ -197,7 +176,10 @@ impl Server {
         let _ = self.answers.push_back(answer);
     }
 
-    fn obey(&mut self, asked: &Request, from: Peer, now: u64, vehicle: &Vehicle) {
+    fn obey(&mut self, asked: &Request, from: Peer, now: u64, vehicle: &Vehicle, inputs: &mut Inputs) {
+        if measured(inputs, asked, from, now) {
+            self.answer(Answer::AskTime(from));
+        }
         match asked {
             Request::Heartbeat => {
                 let new = self.heard_at.is_none_or(|at| now.saturating_sub(at) > FORGOTTEN);
@@ -226,28 +208,16 @@ impl Server {
                         target_component: from.component,
                     }));
                 } else {
-                    self.inputs.clock.answer(from, sync.tc1, sync.ts1, now);
+                    inputs.clocks.answer(from, sync.tc1, sync.ts1, now);
                 }
             }
-            Request::Odometry(m) => self.pose(Pose::odometry(m), m.time_usec, from, now),
-            Request::Vision(m) => self.pose(Pose::vision(m), m.usec, from, now),
-            Request::Mocap(m) => self.pose(Pose::mocap(m), m.time_usec, from, now),
-            Request::Flow(m) => {
-                if self.inputs.flow(m, from, now) {
-                    self.answer(Answer::AskTime);
-                }
-            }
-            Request::Range(m) => {
-                if self.inputs.range(m, from, now) {
-                    self.answer(Answer::AskTime);
-                }
-            }
-            Request::Target(m) => {
-                if self.inputs.target(m, from, now) {
-                    self.answer(Answer::AskTime);
-                }
-            }
-            Request::Attitude(m) => self.inputs.attitude(OffboardAttitude::of(m)),
+            Request::Odometry(_)
+            | Request::Vision(_)
+            | Request::Mocap(_)
+            | Request::Flow(_)
+            | Request::Range(_)
+            | Request::Target(_)
+            | Request::Attitude(_) => (),
             Request::Command(command) => {
                 if let Some(reply) = self.command(command, from, now, vehicle) {
                     self.acknowledge(command.number, from, reply.result, 0);
@@ -273,10 +243,7 @@ impl Server {
                 MavSeverity::MAV_SEVERITY_WARNING,
                 format_args!("signing key refused: console only"),
             ),
-            Request::File(file) => {
-                self.files.answer = self.files.ftp.answer(&file.payload);
-                self.files.reader = from;
-            }
+            Request::File(file) => self.ftp.ask(from, &file.payload),
             Request::Serial(serial) => self.shell.obey(serial, from, now),
         }
     }
@@ -298,6 +265,23 @@ impl Server {
                 .texts
                 .say(severity, format_args!("{name}: not an allowed value")),
         }
+    }
+}
+
+/// Takes what `from` has measured or wished; true where it is to be asked for its time.
+fn measured(inputs: &mut Inputs, said: &Request, from: Peer, now: u64) -> bool {
+    match said {
+        Request::Odometry(m) => inputs.pose(Pose::odometry(m), ODOMETRY_DATA::ID, m.time_usec, from, now),
+        Request::Vision(m) => {
+            let id = VISION_POSITION_ESTIMATE_DATA::ID;
+            inputs.pose(Pose::vision(m), id, m.usec, from, now)
+        }
+        Request::Mocap(m) => inputs.pose(Pose::mocap(m), ATT_POS_MOCAP_DATA::ID, m.time_usec, from, now),
+        Request::Flow(m) => inputs.flow(m, from, now),
+        Request::Range(m) => inputs.range(m, from, now),
+        Request::Target(m) => inputs.target(m, from, now),
+        Request::Attitude(m) => inputs.attitude(m, from, now),
+        _ => false,
     }
 }
 

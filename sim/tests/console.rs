@@ -555,7 +555,12 @@ fn the_whole_list_fits_its_lines_and_misspelt_commands_are_helped() {
         ("get", "say 'get NAME'"),
         ("list nothing", "no parameter has 'nothing' in its name"),
         ("get qqqqq", "no parameter 'qqqqq'; 'list' shows them all"),
-        ("s\u{e4}ve", "only ASCII characters are understood"),
+        ("s\u{e4}ve", "only printable ASCII characters are understood"),
+        (
+            "set infill 7\0.5",
+            "only printable ASCII characters are understood",
+        ),
+        ("set infill 1\t0", "say 'set NAME VALUE'"),
     ] {
         let screen = bench.types(&format!("{typed}\r"));
         assert_eq!(screen.lines().nth(1), Some(answer));

@@ -55,12 +55,20 @@ struct Reader<I> {
     bytes: [u8; CHUNK],
 }
 
-/// The server of each line, the picture that they speak of, and the key.
+/// The server of each line, and what is one for all lines.
 struct Shared<const N: usize> {
     servers: [Server; N],
+    common: Common,
+}
+
+/// What all lines have in common.
+struct Common {
+    /// The picture that they speak of.
     vehicle: Vehicle,
-    /// One for all lines: what was said on one is not taken on another.
+    /// The key: what was said on one line is not taken on another.
     signing: Signing,
+    /// What others measure and wish, each input from one source, whatever its line.
+    inputs: Inputs,
 }
 
 /// What takes and what sends share, in one task and never over an await.
@@ -81,18 +89,10 @@ impl<const N: usize> Link<'_, N> {
     }
 
     /// The same with the server of line `at`.
-    fn with_server<R>(
-        &self,
-        at: usize,
-        work: impl FnOnce(&mut Server, &mut Vehicle, &mut Signing) -> R,
-    ) -> Option<R> {
+    fn with_server<R>(&self, at: usize, work: impl FnOnce(&mut Server, &mut Common) -> R) -> Option<R> {
         self.with(|shared| {
-            let Shared {
-                servers,
-                vehicle,
-                signing,
-            } = shared;
-            Some(work(servers.get_mut(at)?, vehicle, signing))
+            let Shared { servers, common } = shared;
+            Some(work(servers.get_mut(at)?, common))
         })
         .flatten()
     }
@@ -100,14 +100,14 @@ impl<const N: usize> Link<'_, N> {
     /// Types at the console what came for it on line `at`. A line that types takes the console from the other, whose
     /// command ends.
     fn type_in(&self, at: usize) {
-        let typed = self.with_server(at, |server, _, _| server.shell().typed());
+        let typed = self.with_server(at, |server, _| server.shell().typed());
         let typed = typed.unwrap_or_default();
         if typed.is_empty() {
             return;
         }
         let before = self.at_the_shell.replace(at);
         if before != at {
-            let end = self.with_server(before, |server, _, _| {
+            let end = self.with_server(before, |server, _| {
                 server.shell().hang_up();
                 server.shell().typed()
             });
@@ -157,8 +157,11 @@ pub async fn run<I: SerialInput, O: SerialOutput, const N: usize>(
     let link = Link {
         shared: RefCell::new(Shared {
             servers,
-            vehicle: Vehicle::default(),
-            signing: Signing::new(signing),
+            common: Common {
+                vehicle: Vehicle::default(),
+                signing: Signing::new(signing),
+                inputs: Inputs::new(&links.params),
+            },
         }),
         shell,
         at_the_shell: Cell::new(0),
@@ -178,11 +181,18 @@ pub async fn run<I: SerialInput, O: SerialOutput, const N: usize>(
             let now = started.as_micros();
             let seen = picture(links, &reels);
             link.with(|shared| {
-                shared.vehicle = seen;
-                links.mavlink.send(started, shared.state());
+                let Common {
+                    vehicle,
+                    signing,
+                    inputs,
+                } = &mut shared.common;
+                *vehicle = seen;
+                links
+                    .mavlink
+                    .send(started, LineState::of(signing, inputs.counts()));
             });
             for at in 0..N {
-                let order = link.with_server(at, |server, vehicle, _| {
+                let order = link.with_server(at, |server, Common { vehicle, .. }| {
                     // Of this moment: the line before may have given an order.
                     vehicle.answers = answers(links);
                     give(links, started, server.requests(now, vehicle));
@@ -204,14 +214,6 @@ pub async fn run<I: SerialInput, O: SerialOutput, const N: usize>(
     join(serve, join_array(senders)).await.0
 }
 
-impl<const N: usize> Shared<N> {
-    fn state(&mut self) -> LineState {
-        let counts = self.servers.iter_mut().map(|server| server.inputs().counts());
-        let inputs = counts.reduce(|all, more| all + more).unwrap_or_default();
-        LineState::of(&self.signing, inputs)
-    }
-}
-
 /// Does what the server of line `at` wants done.
 async fn obey<const N: usize>(
     links: &Links,
@@ -223,11 +225,11 @@ async fn obey<const N: usize>(
 ) {
     match order {
         Some(Order::Store) => {
-            let Some(params) = link.with_server(at, |server, _, _| *server.params()) else {
+            let Some(params) = link.with_server(at, |server, _| *server.params()) else {
                 return;
             };
             let stored = store(links, storage, &params).await;
-            link.with_server(at, |server, _, _| server.stored(stored));
+            link.with_server(at, |server, _| server.stored(stored));
         }
         Some(Order::Restart) if storing::hold_arming(links).await.is_ok() => restart(),
         Some(Order::Restart) | None => (),
@@ -244,11 +246,16 @@ async fn send<const N: usize>(link: &Link<'_, N>, at: usize, mut output: impl Se
         while output.listens() {
             let now = Instant::now().as_micros();
             frame.clear();
-            let copied = link.with_server(at, |server, vehicle, signing| {
+            let copied = link.with_server(at, |server, common| {
+                let Common {
+                    vehicle,
+                    signing,
+                    inputs,
+                } = common;
                 if server.shell().takes() {
                     server.shell().say(&link.shell.said());
                 }
-                let bytes = server.send(now, vehicle, signing).unwrap_or_default();
+                let bytes = server.send(now, vehicle, signing, inputs).unwrap_or_default();
                 frame.extend_from_slice(bytes)
             });
             if !matches!(copied, Some(Ok(()))) || frame.is_empty() {
@@ -295,9 +302,14 @@ async fn listen<I: SerialInput, const N: usize>(
                 taken = if taken >= BURST { 0 } else { taken + 1 };
                 let arrived = readers.get(at).and_then(|reader| reader.bytes.get(..count));
                 let now = Instant::now().as_micros();
-                link.with_server(at, |server, vehicle, signing| {
-                    server.receive(arrived.unwrap_or_default(), now, vehicle, signing);
-                    publish(links, server.inputs(), now);
+                link.with_server(at, |server, common| {
+                    let Common {
+                        vehicle,
+                        signing,
+                        inputs,
+                    } = common;
+                    server.receive(arrived.unwrap_or_default(), now, vehicle, signing, inputs);
+                    publish(links, inputs, now);
                 });
                 link.type_in(at);
                 link.share_parameters(at);
@@ -322,8 +334,8 @@ fn publish(links: &Links, inputs: &mut Inputs, now: u64) {
     if let Some(view) = inputs.take_ground() {
         links.ground.send(Instant::from_micros(now), view);
     }
-    if let Some(attitude) = inputs.take_attitude() {
-        links.offboard.send(Instant::from_micros(now), attitude);
+    if let Some((at, attitude)) = inputs.take_attitude() {
+        links.offboard.send(Instant::from_micros(at), attitude);
     }
 }
 
@@ -333,7 +345,7 @@ async fn renew<const N: usize>(links: &Links, link: &Link<'_, N>, storage: &mut 
     if storing::stopped(links).is_err() || links.hardware().contains(ArmingInhibit::Storing) {
         return;
     }
-    let Some(record) = link.with(|shared| shared.signing.to_store(now)).flatten() else {
+    let Some(record) = link.with(|shared| shared.common.signing.to_store(now)).flatten() else {
         return;
     };
     if storing::hold_arming(links).await.is_err() {
@@ -342,7 +354,7 @@ async fn renew<const N: usize>(links: &Links, link: &Link<'_, N>, storage: &mut 
     let stored = storing::save_signing(links, storage, Some(record)).await;
     links.report(ArmingInhibit::Storing, false);
     if stored.is_ok() {
-        link.with(|shared| shared.signing.keep(record));
+        link.with(|shared| shared.common.signing.keep(record));
     }
 }
 

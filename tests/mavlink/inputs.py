@@ -79,7 +79,8 @@ class Console:
 
 def main() -> int:
     connection, seconds = sys.argv[1], float(sys.argv[2])
-    line = mavutil.mavlink_connection(connection, source_system=255, dialect="common", retries=30)
+    # A computer aboard (MAV_COMP_ID_VISUAL_INERTIAL_ODOMETRY): another system's poses are refused.
+    line = mavutil.mavlink_connection(connection, source_system=1, source_component=197, dialect="common", retries=30)
     line.wait_heartbeat(timeout=seconds)
     line.mav.heartbeat_send(6, 8, 0, 0, 0)
     console = Console(line, seconds)
@@ -87,6 +88,8 @@ def main() -> int:
     said = {}
     for name, send in (("odometry", odometry), ("vision", vision), ("mocap", mocap)):
         said[name] = console.watch("pose", 3, lambda send=send: send(line.mav, 1.5))
+        # Another message is another source, which comes once the one before has been silent for two seconds.
+        time.sleep(2.5)
     said["attitude"] = console.watch("offb", 3, lambda: attitude(line.mav, 0.25))
     # No number, and no unit quaternion.
     vision(line.mav, NAN)

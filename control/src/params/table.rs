@@ -127,6 +127,9 @@ params! {
     flow_y = 0.0, "m", -0.3 ..= 0.3;
     /// Lens of the flow module below the centre of mass.
     flow_z = 0.0, "m", -0.3 ..= 0.3;
+    /// MAVLink system whose poses, flow, range and place of the pipe are taken beside those of the vehicle's own system, 1; 0
+    /// for none.
+    mav_inputs_sys = 0.0, "1", 0.0 ..= 255.0;
     /// Samples per second of the vehicle's inertial sensor; a part that cannot takes its nearest.
     imu_rate: ImuRate = ImuRate::Hz4000, "Hz";
     /// Full scale of the gyroscope.

@@ -53,8 +53,32 @@ fn parts(payload: &[u8; PAYLOAD]) -> (Head, Vec<u8>) {
     (head, payload[HEADER..HEADER + usize::from(head.size)].to_vec())
 }
 
+const A: Peer = Peer {
+    system: 255,
+    component: 190,
+};
+const B: Peer = Peer {
+    system: 254,
+    component: 190,
+};
+
 fn ask(payload: [u8; PAYLOAD]) -> (Head, Vec<u8>) {
-    parts(&Ftp::new(&FILES).answer(&payload).unwrap())
+    let mut ftp = Ftp::new(&FILES);
+    ftp.ask(A, &payload);
+    let (to, answer) = ftp.answer().unwrap();
+    assert_eq!(to, A);
+    parts(&answer)
+}
+
+/// All that is due, in order.
+fn due(ftp: &mut Ftp) -> Vec<(Peer, Head, Vec<u8>)> {
+    let answers = std::iter::from_fn(|| ftp.answer());
+    answers
+        .map(|(to, payload)| {
+            let (head, data) = parts(&payload);
+            (to, head, data)
+        })
+        .collect()
 }
 
 fn refusal(payload: [u8; PAYLOAD]) -> u8 {
@@ -94,22 +118,18 @@ fn a_file_is_opened_by_its_path_and_read_to_its_end() {
 #[test]
 fn a_burst_has_the_whole_rest_and_says_where_it_ends() {
     let mut ftp = Ftp::new(&FILES);
-    assert!(ftp.answer(&read(op::BURST_READ_FILE, 1, 300, 100)).is_none() && ftp.bursting());
+    ftp.ask(A, &read(op::BURST_READ_FILE, 1, 300, 100));
     let mut found = Vec::new();
-    let mut sequence = 0_u16;
-    while let Some(payload) = ftp.piece() {
-        let (head, data) = parts(&payload);
+    for (sequence, (to, head, data)) in (0_u16..).zip(due(&mut ftp)) {
         assert_eq!(
-            (head.op, head.request, head.session),
-            (op::ACK, op::BURST_READ_FILE, 1)
+            (to, head.op, head.request, head.session),
+            (A, op::ACK, op::BURST_READ_FILE, 1)
         );
         assert_eq!((head.sequence, head.offset), (sequence, 300 + found.len() as u32));
         found.extend(data);
-        sequence += 1;
         assert_eq!(head.burst_complete, found.len() == 700);
     }
     assert_eq!(found, LONG[300..]);
-    assert!(!ftp.bursting());
     assert_eq!(
         refusal(read(op::BURST_READ_FILE, 1, 1000, 100)),
         Refusal::EndOfFile as u8
@@ -117,12 +137,99 @@ fn a_burst_has_the_whole_rest_and_says_where_it_ends() {
 }
 
 #[test]
-fn a_reader_that_leaves_ends_its_burst() {
+fn a_reader_that_leaves_ends_its_burst_and_no_other_s() {
+    for leave in [op::TERMINATE_SESSION, op::RESET_SESSIONS] {
+        let mut ftp = Ftp::new(&FILES);
+        for reader in [A, B] {
+            ftp.ask(reader, &read(op::BURST_READ_FILE, 1, 0, 100));
+        }
+        assert_eq!(ftp.answer().map(|(to, _)| to), Some(A));
+        ftp.ask(A, &request(leave, 1, 0, &[]));
+        let left = due(&mut ftp);
+        let of_a = left.iter().filter(|(to, ..)| *to == A);
+        assert_eq!(of_a.map(|(_, head, _)| head.request).collect::<Vec<_>>(), [leave]);
+        assert_eq!(left.iter().filter(|(to, ..)| *to == B).count(), 10);
+    }
+}
+
+#[test]
+fn a_burst_goes_to_who_asked_for_it_whatever_others_say() {
+    let others = [
+        request(op::LIST_DIRECTORY, 0, 0, b"/"),
+        request(op::OPEN_FILE_RO, 0, 0, b"long"),
+        read(op::READ_FILE, 1, 0, 10),
+        request(op::ACK, 0, 0, &[]),
+        request(op::NAK, 0, 0, &[1]),
+        request(op::NONE, 0, 0, &[]),
+        request(op::RESET_SESSIONS, 0, 0, &[]),
+        read(op::BURST_READ_FILE, 1, 0, 0),
+    ];
+    for other in others {
+        let mut ftp = Ftp::new(&FILES);
+        ftp.ask(A, &read(op::BURST_READ_FILE, 1, 0, 100));
+        let first = ftp.answer().unwrap();
+        ftp.ask(B, &other);
+        let rest = due(&mut ftp);
+        let mut found = parts(&first.1).1;
+        for (_, head, data) in rest.iter().filter(|(to, ..)| *to == A) {
+            assert_eq!(
+                (head.request, head.offset),
+                (op::BURST_READ_FILE, found.len() as u32)
+            );
+            found.extend(data);
+        }
+        assert_eq!(found, LONG, "{}", other[3]);
+        let of_b = rest.iter().filter(|(to, ..)| *to == B);
+        assert!(of_b.clone().all(|(_, head, _)| head.request == other[3]));
+        let answered = !matches!(other[3], op::ACK | op::NAK);
+        assert_eq!(of_b.count() > 0, answered, "{}", other[3]);
+    }
+}
+
+#[test]
+fn any_number_of_readers_read_a_file_by_bursts_at_once() {
     let mut ftp = Ftp::new(&FILES);
-    assert!(ftp.answer(&read(op::BURST_READ_FILE, 1, 0, 0)).is_none());
-    assert!(ftp.piece().is_some());
-    assert!(ftp.answer(&request(op::TERMINATE_SESSION, 1, 0, &[])).is_some());
-    assert!(ftp.piece().is_none());
+    let readers = (1..=10).map(|system| Peer {
+        system,
+        component: 190,
+    });
+    let mut found: Vec<(Peer, Vec<u8>)> = readers.map(|reader| (reader, Vec::new())).collect();
+    for (reader, _) in &found {
+        ftp.ask(*reader, &read(op::BURST_READ_FILE, 1, 0, 0));
+    }
+    // As clients do: behind the last piece of a burst they ask for the rest, and after silence again.
+    for _ in 0..1000 {
+        match ftp.answer() {
+            Some((to, payload)) => {
+                let (head, data) = parts(&payload);
+                let (_, bytes) = found.iter_mut().find(|(reader, _)| *reader == to).unwrap();
+                assert_eq!(head.offset, bytes.len() as u32);
+                bytes.extend(data);
+                if head.burst_complete && bytes.len() < LONG.len() {
+                    ftp.ask(to, &read(op::BURST_READ_FILE, 1, bytes.len() as u32, 0));
+                }
+            }
+            None => {
+                for (reader, bytes) in found.iter().filter(|(_, bytes)| bytes.len() < LONG.len()) {
+                    ftp.ask(*reader, &read(op::BURST_READ_FILE, 1, bytes.len() as u32, 0));
+                }
+            }
+        }
+    }
+    assert!(found.iter().all(|(_, bytes)| *bytes == LONG));
+}
+
+#[test]
+fn a_reader_that_asks_again_and_again_leaves_room_for_others() {
+    let mut ftp = Ftp::new(&FILES);
+    for _ in 0..100 {
+        ftp.ask(A, &read(op::BURST_READ_FILE, 1, 0, 0));
+        ftp.ask(A, &read(op::READ_FILE, 1, 0, 0));
+    }
+    ftp.ask(B, &request(op::LIST_DIRECTORY, 0, 0, b"/"));
+    let due = due(&mut ftp);
+    assert_eq!(due.iter().filter(|(to, ..)| *to == B).count(), 1);
+    assert_eq!(due.len(), 5 + 1 + 1);
 }
 
 #[test]
@@ -187,12 +294,14 @@ proptest! {
     ) {
         payload[3] = op;
         let mut ftp = Ftp::new(&FILES);
-        if let Some(answer) = ftp.answer(&payload) {
+        ftp.ask(A, &payload);
+        let mut answers = 0;
+        while let Some((_, answer)) = ftp.answer() {
             let head = Head::of(&answer);
             prop_assert!(matches!(head.op, op::ACK | op::NAK) && head.request == op);
             prop_assert!(usize::from(head.size) <= DATA);
+            answers += 1;
         }
-        let pieces = std::iter::from_fn(|| ftp.piece()).take(2000).count();
-        prop_assert!(pieces <= LONG.len());
+        prop_assert!((1..=LONG.len()).contains(&answers));
     }
 }

@@ -17,8 +17,8 @@ pub(super) enum Answer {
     },
     Ping(PING_DATA),
     Timesync(TIMESYNC_DATA),
-    /// A question for the time of who sends poses.
-    AskTime,
+    /// A question for the time of who sends inputs.
+    AskTime(Peer),
     Interval {
         id: u16,
         interval_us: i32,
@@ -42,7 +42,7 @@ impl Answer {
         match self {
             Self::Ack { .. } => frame_bytes::<COMMAND_ACK_DATA>(),
             Self::Ping(_) => frame_bytes::<PING_DATA>(),
-            Self::Timesync(_) | Self::AskTime => frame_bytes::<TIMESYNC_DATA>(),
+            Self::Timesync(_) | Self::AskTime(_) => frame_bytes::<TIMESYNC_DATA>(),
             Self::Interval { .. } => frame_bytes::<MESSAGE_INTERVAL_DATA>(),
             Self::Parameter(_) => frame_bytes::<PARAM_VALUE_DATA>(),
             Self::Stream(id) => STREAMS.iter().find(|s| s.id == *id).map_or(0, |s| s.bytes),

@@ -90,6 +90,16 @@ impl Server {
 /// A number of a command's field that is whole and not negative.
 fn whole(value: f32) -> Option<u32> {
     let number = value as u32;
-    // Beyond 2^24 a float has no room for every whole number: message numbers and µs of minutes stay below.
-    ((number as f32 - value).abs() <= 0.0 && value >= 0.0).then_some(number)
+    // Beyond 2^24 a float has no room for every whole number: message numbers and µs of minutes stay below. From 2^32 on the
+    // conversion gives its largest, whatever the value.
+    let fits = (0.0..4_294_967_296.0).contains(&value);
+    (fits && (number as f32 - value).abs() <= 0.0).then_some(number)
+}
+
+/// A field that may be left out: NaN is "not given" in the standard, and means what 0 does. [`request`] makes the other
+/// spelling, `INT32_MAX` in a whole field, a NaN as well.
+///
+/// [`request`]: crate::requests::request
+const fn or_zero(value: f32) -> f32 {
+    if value.is_nan() { 0.0 } else { value }
 }

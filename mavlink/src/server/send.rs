@@ -3,12 +3,13 @@
 use mavlink_core::MessageData;
 use sophie_control::mode::Mode;
 
+use super::Server;
 use super::answer::Answer;
-use super::{Files, Server};
 use crate::budget::RESERVE;
 use crate::dialect::*;
 use crate::files::{GENERAL_CRC, GENERAL_URI};
 use crate::frame::{Encoder, SIGNATURE};
+use crate::inputs::Inputs;
 use crate::messages as make;
 use crate::signing::{Refused, Signing};
 use crate::streams::{STREAMS, frame_bytes};
@@ -16,7 +17,13 @@ use crate::vehicle::Vehicle;
 
 impl Server {
     /// The next frame that is due and within the budget at `now`, µs since the start.
-    pub fn send(&mut self, now: u64, vehicle: &Vehicle, signing: &mut Signing) -> Option<&[u8]> {
+    pub fn send(
+        &mut self,
+        now: u64,
+        vehicle: &Vehicle,
+        signing: &mut Signing,
+        inputs: &mut Inputs,
+    ) -> Option<&[u8]> {
         self.encoder.leave_room(signing.signs());
         self.budget
             .add_to_each(if signing.signs() { SIGNATURE as u32 } else { 0 });
@@ -31,7 +38,7 @@ impl Server {
         }
         let bytes = self
             .send_heartbeat(now, vehicle)
-            .or_else(|| self.send_answer(now, vehicle))
+            .or_else(|| self.send_answer(now, vehicle, inputs))
             .or_else(|| self.send_text(vehicle, signing.notice()))
             .or_else(|| self.send_console_by_turns(now, vehicle))
             .or_else(|| self.send_file())
@@ -56,7 +63,7 @@ impl Server {
         due.then(|| self.encoder.encode(&make::heartbeat(vehicle)))
     }
 
-    fn send_answer(&mut self, now: u64, vehicle: &Vehicle) -> Option<u32> {
+    fn send_answer(&mut self, now: u64, vehicle: &Vehicle, inputs: &mut Inputs) -> Option<u32> {
         if !self.budget.allows(self.answers.front()?.bytes()) {
             return None;
         }
@@ -78,15 +85,14 @@ impl Server {
             })),
             Answer::Ping(ping) => Some(encoder.encode(&ping)),
             Answer::Timesync(sync) => Some(encoder.encode(&sync)),
-            Answer::AskTime => {
-                let peer = self.inputs.clock.ask(now)?;
-                Some(encoder.encode(&TIMESYNC_DATA {
+            Answer::AskTime(peer) => inputs.clocks.ask(peer, now).then(|| {
+                encoder.encode(&TIMESYNC_DATA {
                     tc1: 0,
                     ts1: i64::try_from(now.saturating_mul(1000)).unwrap_or(i64::MAX),
                     target_system: peer.system,
                     target_component: peer.component,
-                }))
-            }
+                })
+            }),
             Answer::Interval { id, interval_us } => Some(encoder.encode(&MESSAGE_INTERVAL_DATA {
                 interval_us,
                 message_id: id,
@@ -160,8 +166,7 @@ impl Server {
         {
             return None;
         }
-        let Files { ftp, reader, answer } = &mut self.files;
-        let payload = answer.take().or_else(|| ftp.piece())?;
+        let (reader, payload) = self.ftp.answer()?;
         Some(self.encoder.encode(&FILE_TRANSFER_PROTOCOL_DATA {
             target_network: 0,
             target_system: reader.system,

@@ -146,10 +146,46 @@ fn what_there_is_not_is_unsupported() {
         [0.0, 0.0, 1.0, 0.0, 0.0],
         [0.0, 0.0, 0.0, 0.0, 3.0],
         [1.0, 0.0, 0.0, 0.0, 1.0],
-        [f32::NAN, 0.0, 0.0, 0.0, 0.0],
+        [f32::INFINITY, 0.0, 0.0, 0.0, 0.0],
+        [0.5, 0.0, 0.0, 0.0, 0.0],
     ] {
         calibrate(&mut station, params);
         station.run(100);
         assert_eq!(acks(&station), [(3, 0)], "{params:?}");
+    }
+}
+
+#[test]
+fn what_is_not_given_is_as_zeros_in_every_spelling() {
+    const NAN: f32 = f32::NAN;
+    for [first, fifth] in [[1.0, NAN], [NAN, 2.0]] {
+        let mut station = Station::new();
+        calibrate(&mut station, [first, NAN, -NAN, NAN, fifth]);
+        station.run(100);
+        assert_eq!(acks(&station), [(5, 0)], "{first} {fifth}");
+        calibrate(&mut station, [NAN; 5]);
+        station.run(100);
+        assert_eq!(acks(&station), [(6, 0), (0, 0)]);
+    }
+    // Its fifth and sixth are whole numbers in the other message.
+    for (first, x, y) in [(1.0, i32::MAX, i32::MAX), (NAN, 2, i32::MAX), (NAN, 4, 0)] {
+        let mut station = Station::new();
+        station.run(100);
+        station.sent.clear();
+        station.say(&frame(&COMMAND_INT_DATA {
+            param1: first,
+            param2: NAN,
+            param3: NAN,
+            param4: NAN,
+            x,
+            y,
+            z: NAN,
+            command: MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION as u16,
+            target_system: 1,
+            target_component: 1,
+            ..Default::default()
+        }));
+        station.run(100);
+        assert_eq!(acks(&station), [(5, 0)], "{first} {x} {y}");
     }
 }

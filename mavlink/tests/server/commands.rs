@@ -54,6 +54,10 @@ fn a_message_is_sent_when_asked_for() {
     station.run(1000);
     let modes = station.got::<AVAILABLE_MODES_DATA>();
     assert!(modes.iter().map(|m| m.mode_index).eq(1..=Mode::ALL.len() as u8));
+    // Which of them is not given: all.
+    assert_eq!(station.command(ask, [435.0, f32::NAN]), [ACCEPTED]);
+    station.run(1000);
+    assert_eq!(station.got::<AVAILABLE_MODES_DATA>().len(), Mode::ALL.len());
     assert_eq!(station.command(ask, [435.0, 4.0]), [ACCEPTED]);
     assert_eq!(
         station.got::<AVAILABLE_MODES_DATA>()[0].custom_mode,
@@ -94,7 +98,21 @@ fn an_interval_can_be_set_read_and_taken_back() {
     assert_eq!(station.command(set, [30.0, 19_999.0]), [DENIED]);
     assert_eq!(station.command(set, [0.0, -1.0]), [DENIED]);
     assert_eq!(station.command(set, [33.0, 100_000.0]), [UNSUPPORTED]);
-    assert_eq!(station.command(set, [30.0, f32::NAN]), [DENIED]);
+    for bad in [
+        f32::NAN,
+        -2.0,
+        -0.5,
+        -100_000.0,
+        4_294_967_296.0,
+        2_147_483_648.0,
+        f32::INFINITY,
+    ] {
+        assert_eq!(station.command(set, [30.0, bad]), [DENIED], "{bad}");
+    }
+    assert_eq!(read(&mut station), 100_000);
+    // The longest that MESSAGE_INTERVAL can say, of those that a float has.
+    assert_eq!(station.command(set, [30.0, 2_147_483_520.0]), [ACCEPTED]);
+    assert_eq!(read(&mut station), 2_147_483_520);
 }
 
 #[test]
@@ -234,7 +252,7 @@ fn who_asks_with_numbers_that_there_are_not_reads_why() {
             MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL,
             [30.0, 19_999.0],
             DENIED,
-            "refused: an interval is 20 ms or more, 0 or -1",
+            "refused: an interval is 20 ms to 35 min, 0 or -1",
         ),
         (
             MavCmd::MAV_CMD_REQUEST_MESSAGE,

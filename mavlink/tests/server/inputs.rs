@@ -9,7 +9,12 @@ use sophie_mavlink::inputs::Counts;
 use sophie_mavlink::inputs::attitude::OffboardAttitude;
 use sophie_mavlink::inputs::pose::{ExternalPose, TimeSource};
 
-use crate::station::{Station, frame, frame_from};
+use crate::station::{Station, frame_by};
+
+/// A frame of `message` from a computer aboard.
+fn frame<M: MessageData>(message: &M) -> Vec<u8> {
+    frame_by(1, 190, message)
+}
 
 const NAN: [f32; 21] = [f32::NAN; 21];
 
@@ -36,7 +41,7 @@ fn after<M: MessageData>(message: &M) -> (Option<ExternalPose>, Counts) {
     let mut station = Station::new();
     station.now = 5_000_000;
     station.say(&frame(message));
-    let inputs = station.server.inputs();
+    let inputs = &mut station.inputs;
     (inputs.take_pose(), inputs.counts())
 }
 
@@ -305,7 +310,7 @@ fn dated(station: &mut Station, usec: u64) -> Option<(u64, TimeSource)> {
         time_usec: usec,
         ..odometry()
     }));
-    let pose = station.server.inputs().take_pose()?;
+    let pose = station.inputs.take_pose()?;
     assert_eq!(pose.received_at, station.now);
     Some((pose.measured_at, pose.clock))
 }
@@ -322,7 +327,7 @@ fn the_time_of_measurement_is_the_senders_once_its_clock_is_known() {
     assert_eq!(asked.len(), 1);
     assert_eq!(
         (asked[0].tc1, asked[0].target_system, asked[0].target_component),
-        (0, 255, 190)
+        (0, 1, 190)
     );
     let answer = TIMESYNC_DATA {
         tc1: DATE as i64 * 1000,
@@ -332,7 +337,8 @@ fn the_time_of_measurement_is_the_senders_once_its_clock_is_known() {
     };
     station.now += 20_000;
     // Another's answer, and one to another question, say nothing.
-    station.say(&frame_from(
+    station.say(&frame_by(
+        1,
         7,
         &TIMESYNC_DATA {
             tc1: 1,
@@ -356,7 +362,7 @@ fn the_time_of_measurement_is_the_senders_once_its_clock_is_known() {
     );
     assert_eq!(dated(&mut station, DATE - 2_000_000), None, "too old");
     assert_eq!(dated(&mut station, DATE), None, "not after the one before");
-    assert_eq!(station.server.inputs().counts().late, 2);
+    assert_eq!(station.inputs.counts().late, 2);
     // Asked again after a second, not before.
     station.run(900);
     dated(&mut station, DATE + 900_000);
@@ -386,10 +392,10 @@ fn an_attitude_has_what_its_mask_says() {
     let wish = |m: &SET_ATTITUDE_TARGET_DATA| {
         let mut station = Station::new();
         station.say(&frame(m));
-        let inputs = station.server.inputs();
+        let inputs = &mut station.inputs;
         let counts = inputs.counts();
         assert_eq!(counts.attitudes + counts.frame + counts.value, 1);
-        inputs.take_attitude()
+        inputs.take_attitude().map(|(_, attitude)| attitude)
     };
     let all = SET_ATTITUDE_TARGET_DATA {
         q: [1.0, 0.0, 0.0, 0.0],
@@ -476,7 +482,7 @@ fn an_attitude_has_what_its_mask_says() {
         target_system: 2,
         ..all.clone()
     }));
-    assert_eq!(station.server.inputs().counts(), Counts::default());
+    assert_eq!(station.inputs.counts(), Counts::default());
 }
 
 /// 0.02 rad forward in 20 ms, 1.5 m over the ground, measured 4 ms before.
@@ -510,7 +516,7 @@ fn seen<M: MessageData>(message: &M) -> (Option<GroundView>, [u32; 4]) {
     let mut station = Station::new();
     station.now = 5_000_000;
     station.say(&frame(message));
-    let inputs = station.server.inputs();
+    let inputs = &mut station.inputs;
     let counts = inputs.counts();
     let view = inputs.take_ground();
     assert!(inputs.take_ground().is_none(), "taken once");
@@ -568,8 +574,28 @@ fn what_is_no_flow_looks_elsewhere_or_is_old_is_refused_and_counted() {
     station.now = 5_000_000;
     station.say(&frame(&flow()));
     station.say(&frame(&flow()));
-    let counts = station.server.inputs().counts();
+    let counts = station.inputs.counts();
     assert_eq!((counts.views, counts.late), (1, 1));
+}
+
+#[test]
+fn a_reach_that_is_not_given_is_no_range_of_nothing() {
+    // Many sensors say 0 where they see nothing: from 0 on none measures.
+    for (distance, seen_at) in [(0, None), (1, None), (120, Some(1.2))] {
+        let m = DISTANCE_SENSOR_DATA {
+            min_distance: 0,
+            current_distance: distance,
+            ..range()
+        };
+        assert_eq!(seen(&m).0.unwrap().range.unwrap().distance, seen_at);
+    }
+    // Without its far end, nothing within reach cannot be known.
+    let endless = DISTANCE_SENSOR_DATA {
+        min_distance: 0,
+        max_distance: 0,
+        ..range()
+    };
+    assert_eq!(seen(&endless), (None, [0, 1, 0, 0]));
 }
 
 #[test]
@@ -620,7 +646,7 @@ fn placed(message: &LANDING_TARGET_DATA) -> (Option<PipeTarget>, [u32; 4]) {
     let mut station = Station::new();
     station.now = 5_000_000;
     station.say(&frame(message));
-    let inputs = station.server.inputs();
+    let inputs = &mut station.inputs;
     let counts = inputs.counts();
     let target = inputs.take_target();
     assert!(inputs.take_target().is_none(), "taken once");
@@ -680,6 +706,6 @@ fn a_place_of_the_pipe_that_cannot_be_is_refused_and_counted() {
     station.now = 5_000_000;
     station.say(&frame(&pipe()));
     station.say(&frame(&pipe()));
-    let counts = station.server.inputs().counts();
+    let counts = station.inputs.counts();
     assert_eq!((counts.targets, counts.late), (1, 1));
 }

@@ -8,6 +8,7 @@ mod messages;
 mod orders;
 mod page;
 mod parameters;
+mod senders;
 mod shell;
 mod signing;
 mod sorter;

@@ -271,7 +271,21 @@ fn one_motor_turns_once_propellers_are_said_to_be_off() {
     for percent in [13.0, 1.0, f32::INFINITY] {
         craft.refused(MOTOR, &[1.0, 0.0, percent], DENIED, "refused: out of range");
     }
-    for bad in [[0.0, 0.0], [5.0, 0.0], [1.0, 1.0], [f32::NAN, 0.0]] {
+    // Time and number are not given.
+    for nan in [f32::NAN, -f32::NAN] {
+        craft.spun = 0;
+        craft.accepted(MOTOR, &[2.0, 0.0, 8.0, nan, nan, nan, nan]);
+        craft.run(3000);
+        assert!(craft.spun.abs_diff(whole) <= 2, "{}", craft.spun);
+    }
+    // Which motor, and its throttle's unit, are never guessed.
+    for bad in [
+        [0.0, 0.0],
+        [5.0, 0.0],
+        [1.0, 1.0],
+        [f32::NAN, 0.0],
+        [1.0, f32::NAN],
+    ] {
         craft.refused(
             MOTOR,
             &[bad[0], bad[1], 8.0],
@@ -334,6 +348,13 @@ fn the_gripper_stays_where_the_switch_does_nothing() {
     craft.sticks().throttle = 0.5;
     craft.run(200);
     craft.accepted(GRIPPER, &[1.0, 1.0]);
+    craft.accepted(GRIPPER, &[f32::NAN, 1.0, f32::NAN]);
+    craft.refused(
+        GRIPPER,
+        &[1.0, f32::NAN],
+        DENIED,
+        "refused: gripper 1: 0 releases, 1 grabs",
+    );
     craft.inputs.sticks = None;
     craft.run(1000);
     craft.refused(GRIPPER, &[1.0, 1.0], REJECTED, "refused: radio lost");

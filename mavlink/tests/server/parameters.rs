@@ -1,11 +1,13 @@
 //! The parameter protocol.
 
+use std::collections::BTreeSet;
+
 use sophie_control::mode::Mode;
 use sophie_control::params::Params;
 use sophie_mavlink::Order;
 use sophie_mavlink::dialect::*;
 
-use crate::station::{Station, frame, vehicle};
+use crate::station::{Station, frame, frame_from, vehicle};
 
 fn id(name: &str) -> mavlink_core::types::CharArray<16> {
     sophie_mavlink::messages::text::<16>(name).into()
@@ -50,6 +52,41 @@ fn a_list_has_every_parameter_once_in_order() {
         );
         assert_eq!((value.param_value, value.param_type), (row.default, 9));
     }
+}
+
+#[test]
+fn who_asks_for_a_list_beside_another_starves_no_one() {
+    // Each asks again before a list could be sent, as over a slow link; the first goes on none the less.
+    let mut station = Station::with(1500);
+    let count = Params::TABLE.len();
+    let list = |system| {
+        frame_from(
+            system,
+            &PARAM_REQUEST_LIST_DATA {
+                target_system: 1,
+                target_component: 1,
+            },
+        )
+    };
+    let places = |station: &Station| -> Vec<usize> {
+        let values = station.got::<PARAM_VALUE_DATA>();
+        values.iter().map(|v| v.param_index.into()).collect()
+    };
+    for _ in 0..40 {
+        station.say(&list(255));
+        station.run(500);
+        station.say(&list(254));
+        station.run(500);
+    }
+    let heard: BTreeSet<usize> = places(&station).into_iter().collect();
+    assert_eq!(heard.len(), count);
+    // It comes to an end: who asked last has heard all of it by then.
+    station.sent.clear();
+    station.say(&list(254));
+    station.run(60_000);
+    let last = places(&station);
+    assert_eq!(last.len(), count);
+    assert_eq!(last.into_iter().collect::<BTreeSet<_>>().len(), count);
 }
 
 #[test]

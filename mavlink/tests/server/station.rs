@@ -6,6 +6,7 @@ use sophie_control::mode::Mode;
 use sophie_control::params::Params;
 use sophie_control::vector::{Quat, Vec3};
 use sophie_mavlink::dialect::{COMMAND_ACK_DATA, COMMAND_LONG_DATA, MavCmd, STATUSTEXT_DATA};
+use sophie_mavlink::inputs::Inputs;
 use sophie_mavlink::signing::Stored;
 use sophie_mavlink::{Condition, Order, Server, Signing, Vehicle};
 
@@ -44,10 +45,15 @@ pub fn frame<M: MessageData>(message: &M) -> Vec<u8> {
 
 /// A frame of `message` from `system`.
 pub fn frame_from<M: MessageData>(system: u8, message: &M) -> Vec<u8> {
+    frame_by(system, 190, message)
+}
+
+/// A frame of `message` from `component` of `system`.
+pub fn frame_by<M: MessageData>(system: u8, component: u8, message: &M) -> Vec<u8> {
     let mut raw = MAVLinkV2MessageRaw::new();
     let header = MavHeader {
         system_id: system.into(),
-        component_id: 190,
+        component_id: component,
         sequence: 0,
     };
     raw.serialize_message_data(header, message);
@@ -67,6 +73,7 @@ pub struct Sent {
 pub struct Station {
     pub server: Server,
     pub signing: Signing,
+    pub inputs: Inputs,
     pub vehicle: Vehicle,
     pub now: u64,
     pub sent: Vec<Sent>,
@@ -82,6 +89,7 @@ impl Station {
         Self {
             server: Server::new(Params::DEFAULT, bytes_per_second),
             signing: Signing::new(Stored::None),
+            inputs: Inputs::new(&Params::DEFAULT),
             vehicle: vehicle(Mode::Disarmed),
             now: 0,
             sent: Vec::new(),
@@ -93,7 +101,9 @@ impl Station {
     pub fn run(&mut self, ms: u64) {
         for _ in 0..ms * 1000 / PERIOD {
             self.now += PERIOD;
-            while let Some(frame) = (self.server).send(self.now, &self.vehicle, &mut self.signing) {
+            while let Some(frame) =
+                (self.server).send(self.now, &self.vehicle, &mut self.signing, &mut self.inputs)
+            {
                 let length = usize::from(frame[1]);
                 let signed = frame[2] == 1;
                 assert_eq!(frame.len(), length + 12 + if signed { 13 } else { 0 });
@@ -110,13 +120,23 @@ impl Station {
     }
 
     pub fn say(&mut self, bytes: &[u8]) {
-        self.server
-            .receive(bytes, self.now, &self.vehicle, &mut self.signing);
+        self.server.receive(
+            bytes,
+            self.now,
+            &self.vehicle,
+            &mut self.signing,
+            &mut self.inputs,
+        );
     }
 
     /// Every message of one kind since the start.
     pub fn got<M: MessageData>(&self) -> Vec<M> {
-        let of = self.sent.iter().filter(|sent| sent.id == M::ID);
+        self.since(0)
+    }
+
+    /// Every message of one kind behind the first `count` of all.
+    pub fn since<M: MessageData>(&self, count: usize) -> Vec<M> {
+        let of = self.sent.iter().skip(count).filter(|sent| sent.id == M::ID);
         of.map(|sent| M::deser(MavlinkVersion::V2, &sent.payload).unwrap())
             .collect()
     }

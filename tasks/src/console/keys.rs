@@ -49,13 +49,13 @@ impl<I: SerialInput> Keys<I> {
         Ok(self.taken < self.filled)
     }
 
-    /// The next byte of those that are there. CR LF is one end of a line.
+    /// The next byte of those that are there. CR LF is one end of a line, and so is telnet's CR NUL.
     pub(super) fn next(&mut self) -> Option<u8> {
         while self.taken < self.filled {
             let byte = self.chunk.get(self.taken).copied()?;
             self.taken += 1;
             let after_cr = core::mem::replace(&mut self.after_cr, byte == b'\r');
-            if !(after_cr && byte == b'\n') {
+            if !(after_cr && matches!(byte, b'\n' | 0)) {
                 return Some(byte);
             }
         }

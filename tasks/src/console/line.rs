@@ -11,13 +11,17 @@ pub(super) const CHUNK: usize = 32;
 /// Echo of one chunk: at most three bytes for each.
 pub(super) type Echo = Vec<u8, { 3 * CHUNK }>;
 
+/// The answer to a line with other bytes than those of printable characters, blanks and tabs.
+pub const NOT_TEXT: &str = "only printable ASCII characters are understood";
+
 /// Why a line is rejected as a whole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum LineError {
     /// More than [`LENGTH`] characters.
     TooLong,
-    /// A byte above 127.
-    NotAscii,
+    /// A byte that no key of a text types: above 127, or a control character. Left out, it would make another line of what was
+    /// pasted.
+    NotText,
     /// Bytes were lost on the way.
     Damaged,
 }
@@ -26,7 +30,7 @@ impl LineError {
     pub(super) const fn text(self) -> &'static str {
         match self {
             Self::TooLong => "line too long: 80 characters at most",
-            Self::NotAscii => "only ASCII characters are understood",
+            Self::NotText => NOT_TEXT,
             Self::Damaged => "the line was damaged on its way: type it again",
         }
     }
@@ -50,11 +54,12 @@ pub(super) struct Line {
 }
 
 impl Line {
-    /// Takes one byte; true if it ends the line (CR, LF or CR LF).
+    /// Takes one byte; true if it ends the line (CR, LF, CR LF, or CR NUL as telnet has it). A tab is a blank. Cursor keys leave
+    /// an empty line as it is and spoil one that is begun: nothing there moves.
     pub(super) fn push(&mut self, byte: u8, echo: &mut Echo) -> bool {
         let after_cr = core::mem::replace(&mut self.after_cr, byte == b'\r');
         match byte {
-            b'\n' if after_cr => return false,
+            b'\n' | 0 if after_cr => return false,
             b'\r' | b'\n' => {
                 self.escape = Escape::None;
                 return true;
@@ -65,12 +70,17 @@ impl Line {
             }
             _ => (),
         }
+        let byte = if byte == b'\t' { b' ' } else { byte };
         match (self.escape, byte) {
             (Escape::Begun, b'[' | b'O') => self.escape = Escape::Within,
-            (Escape::Begun, _) => self.escape = Escape::None,
-            (Escape::Within, 0x40..=0x7E) => self.escape = Escape::None,
-            (Escape::Within, _) => (),
-            (Escape::None, 0x1B) => self.escape = Escape::Begun,
+            (Escape::Within, b' '..=b'?') => (),
+            (Escape::Within, b'@'..=b'~') => self.escape = Escape::None,
+            (Escape::None, 0x1B) => {
+                self.escape = Escape::Begun;
+                if !self.text.is_empty() {
+                    self.spoil(LineError::NotText);
+                }
+            }
             (Escape::None, 0x08 | 0x7F) => {
                 if self.text.pop().is_some() {
                     let _ = echo.extend_from_slice(b"\x08 \x08");
@@ -82,8 +92,10 @@ impl Line {
                 }
                 Err(_) => self.spoil(LineError::TooLong),
             },
-            (Escape::None, 0x80..) => self.spoil(LineError::NotAscii),
-            (Escape::None, _) => (),
+            _ => {
+                self.escape = Escape::None;
+                self.spoil(LineError::NotText);
+            }
         }
         false
     }
@@ -142,11 +154,54 @@ mod tests {
             lines(b"\x08helq\x7Fp\r"),
             (ok(&["help"]), "helq\x08 \x08p".into())
         );
-        // Cursor keys and other controls leave nothing.
-        assert_eq!(lines(b"s\x1B[Aa\x1B[1;5Cv\x1BOPe\t\x00\r").0, ok(&["save"]));
-        assert_eq!(lines(b"x\x1B[\rhelp\r").0, ok(&["x", "help"]));
+        // Cursor keys leave nothing where nothing is typed yet.
+        assert_eq!(lines(b"\x1B[A\x1B[1;5C\x1BOPsave\r").0, ok(&["save"]));
+        assert_eq!(lines(b"\x1B[\rhelp\r").0, ok(&["", "help"]));
+        assert_eq!(lines(b"a\r\0b\r\0").0, ok(&["a", "b"]));
+        assert_eq!(
+            lines(b"set infill\t10\r"),
+            (ok(&["set infill 10"]), "set infill 10".into())
+        );
         // Ctrl-C drops what was begun, whatever is wrong with it.
         assert_eq!(lines(b"sa\x03help\r\xE4\x03save\r").0, ok(&["help", "save"]));
+    }
+
+    #[test]
+    fn no_byte_vanishes_from_a_line() {
+        // What ends, drops, corrects or separates has its own tests.
+        let others = (0..=255).filter(|byte| !b"\r\n\t\x03\x08\x7F".contains(byte));
+        for byte in others {
+            let typed = [b"set infill 7", &[byte][..], b".5\rok\r"].concat();
+            let first = match byte {
+                b' '..=b'~' => Ok(Text::from_utf8(typed[..15].to_vec()).unwrap()),
+                _ => Err(LineError::NotText),
+            };
+            assert_eq!(lines(&typed).0, [first, Ok("ok".into())], "{byte:#x}");
+        }
+        for keys in [
+            &b"\x1B[C"[..],
+            b"\x1B[1;5C",
+            b"\x1BOP",
+            b"\x1B[",
+            b"\x1B\x1B[A",
+            b"\x1Bx",
+        ] {
+            let typed = [b"set infill 4", keys, b".5\rok\r"].concat();
+            assert_eq!(
+                lines(&typed).0,
+                [Err(LineError::NotText), Ok("ok".into())],
+                "{keys:?}"
+            );
+        }
+        // A sequence that is none, at the start of a line.
+        for keys in [&b"\x1Bx"[..], b"\x1B[\0A", b"\x1B[\xE4A", b"\x1B\x1B[A"] {
+            let typed = [keys, b"save\rok\r"].concat();
+            assert_eq!(
+                lines(&typed).0,
+                [Err(LineError::NotText), Ok("ok".into())],
+                "{keys:?}"
+            );
+        }
     }
 
     #[test]
@@ -159,7 +214,7 @@ mod tests {
             [
                 Err(LineError::TooLong),
                 Ok("ok".into()),
-                Err(LineError::NotAscii),
+                Err(LineError::NotText),
                 Ok("ok".into())
             ]
         );

@@ -40,13 +40,15 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
             views,
             targets,
             attitudes,
+            system,
+            source,
             frame,
             value,
             late,
         } = inputs;
         self.out
             .line(format_args!(
-                "inputs: {poses} poses, {views} of flow and range, {targets} of the pipe, {attitudes} attitudes; refused {frame} frame, {value} value, {late} late"
+                "inputs: {poses} poses, {views} of flow and range, {targets} of the pipe, {attitudes} attitudes; refused {system} system, {source} source, {frame} frame, {value} value, {late} late"
             ))
             .await;
     }

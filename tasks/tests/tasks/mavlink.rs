@@ -75,6 +75,18 @@ pub fn frames_of(bytes: &[u8]) -> Vec<(u32, Vec<u8>)> {
     frames
 }
 
+/// A frame of `message` from `component` of `system`.
+fn frame_by<M: MessageData>(system_id: u8, component_id: u8, message: &M) -> Vec<u8> {
+    let mut raw = MAVLinkV2MessageRaw::new();
+    let header = MavHeader {
+        system_id: system_id.into(),
+        component_id,
+        sequence: 0,
+    };
+    raw.serialize_message_data(header, message);
+    raw.raw_bytes().to_vec()
+}
+
 /// The task on a line, at rest or in flight.
 struct Bench {
     rig: Rig,
@@ -168,14 +180,7 @@ impl Bench {
     }
 
     fn say<M: MessageData>(&mut self, message: &M) {
-        let mut raw = MAVLinkV2MessageRaw::new();
-        let header = MavHeader {
-            system_id: 255,
-            component_id: 190,
-            sequence: 0,
-        };
-        raw.serialize_message_data(header, message);
-        self.line.put(raw.raw_bytes());
+        self.line.put(&frame_by(255, 190, message));
     }
 
     fn set_infill(&mut self, param_value: f32) {
@@ -373,13 +378,14 @@ fn poses_and_attitudes_from_outside_are_published_and_grow_old() {
         child_frame_id: 12,
         ..Default::default()
     };
-    bench.say(&pose);
+    bench.line.put(&frame_by(1, 197, &pose));
     bench.say(&SET_ATTITUDE_TARGET_DATA {
         thrust: 0.5,
         type_mask: 7 + 128,
         ..Default::default()
     });
-    bench.say(&ODOMETRY_DATA { x: f32::NAN, ..pose });
+    let broken = ODOMETRY_DATA { x: f32::NAN, ..pose };
+    bench.line.put(&frame_by(1, 197, &broken));
     bench.run(40);
     let links = bench.rig.links;
     let seen = links.external_pose.latest().unwrap();
@@ -392,6 +398,37 @@ fn poses_and_attitudes_from_outside_are_published_and_grow_old() {
     assert!(links.external_pose.fresh().is_none() && links.offboard.fresh().is_some());
     bench.run(400);
     assert!(links.offboard.fresh().is_none());
+}
+
+#[test]
+fn an_input_has_one_source_and_its_sender_one_clock_whatever_the_line() {
+    let mut bench = Bench::in_mode(Mode::Flight);
+    bench.run(1000);
+    let pose = |time_usec| ODOMETRY_DATA {
+        time_usec,
+        q: [1.0, 0.0, 0.0, 0.0],
+        frame_id: 1,
+        child_frame_id: 12,
+        ..Default::default()
+    };
+    let counts = |bench: &Bench| bench.rig.links.mavlink.fresh().unwrap().inputs;
+    bench.line.put(&frame_by(1, 197, &pose(990_000)));
+    bench.run(40);
+    // Another source on the other line, and the same message on both, as a router sends it.
+    bench.second.line.put(&frame_by(1, 198, &pose(1_030_000)));
+    bench.second.line.put(&frame_by(1, 197, &pose(990_000)));
+    bench.run(40);
+    let seen = counts(&bench);
+    assert_eq!((seen.poses, seen.source, seen.late), (1, 1, 1));
+    // The source may change its line.
+    bench.second.line.put(&frame_by(1, 197, &pose(1_060_000)));
+    bench.run(40);
+    assert_eq!(counts(&bench).poses, 2);
+    let latest = bench.rig.links.external_pose.latest().unwrap();
+    assert_eq!(latest.at.as_micros(), 1_060_000);
+    // Asked once a second, where it was heard.
+    let asked = |wire: &Wire| wire.frames().iter().filter(|(id, _)| *id == 111).count();
+    assert_eq!((asked(&bench.wire), asked(&bench.second.wire)), (1, 0));
 }
 
 #[test]

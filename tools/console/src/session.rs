@@ -9,6 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use sophie_mavlink::signing::Key;
+use sophie_tasks::console::NOT_TEXT;
 
 use crate::Failure;
 use crate::port::{BAUD, PortName, Wire};
@@ -125,6 +126,11 @@ impl Session {
     /// # Errors
     /// One line: the line is lost, or the board does not answer.
     pub fn command(&mut self, text: &str) -> Result<Vec<String>, Failure> {
+        // The console's own rule, kept here: what it refuses or takes for a blank does not come back as it was typed.
+        let text = &text.replace('\t', " ");
+        if !text.bytes().all(|byte| matches!(byte, b' '..=b'~')) {
+            return Ok(vec![NOT_TEXT.to_owned()]);
+        }
         for _ in 0..TRIES {
             self.begin(text)?;
             let turn = self.turn(text, &[])?;

@@ -11,6 +11,7 @@ use std::time::Duration;
 use sophie_console::parameters::{Version, version};
 use sophie_console::port::PortName;
 use sophie_console::session::Session;
+use sophie_tasks::console::NOT_TEXT;
 
 fn unknown(typed: &str) -> String {
     format!("no command '{typed}'; try 'help'\r\n")
@@ -62,6 +63,38 @@ fn a_session_outlives_a_restart_that_takes_its_port_away() {
     assert_eq!(answer, ["no command 'hello'; try 'help'"]);
     drop(session);
     board.join().unwrap();
+}
+
+#[test]
+fn a_command_keeps_to_the_console_s_rule_before_it_is_typed() {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let port: PortName = format!("tcp:{}", listener.local_addr().unwrap()).parse().unwrap();
+    let board = thread::spawn(move || {
+        let mut typed = Vec::new();
+        console(listener.accept().unwrap().0, |text| {
+            if text.is_empty() {
+                return String::new();
+            }
+            typed.push(text.to_owned());
+            unknown(text)
+        });
+        typed
+    });
+    let mut session = Session::open(&port, None, Duration::from_secs(5), Arc::default()).unwrap();
+    for pasted in [
+        "set infill 7\0.5",
+        "set infill 4\x1b[C.5",
+        "set infill 1\r0",
+        "set infill 10\u{a0}%",
+    ] {
+        assert_eq!(session.command(pasted), Ok(vec![NOT_TEXT.to_owned()]));
+    }
+    let answer = unknown("set infill 10").trim_end().to_owned();
+    assert_eq!(session.command("set infill\t10"), Ok(vec![answer]));
+    drop(session);
+    let typed = board.join().unwrap();
+    let sets: Vec<_> = typed.iter().filter(|line| line.starts_with("set")).collect();
+    assert_eq!(sets, ["set infill 10"]);
 }
 
 #[test]

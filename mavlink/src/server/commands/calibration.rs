@@ -10,7 +10,7 @@ use sophie_control::vector::Vec3;
 
 use super::super::Server;
 use super::super::answer::Answer;
-use super::whole;
+use super::{or_zero, whole};
 use crate::dialect::*;
 use crate::requests::{Command, Peer};
 use crate::vehicle::Vehicle;
@@ -61,7 +61,7 @@ impl Server {
         now: u64,
         vehicle: &Vehicle,
     ) -> Option<MavResult> {
-        let what = match command.params.map(whole) {
+        let what = match command.params.map(or_zero).map(whole) {
             [Some(0), Some(0), Some(0), Some(0), Some(0), Some(0), Some(0)] => {
                 if self.calibration.take().is_some() {
                     self.settle(MavResult::MAV_RESULT_CANCELLED);

@@ -5,10 +5,12 @@ use sophie_control::mode::Mode;
 
 use super::super::Server;
 use super::super::answer::Answer;
-use super::{Reply, whole};
+use super::{Reply, or_zero, whole};
 use crate::dialect::*;
 use crate::streams::{PERIOD_MIN_US, STREAMS};
 
+/// Longest interval, µs, 35 minutes: what MESSAGE_INTERVAL can say.
+const PERIOD_MAX_US: u32 = i32::MAX as u32;
 const NO_NUMBER: &str = "no message has that number";
 
 impl Server {
@@ -21,10 +23,10 @@ impl Server {
         };
         let period = match whole(interval) {
             Some(0) => stream.period_ms * 1000,
-            Some(period) if period >= PERIOD_MIN_US => period,
+            Some(period) if (PERIOD_MIN_US..=PERIOD_MAX_US).contains(&period) => period,
             // -1: no longer. A heartbeat is what the others know the vehicle by.
-            None if interval < 0.0 && id != HEARTBEAT_DATA::ID => 0,
-            _ => return self.deny("an interval is 20 ms or more, 0 or -1"),
+            None if whole(-interval) == Some(1) && id != HEARTBEAT_DATA::ID => 0,
+            _ => return self.deny("an interval is 20 ms to 35 min, 0 or -1"),
         };
         match self.schedule.set_period(id, period, now) {
             Some(()) => MavResult::MAV_RESULT_ACCEPTED,
@@ -53,7 +55,7 @@ impl Server {
         match id {
             AUTOPILOT_VERSION_DATA::ID => Answer::Version.into(),
             COMPONENT_METADATA_DATA::ID => Answer::Metadata.into(),
-            AVAILABLE_MODES_DATA::ID => match whole(index) {
+            AVAILABLE_MODES_DATA::ID => match whole(or_zero(index)) {
                 Some(0) => Answer::Mode { index: 1, all: true }.into(),
                 Some(index) if index as usize <= Mode::ALL.len() => Answer::Mode {
                     index: index as u8,

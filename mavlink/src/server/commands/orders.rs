@@ -6,7 +6,7 @@ use sophie_control::bench::{
 use sophie_control::remote::{RemoteOrder, RemoteRefusal, RemoteRequest};
 
 use super::super::Server;
-use super::whole;
+use super::{or_zero, whole};
 use crate::dialect::*;
 use crate::requests::{Command, Peer};
 use crate::vehicle::Vehicle;
@@ -106,7 +106,7 @@ impl Server {
 
     fn arm_disarm(&mut self, command: &Command, from: Peer, now: u64) -> Option<MavResult> {
         let [what, force, ..] = command.params;
-        let order = match (whole(what), whole(force) == Some(FORCED)) {
+        let order = match (whole(what), whole(or_zero(force)) == Some(FORCED)) {
             (Some(1), false) => RemoteOrder::Arm,
             (Some(1), true) => return Some(self.deny("no arming check can be forced")),
             (Some(0), false) => RemoteOrder::Disarm,
@@ -118,7 +118,7 @@ impl Server {
 
     fn gripper(&mut self, command: &Command, from: Peer, now: u64) -> Option<MavResult> {
         let [gripper, action, ..] = command.params;
-        let order = match (whole(gripper), whole(action)) {
+        let order = match (whole(or_zero(gripper)), whole(action)) {
             (Some(0 | 1), Some(0)) => RemoteOrder::Release,
             (Some(0 | 1), Some(1)) => RemoteOrder::Grab,
             _ => return Some(self.deny("gripper 1: 0 releases, 1 grabs")),
@@ -129,7 +129,7 @@ impl Server {
     fn motor_test(&mut self, command: &Command, from: Peer, now: u64) -> Option<MavResult> {
         let [motor, kind, percent, seconds, count, ..] = command.params;
         let one = whole(kind) == Some(MotorTestThrottleType::MOTOR_TEST_THROTTLE_PERCENT as u32)
-            && matches!(whole(count), Some(0 | 1));
+            && matches!(whole(or_zero(count)), Some(0 | 1));
         let (Some(rotor @ 1..=4), true) = (whole(motor), one) else {
             return Some(self.deny("motor 1 to 4, one, in percent"));
         };
@@ -138,7 +138,7 @@ impl Server {
         } else {
             BenchOrder::End
         };
-        // 0: as long as it may be. A number that is none is the same.
+        // 0, or not given: as long as it may be.
         let shorter = seconds > 0.0 && seconds < SPIN_TIME;
         let seconds = if shorter { seconds } else { SPIN_TIME };
         self.try_on_bench(command, from, now, Trial::new(order, now, seconds))
