@@ -62,7 +62,9 @@ pub async fn run(links: &Links) -> ! {
 /// Warning that does not affect the modes.
 fn warning(links: &Links, mode: Mode, limit: Option<SightLimit>) -> &'static str {
     let started = Warning::Restarted(links.start.cause);
-    if links.mix.fresh().is_some_and(|m| m.running && m.tilt_fault) {
+    if links.stack_is_scarce() {
+        Warning::Stack.text()
+    } else if links.mix.fresh().is_some_and(|m| m.running && m.tilt_fault) {
         Warning::ArmTilt.text()
     } else if mode.rotors_stand() && !started.text().is_empty() {
         started.text()

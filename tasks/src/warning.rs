@@ -7,6 +7,8 @@ use crate::start::StartCause;
 /// A warning, shown beside the mode when there is no reason.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Warning {
+    /// Less than a quarter of the processor's stack has stayed unused; an overflow stops the motors.
+    Stack,
     /// An arm's tilt is beyond its model's correction.
     ArmTilt,
     /// Cause of an unusual start of the board.
@@ -23,7 +25,8 @@ pub enum Warning {
 
 impl Warning {
     /// Every warning.
-    pub const ALL: [Self; 21] = [
+    pub const ALL: [Self; 22] = [
+        Self::Stack,
         Self::ArmTilt,
         Self::Restarted(StartCause::BrownOut),
         Self::Restarted(StartCause::Watchdog),
@@ -50,6 +53,7 @@ impl Warning {
     /// Text on the pilot's display; empty without cause.
     pub const fn text(self) -> &'static str {
         match self {
+            Self::Stack => "stack nearly full",
             Self::ArmTilt => "arm tilt beyond its model",
             Self::Restarted(cause) => cause.warning(),
             Self::Position(fault) => fault.text(),

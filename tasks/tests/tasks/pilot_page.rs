@@ -8,6 +8,7 @@ use sophie_tasks::warning::Warning;
 
 fn to_do(warning: Warning) -> &'static str {
     match warning {
+        Warning::Stack => "Land. Do not fly this image: report what `silicon` and the log say of its stack.",
         Warning::ArmTilt => {
             "Land; `infill`, `gain_k` and the arm's sensor ([calibration](calibration.md#arms))."
         }
