@@ -5,7 +5,7 @@ use sophie_drivers::dshot::{THROTTLE_MAX, THROTTLE_MIN};
 use sophie_drivers::dshot_decoder::{Decoder, LineError};
 
 /// Silence that stops the motor, ns (assumed; controllers differ between 0.1 and 0.5 s).
-const SILENCE: u64 = 250_000_000;
+pub const SILENCE: u64 = 250_000_000;
 
 /// Protocol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
