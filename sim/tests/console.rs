@@ -15,6 +15,7 @@ use sophie_tasks::deadline::TaskId;
 use sophie_tasks::links::{Links, Status};
 use sophie_tasks::mavlink::signing::Record;
 use sophie_tasks::ports::{AnalogFrame, Loaded, Look, PortError, SerialOutput, Storage, StorageError};
+use sophie_tasks::stack_use::StackUse;
 use sophie_tasks::{analog, clamp, commander, console, estimator, imu, parameters, servos};
 
 /// A terminal at 115,200 baud, or one that takes nothing.
@@ -576,12 +577,21 @@ fn the_whole_list_fits_its_lines_and_misspelt_commands_are_helped() {
 #[test]
 fn what_the_start_looked_at_is_a_table() {
     let mut bench = Bench::new(Params::default());
-    bench.chip = chip_at(0);
+    bench.chip = FakeChip {
+        stack: Some(StackUse {
+            bytes: 65_536,
+            start: 21_076,
+            flight: 49_160,
+        }),
+        ..chip_at(0)
+    };
     let mut bench = bench.fake_storage(Ok(())).0;
     assert_eq!(
         bench.types("silicon\r"),
         "silicon\n  flash wait states    5                            expected: 5\n\
-         * brown-out level      0                            expected: 3\n> "
+         * brown-out level      0                            expected: 3\n  \
+         stack at start-up    21076 of 65536 bytes         expected: a quarter left\n\
+         * stack since          49160 of 65536 bytes         expected: a quarter left\n> "
     );
 }
 

@@ -69,7 +69,9 @@ fn begin() -> (Beginning, Memory) {
     (Beginning { cause, start, kept }, memory)
 }
 
-/// The links, without messages. Called once.
+/// The links, without messages. Called once. Out of line: their 14 KiB are built on the stack, and the frame of `main`
+/// lies below the flight level while the tasks are spawned.
+#[inline(never)]
 fn links(params: Params, start: Start) -> &'static Links {
     LINKS.init_with(|| Links::starting(params, start))
 }

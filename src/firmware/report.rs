@@ -2,7 +2,7 @@
 //!
 //! At the start its duration and the chip's checks; a line at each change of state, reason, warning or hardware arming
 //! inhibit, and for each arm of a proven grip; each second the timing of every task and missed deadlines
-//! ([`super::timing`]); every ten seconds the stack depth.
+//! ([`super::timing`]), and the greatest stack depth where it has grown.
 
 use embassy_futures::select::{Either, select};
 use embassy_time::{Duration, Instant, Ticker};
@@ -12,13 +12,10 @@ use sophie_tasks::ports::Look;
 
 use super::grip::GripReport;
 use super::timing::TimingReport;
-use sophie_boards::stack;
 
 const PERIOD: Duration = Duration::from_millis(50);
 /// Polls per second, one for each task's timing and the chains', to avoid a burst.
 const SECOND: u32 = 20;
-/// Polls between two reports of the stack.
-const STACK_EVERY: u32 = 200;
 
 /// Logs each second and at each change; never returns.
 pub async fn run(links: &Links, looks: &[Look]) -> ! {
@@ -29,6 +26,7 @@ pub async fn run(links: &Links, looks: &[Look]) -> ! {
     let mut blocking = ArmingInhibits::NONE;
     let mut timing = TimingReport::default();
     let mut grip = GripReport::default();
+    let mut depth = 0;
     let mut round = 0u32;
     loop {
         // A missed deadline of the flight level is logged at once, but only one per poll.
@@ -50,14 +48,28 @@ pub async fn run(links: &Links, looks: &[Look]) -> ! {
         grip.look(links);
         hardware(links, &mut blocking);
         timing.second(links, round % SECOND);
-        if round.is_multiple_of(STACK_EVERY) {
-            let (size, free) = stack::size_and_free();
-            defmt::info!(
-                "stack: {=usize} of {=usize} bytes used at most",
-                size - free,
-                size
-            );
+        if round.is_multiple_of(SECOND) {
+            stack(links, &mut depth);
         }
+    }
+}
+
+/// Looks at the stack. By the first second every task has begun: that is the start-up's depth.
+fn stack(links: &Links, logged: &mut u32) {
+    let first = *logged == 0;
+    if first {
+        sophie_boards::stack::start_has_ended();
+    }
+    let used = sophie_boards::stack::stack_use();
+    if used.is_scarce() {
+        links.report_scarce_stack();
+    }
+    if first {
+        silicon(&used.at_start());
+    }
+    if used.flight > *logged {
+        *logged = used.flight;
+        silicon(&used.in_flight());
     }
 }
 

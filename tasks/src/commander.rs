@@ -66,7 +66,9 @@ fn warning(links: &Links, mode: Mode, limit: Option<SightLimit>) -> &'static str
         .attitude
         .fresh_to(Instant::now(), |a| a.clipped)
         .unwrap_or(false);
-    if clipped {
+    if links.stack_is_scarce() {
+        Warning::Stack.text()
+    } else if clipped {
         Warning::AccelClips.text()
     } else if links.mix.fresh().is_some_and(|m| m.running && m.tilt_fault) {
         Warning::ArmTilt.text()

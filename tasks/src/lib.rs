@@ -49,6 +49,7 @@ pub mod servos;
 pub mod shared;
 pub mod shell;
 pub mod silence;
+pub mod stack_use;
 pub mod start;
 pub mod storing;
 pub mod supervisor;

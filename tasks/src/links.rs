@@ -14,6 +14,7 @@
 //! ```
 
 use core::cell::{Cell, RefCell};
+use core::sync::atomic::{AtomicBool, Ordering};
 
 use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::signal::Signal;
@@ -343,6 +344,7 @@ macro_rules! links {
             timing: [Mutex<Raw, RefCell<Record>>; TaskId::COUNT],
             contact_chain: Mutex<Raw, RefCell<Record>>,
             hardware: Mutex<Raw, Cell<ArmingInhibits>>,
+            stack_scarce: AtomicBool,
         }
 
         impl Links {
@@ -369,6 +371,7 @@ macro_rules! links {
                         StartCause::BrownOut => ArmingInhibits::NONE.with(ArmingInhibit::BrownOut),
                         _ => ArmingInhibits::NONE,
                     })),
+                    stack_scarce: AtomicBool::new(false),
                 }
             }
         }
@@ -459,6 +462,16 @@ impl Links {
                 all.without(reason)
             });
         });
+    }
+
+    /// Whether less than its reserve has stayed unused of the stack. log -> commander.
+    pub fn stack_is_scarce(&self) -> bool {
+        self.stack_scarce.load(Ordering::Relaxed)
+    }
+
+    /// Reports it: until the restart, as the greatest depth stays.
+    pub fn report_scarce_stack(&self) {
+        self.stack_scarce.store(true, Ordering::Relaxed);
     }
 
     /// The bench as who wants to give an order sees it.

@@ -82,7 +82,30 @@ struct Link<'a, const N: usize> {
     due: [Signal<NoopRawMutex, ()>; N],
 }
 
-impl<const N: usize> Link<'_, N> {
+impl<'a, const N: usize> Link<'a, N> {
+    /// Out of line: what the servers are built from on the stack, twice their 3 KiB each, would be part of every poll.
+    #[inline(never)]
+    fn new(params: &Params, bytes_per_second: [u32; N], shell: &'a Shell, signing: Stored) -> Self {
+        let mut numbers = 0..;
+        let servers = bytes_per_second.map(|bytes_per_second| {
+            let number = numbers.next().unwrap_or_default();
+            Server::new(*params, bytes_per_second).numbered(number)
+        });
+        Self {
+            shared: RefCell::new(Shared {
+                servers,
+                common: Common {
+                    vehicle: Vehicle::default(),
+                    signing: Signing::new(signing),
+                    inputs: Inputs::new(params),
+                },
+            }),
+            shell,
+            at_the_shell: Cell::new(0),
+            due: [const { Signal::new() }; N],
+        }
+    }
+
     /// What `work` gives; `None` never comes, since no one else has it then.
     fn with<R>(&self, work: impl FnOnce(&mut Shared<N>) -> R) -> Option<R> {
         Some(work(&mut *self.shared.try_borrow_mut().ok()?))
@@ -149,24 +172,7 @@ pub async fn run<I: SerialInput, O: SerialOutput, const N: usize>(
     mut restart: impl FnMut(),
     signing: Stored,
 ) -> ! {
-    let mut numbers = 0..;
-    let servers = lines.bytes_per_second.map(|bytes_per_second| {
-        let number = numbers.next().unwrap_or_default();
-        Server::new(links.params, bytes_per_second).numbered(number)
-    });
-    let link = Link {
-        shared: RefCell::new(Shared {
-            servers,
-            common: Common {
-                vehicle: Vehicle::default(),
-                signing: Signing::new(signing),
-                inputs: Inputs::new(&links.params),
-            },
-        }),
-        shell,
-        at_the_shell: Cell::new(0),
-        due: [const { Signal::new() }; N],
-    };
+    let link = Link::new(&links.params, lines.bytes_per_second, shell, signing);
     let mut readers = lines.inputs.map(|input| Reader {
         input,
         bytes: [0; CHUNK],

@@ -13,6 +13,7 @@ use sophie_mavlink::signing::{Record, Stored};
 
 use crate::links::RcState;
 use crate::retained_state::Words;
+use crate::stack_use::StackUse;
 
 /// Why a port gave nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -280,6 +281,11 @@ pub trait Chip {
 
     /// What the start-up looked at.
     fn looks(&self) -> &[Look];
+
+    /// How deep its stack has been; `None` where that is not known.
+    fn stack(&self) -> Option<StackUse> {
+        None
+    }
 
     /// The supply voltage below which the chip is held in reset, V, once [`Self::set_brown_out`] has been done.
     fn brown_out_volts(&self) -> f32;

@@ -9,6 +9,8 @@ use crate::start::StartCause;
 pub enum Warning {
     /// The accelerometer is at its full scale.
     AccelClips,
+    /// Less than a quarter of the processor's stack has stayed unused; an overflow stops the motors.
+    Stack,
     /// An arm's tilt is beyond its model's correction.
     ArmTilt,
     /// Cause of an unusual start of the board.
@@ -25,8 +27,9 @@ pub enum Warning {
 
 impl Warning {
     /// Every warning.
-    pub const ALL: [Self; 22] = [
+    pub const ALL: [Self; 23] = [
         Self::AccelClips,
+        Self::Stack,
         Self::ArmTilt,
         Self::Restarted(StartCause::BrownOut),
         Self::Restarted(StartCause::Watchdog),
@@ -54,6 +57,7 @@ impl Warning {
     pub const fn text(self) -> &'static str {
         match self {
             Self::AccelClips => "vibration: accelerometer clips",
+            Self::Stack => "stack nearly full",
             Self::ArmTilt => "arm tilt beyond its model",
             Self::Restarted(cause) => cause.warning(),
             Self::Position(fault) => fault.text(),

@@ -11,6 +11,14 @@ pub struct Sectors {
     pub size: u64,
 }
 
+/// A memory of the chip.
+#[derive(Clone, Copy, Debug)]
+pub struct Bank {
+    /// First address.
+    pub start: u64,
+    pub end: u64,
+}
+
 /// The chip maker's USB loader.
 #[derive(Clone, Copy)]
 pub enum UsbLoader {
@@ -35,6 +43,8 @@ pub struct Board {
     pub flash: &'static [Sectors],
     /// The chip's own loader, without a probe.
     pub usb_loader: UsbLoader,
+    /// Memories for data.
+    pub banks: &'static [Bank],
     /// Memories of DMA1 and DMA2: first address and end.
     pub dma_reaches: &'static [(u64, u64)],
     /// Memory retained across resets: first address and end.
@@ -57,6 +67,13 @@ pub const BOARDS: [Board; 3] = [
         usb_loader: UsbLoader::Enter(
             "type `dfu` at its console, or hold its button BOOT while plugging USB in",
         ),
+        // DTCM, AXI SRAM, SRAM1 to SRAM3, SRAM4 (RM0433 §2.3).
+        banks: &[
+            bank(0x2000_0000, 128),
+            bank(0x2400_0000, 512),
+            bank(0x3000_0000, 288),
+            bank(0x3800_0000, 64),
+        ],
         // AXI SRAM, SRAM1 to SRAM3 (RM0433 §2.1); not the tightly coupled memories.
         dma_reaches: &[(0x2400_0000, 0x2408_0000), (0x3000_0000, 0x3004_8000)],
         // DTCM: its error correction works on 32-bit words, as written.
@@ -73,6 +90,8 @@ pub const BOARDS: [Board; 3] = [
         flash: &[sectors(4, 32), sectors(1, 128), sectors(7, 256)],
         // FMUv5 is flashed over USB by a loader in flash: it has no button for BOOT0, and its case leads the pin nowhere.
         usb_loader: UsbLoader::ByFirmware("type `dfu` at its console, where this firmware runs by a probe"),
+        // DTCM, SRAM1 and SRAM2 (RM0410 §2.3).
+        banks: &[bank(0x2000_0000, 128), bank(0x2002_0000, 384)],
         // DTCM, never cached; the data cache is on and caches the DMA's other memories, SRAM1 and SRAM2 (RM0410 §2.1).
         dma_reaches: &[(0x2000_0000, 0x2002_0000)],
         // DTCM.
@@ -91,6 +110,8 @@ pub const BOARDS: [Board; 3] = [
         usb_loader: UsbLoader::Enter(
             "type `dfu` at its console, or take BOOT0 to 3.3 V while plugging USB (PA11, PA12) in",
         ),
+        // Core-coupled memory; SRAM1 and SRAM2 (RM0090 §2.3.1).
+        banks: &[bank(0x1000_0000, 64), bank(0x2000_0000, 128)],
         // SRAM1 and SRAM2 (RM0090 §2.1), not the core-coupled memory.
         dma_reaches: &[(0x2000_0000, 0x2002_0000)],
         // SRAM2's end.
@@ -103,6 +124,13 @@ const fn sectors(count: u64, kib: u64) -> Sectors {
     Sectors {
         count,
         size: kib * 1024,
+    }
+}
+
+const fn bank(start: u64, kib: u64) -> Bank {
+    Bank {
+        start,
+        end: start + kib * 1024,
     }
 }
 

@@ -133,8 +133,6 @@ fn table(boards: &[(&Board, Shares)]) -> String {
 
 #[cfg(test)]
 mod tests {
-    use std::collections::HashMap;
-
     use super::*;
     use crate::boards::BOARDS;
 
@@ -197,8 +195,7 @@ mod tests {
                 symbol("_ZN4beta5twice17h0123456789abcdefE", 0x104, 20),
                 symbol("_ZN4beta3run17h0123456789abcdefE", 0x130, 32),
             ],
-            symbols: HashMap::new(),
-            vectors: Vec::new(),
+            ..Image::default()
         }
     }
 
@@ -206,8 +203,7 @@ mod tests {
     fn every_byte_has_one_owner() {
         let sizes = |flash| Sizes {
             flash,
-            ram: 0,
-            stack: 0,
+            ..Sizes::default()
         };
         let shares = shares(&image(), &sizes(128)).unwrap();
         // 4 before, 24 between, 16 up to the section's end; constants overlap by 8.

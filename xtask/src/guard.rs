@@ -41,16 +41,11 @@ mod tests {
 
     fn image(symbols: &[&str]) -> Image {
         Image {
-            entry: 0,
-            sections: Vec::new(),
-            loads: Vec::new(),
-            statics: Vec::new(),
-            functions: Vec::new(),
             symbols: symbols
                 .iter()
                 .map(|name| (name.to_string(), 0))
                 .collect::<HashMap<_, _>>(),
-            vectors: Vec::new(),
+            ..Image::default()
         }
     }
 

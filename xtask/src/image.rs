@@ -1,6 +1,6 @@
 //! ELF contents for the checks.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
 use object::read::elf::{ElfFile32, ProgramHeader};
@@ -36,6 +36,7 @@ pub struct Static {
     pub size: u64,
 }
 
+#[derive(Default)]
 pub struct Image {
     /// Address of the first instruction.
     pub entry: u64,
@@ -45,6 +46,8 @@ pub struct Image {
     pub functions: Vec<Static>,
     /// Addresses of all named symbols.
     pub symbols: HashMap<String, u64>,
+    /// Where code (true) or constants between it (false) begin, as the assembler marks them.
+    pub code: BTreeMap<u64, bool>,
     /// Words of the vector table.
     pub vectors: Vec<u32>,
 }
@@ -53,6 +56,7 @@ pub struct Image {
 struct Symbols {
     statics: Vec<Static>,
     functions: Vec<Static>,
+    code: BTreeMap<u64, bool>,
     addresses: HashMap<String, u64>,
 }
 
@@ -76,6 +80,15 @@ impl Symbols {
                     address: symbol.address() & !1,
                     size: symbol.size(),
                 });
+            }
+            // Mapping symbols of the Arm ELF: `$t`, `$d`, and either with a suffix.
+            if let Some(of_code) = match name.get(..2) {
+                Some("$t") => Some(true),
+                Some("$d") => Some(false),
+                _ => None,
+            } && sections.iter().any(on_chip)
+            {
+                symbols.code.insert(symbol.address(), of_code);
             }
             symbols.addresses.insert(name.to_string(), symbol.address());
         }
@@ -127,6 +140,7 @@ impl Image {
         let Symbols {
             statics,
             functions,
+            code,
             addresses,
         } = Symbols::of(&file, &sections);
         Ok(Self {
@@ -136,6 +150,7 @@ impl Image {
             statics,
             functions,
             symbols: addresses,
+            code,
             vectors: words.iter().map(|word| u32::from_le_bytes(*word)).collect(),
         })
     }
@@ -147,6 +162,20 @@ impl Image {
             let bytes = load.bytes.get(offset..offset + 4)?;
             Some(u32::from_le_bytes(bytes.try_into().ok()?))
         })
+    }
+
+    /// The halfword that flashing writes to `address`; erased flash where nothing is written.
+    pub fn halfword(&self, address: u64) -> u16 {
+        let word = self.word(address & !3).unwrap_or(u32::MAX);
+        (if address & 2 == 0 { word } else { word >> 16 }) as u16
+    }
+
+    /// Whether code is at `address`, and no constants.
+    pub fn is_code(&self, address: u64) -> bool {
+        self.code
+            .range(..=address)
+            .next_back()
+            .is_none_or(|(_, code)| *code)
     }
 
     /// What tells this image from every other, as the firmware has it of itself.

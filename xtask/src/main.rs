@@ -20,6 +20,7 @@ mod params;
 mod retained;
 mod rig;
 mod sizes;
+mod stack;
 mod toolchain;
 mod tools;
 mod vectors;
@@ -258,6 +259,8 @@ fn ended(board: &Board, status: Result<ExitCode, Error>) -> ExitCode {
 fn firmware(board: &Board, variant: Variant) -> Result<(PathBuf, image::Image), Error> {
     let elf = build::firmware(board, variant)?;
     let image = check(board, &elf)?;
+    let [stack, usb] = [sizes::stack(&image)?, stack::usb(&image)?];
+    eprintln!("stack: {stack} bytes, of which USB's handlers take {usb} at most");
     eprintln!("build {:08x}, as 'version' at the console has it", image.build()?);
     Ok((elf, image))
 }
@@ -266,6 +269,7 @@ fn firmware(board: &Board, variant: Variant) -> Result<(PathBuf, image::Image), 
 fn check(board: &Board, elf: &Path) -> Result<image::Image, Error> {
     let image = image::Image::read(elf)?;
     let vectors = vectors::check(board, &image)?;
+    stack::check(board, &image)?;
     let buffers = dma::check(board, &image)?;
     eprintln!("vector table: {vectors} handlers, levels and reset in place");
     let outlives = retained::check(board, &image)?;
@@ -285,7 +289,7 @@ fn all_sizes(tighten: bool) -> Result<(), Error> {
     let (mut rows, mut shares) = (Vec::new(), Vec::new());
     for board in &BOARDS {
         let (_, image) = firmware(board, Variant::Plain)?;
-        let sizes = sizes::Sizes::of(&image)?;
+        let sizes = sizes::Sizes::of(board, &image)?;
         shares.push((board, crates::shares(&image, &sizes)?));
         rows.push((board, sizes));
     }

@@ -53,7 +53,6 @@ mod tests {
             ("__edata", 0),
         ];
         let image = Image {
-            entry: 0,
             sections: vec![Section {
                 name: SECTION.into(),
                 address,
@@ -61,11 +60,8 @@ mod tests {
                 in_image,
                 writable: true,
             }],
-            loads: Vec::new(),
-            statics: Vec::new(),
-            functions: Vec::new(),
             symbols: symbols.map(|(name, at)| (name.to_string(), at)).into(),
-            vectors: Vec::new(),
+            ..Image::default()
         };
         let board = boards::find("matek-h743").unwrap();
         check(board, &image).err().map(|e| e.to_string())

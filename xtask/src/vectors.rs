@@ -123,16 +123,12 @@ mod tests {
             .collect();
         let address = 0x0800_0100;
         Image {
-            entry: 0,
-            sections: Vec::new(),
             loads: vec![Load { address, bytes }],
-            statics: Vec::new(),
-            functions: Vec::new(),
             symbols: HashMap::from([
                 ("Reset".to_string(), 0x0800_0103),
                 ("__vector_table".to_string(), 0x0800_0000),
             ]),
-            vectors: Vec::new(),
+            ..Image::default()
         }
     }
 

@@ -1,13 +1,14 @@
 //! The chip: restart, option bytes, results of start-up checks.
 
 use sophie_tasks::ports::{Chip, Look, Looks, NotSet};
+use sophie_tasks::stack_use::StackUse;
 use static_cell::StaticCell;
 
 use super::loader::leave_for_loader;
 use super::options;
 use super::watchdog;
-use crate::cortex_m::image;
 use crate::cortex_m::restart::reset;
+use crate::cortex_m::{image, stack};
 use crate::{NAME, stop_motors};
 
 static LOOKS: StaticCell<Looks> = StaticCell::new();
@@ -52,6 +53,10 @@ impl Chip for ThisChip {
 
     fn looks(&self) -> &[Look] {
         self.looks
+    }
+
+    fn stack(&self) -> Option<StackUse> {
+        Some(stack::stack_use())
     }
 
     fn brown_out_volts(&self) -> f32 {

@@ -23,6 +23,7 @@ use uf_crsf::{CrsfParser, Packet};
 use crate::below::Module;
 use crate::elf::Firmware;
 use crate::emulator::{Emulator, Settings};
+use crate::esc::SILENCE;
 use crate::hands::Hands;
 use crate::log::{Line, Log};
 use crate::plan::Plan;
@@ -408,6 +409,11 @@ impl Aircraft for Bench<'_> {
     }
 
     fn motors(&self) -> PerArm<f64> {
+        let restarted = self.resets.last().map_or(f64::NEG_INFINITY, |(at, _)| *at);
+        // Over a reset the controllers hold their last command until they miss it: nothing asks for it.
+        if self.dead || self.pins.ms as f64 - restarted < SILENCE as f64 * 1e-6 {
+            return [0.0; 4];
+        }
         self.drives()
     }
 

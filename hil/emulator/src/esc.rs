@@ -6,7 +6,7 @@ use sophie_drivers::dshot_decoder::{Decoder, LineError};
 use sophie_sim::plant::esc::{EscSpec, ONESHOT125};
 
 /// Silence that stops the motor, ns (assumed; controllers differ between 0.1 and 0.5 s).
-const SILENCE: u64 = 250_000_000;
+pub const SILENCE: u64 = 250_000_000;
 
 /// Standard pulses that a controller takes for a signal, µs (AM32; SimonK up to 2200).
 const SIGNAL: std::ops::RangeInclusive<f64> = 800.0..=2200.0;

@@ -238,6 +238,7 @@ fn summary(args: &Args, flight: &Flight) -> serde_json::Value {
     let board = &flight.board;
     let run = &board.run;
     let intervals = run.escs.iter().filter_map(|esc| esc.interval);
+    let stack = silicon::stack_use(&board.lines);
     let longest = intervals.map(|[_, longest]| longest).max().unwrap_or(0);
     serde_json::json!({
         "board": args.board,
@@ -255,7 +256,10 @@ fn summary(args: &Args, flight: &Flight) -> serde_json::Value {
         "overruns": board.overruns,
         "flash_erases": run.erases.iter().map(|(sector, times)| (format!("{sector:#010x}"), times)).collect::<BTreeMap<_, _>>(),
         "resets": board.resets.iter().map(|(ms, why)| serde_json::json!({"t_s": ms * 1e-3, "cause": why})).collect::<Vec<_>>(),
-        "silicon": board.lines.iter().filter_map(|line| silicon::parse(&line.text)).collect::<Vec<_>>(),
+        "silicon": silicon::rows(&board.lines),
+        "stack_bytes": stack.map(|s| s.bytes),
+        "stack_start": stack.map(|s| s.start),
+        "stack_flight": stack.map(|s| s.flight),
         "log_lines": board.lines.len(),
         "log_malformed": board.malformed,
         "gaps_allowed": run.gaps.len() - flight.gaps.len(),

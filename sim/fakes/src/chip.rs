@@ -4,6 +4,7 @@ use std::cell::Cell;
 use std::rc::Rc;
 
 use sophie_tasks::ports::{Chip, Look, NotSet};
+use sophie_tasks::stack_use::StackUse;
 
 /// A chip that counts its restarts and may refuse its brown-out level.
 #[derive(Clone, Default)]
@@ -16,6 +17,8 @@ pub struct FakeChip {
     pub refuses: bool,
     /// What the start-up looked at.
     pub looks: Vec<Look>,
+    /// How deep its stack has been.
+    pub stack: Option<StackUse>,
 }
 
 impl Chip for FakeChip {
@@ -35,6 +38,10 @@ impl Chip for FakeChip {
 
     fn looks(&self) -> &[Look] {
         &self.looks
+    }
+
+    fn stack(&self) -> Option<StackUse> {
+        self.stack
     }
 
     fn brown_out_volts(&self) -> f32 {

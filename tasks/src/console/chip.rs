@@ -7,15 +7,16 @@ use crate::ports::{Chip, Look, SerialInput, SerialOutput, Storage};
 use sophie_control::decimal::Decimal;
 
 impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, C> {
-    /// What the start-up looked at: name, what was read, what is expected.
+    /// What the start-up looked at, and how deep the stack has been: name, what was read, what is expected.
     pub(super) async fn silicon(&mut self) {
+        let stack = self.chip.stack().map(|used| [used.at_start(), used.in_flight()]);
         for Look {
             name,
             read,
             expected,
             ok,
             ..
-        } in self.chip.looks()
+        } in self.chip.looks().iter().chain(stack.iter().flatten())
         {
             let mark = if *ok { ' ' } else { '*' };
             self.out

@@ -276,6 +276,11 @@ fn what_must_be_known_is_said_where_it_matters() {
         bench.run(20);
         assert_eq!(bench.warning(), warning, "{running} {tilt_fault}");
     }
+    // Above all others: an overflow stops the motors.
+    bench.world.mix.running = true;
+    bench.rig.links.report_scarce_stack();
+    bench.run(20);
+    assert_eq!(bench.warning(), "stack nearly full");
 }
 
 #[test]

@@ -11,6 +11,7 @@ fn to_do(warning: Warning) -> &'static str {
         Warning::AccelClips => {
             "It reads no further than `imu_accel_range`, and its attitude is the gyro's alone. Land; look for a bent propeller, a loose motor or board ([limits](sensors.md#what-an-inertial-sensor-can-lie-about))."
         }
+        Warning::Stack => "Land. Do not fly this image: report what `silicon` and the log say of its stack.",
         Warning::ArmTilt => {
             "Land; `infill`, `gain_k` and the arm's sensor ([calibration](calibration.md#arms))."
         }

@@ -80,10 +80,6 @@ pub fn cycles() -> Result<(), Error> {
 fn execute(core: &Core, elf: &Path) -> Result<Sum, Error> {
     let image = Image::read(elf)?;
     let stages = stages(&image)?;
-    let halfword = |at: u64| {
-        let word = image.word(at & !3).unwrap_or_default();
-        (if at & 2 == 0 { word } else { word >> 16 }) as u16
-    };
     let mut command = qemu::command(core, elf);
     command.args(["-singlestep", "-d", "exec,nochain"]);
     command.stdout(Stdio::null()).stderr(Stdio::piped());
@@ -100,7 +96,7 @@ fn execute(core: &Core, elf: &Path) -> Result<Sum, Error> {
         let Some(at) = address(&line?) else { continue };
         let instruction = *decoded
             .entry(at)
-            .or_insert_with(|| Instruction::of(halfword(at), halfword(at + 2)));
+            .or_insert_with(|| Instruction::of(image.halfword(at), image.halfword(at + 2)));
         if let Some((from, earlier)) = before {
             let next = from + earlier.bytes;
             if inside.is_some() && steps > REST {

@@ -22,6 +22,7 @@ mod parameters;
 mod pulses;
 mod script;
 mod silicon;
+mod stack;
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
