@@ -385,11 +385,13 @@ fn picture(links: &Links, reels: &PerArm<Reel>) -> Vehicle {
         sticks: links.rc.fresh().map(|rc| rc.sticks),
         battery: links.battery.fresh(),
         capacity: links.params.battery_capacity,
+        servo_battery: links.servo_battery.fresh(),
         motors: links.mix.fresh().map(|mix| mix.commands),
         servos: angles.map(|angles| {
             let mut pulses = angles;
-            for (pulse, reel) in pulses.iter_mut().zip(reels) {
-                *pulse = reel.pulse(*pulse);
+            for (servo, (pulse, reel)) in pulses.iter_mut().zip(reels).enumerate() {
+                let marked = links.params.servo_marks.has(servo);
+                *pulse = if marked { reel.pulse(*pulse) } else { 0.0 };
             }
             pulses
         }),

@@ -1,5 +1,7 @@
 //! Warnings to the pilot that do not affect the modes.
 
+use sophie_control::arming::ArmingInhibit;
+use sophie_control::battery::ServoSupply;
 use sophie_control::position::{Fault, PoseFault, PressureFault, SightFault, SightLimit};
 
 use crate::start::StartCause;
@@ -9,6 +11,8 @@ use crate::start::StartCause;
 pub enum Warning {
     /// An arm's tilt is beyond its model's correction.
     ArmTilt,
+    /// The servo battery nears its end, is there or cannot be read.
+    Servos(ServoSupply),
     /// Cause of an unusual start of the board.
     Restarted(StartCause),
     /// Pose, flow, range or air pressure is left out as faulty.
@@ -23,8 +27,11 @@ pub enum Warning {
 
 impl Warning {
     /// Every warning.
-    pub const ALL: [Self; 21] = [
+    pub const ALL: [Self; 24] = [
         Self::ArmTilt,
+        Self::Servos(ServoSupply::NearEnd),
+        Self::Servos(ServoSupply::Low),
+        Self::Servos(ServoSupply::Silent),
         Self::Restarted(StartCause::BrownOut),
         Self::Restarted(StartCause::Watchdog),
         Self::Restarted(StartCause::Fault),
@@ -51,6 +58,10 @@ impl Warning {
     pub const fn text(self) -> &'static str {
         match self {
             Self::ArmTilt => "arm tilt beyond its model",
+            Self::Servos(ServoSupply::NearEnd) => "servo battery near its end",
+            Self::Servos(ServoSupply::Low) => ArmingInhibit::ServoBatteryLow.text(),
+            Self::Servos(ServoSupply::Silent) => ArmingInhibit::ServoBatterySilent.text(),
+            Self::Servos(ServoSupply::NotFitted | ServoSupply::Good) => "",
             Self::Restarted(cause) => cause.warning(),
             Self::Position(fault) => fault.text(),
             Self::Limit(limit) => limit.text(),

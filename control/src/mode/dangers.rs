@@ -6,7 +6,7 @@
 //! | radio lost | stop | level, over one place if that is known, sink, stop on what carries | keep closing, keep the grip |
 //! | inertial sensor silent | stop | stop | stop, arms stay closed |
 //! | tipped over | stop | stop | stop, arms stay closed |
-//! | battery critical | - | sink, the pilot still steers | reported; release refused |
+//! | battery critical, or not measured | - | sink, the pilot still steers | reported; release refused |
 //! | data-ready line silent | stop | sink, the pilot still steers | reported; release refused |
 
 use super::{Inputs, Reason};
@@ -21,7 +21,9 @@ pub const IMU_LOST_TIME: f32 = 0.05;
 pub const TIPPED_TILT: f32 = deg(100.0);
 /// Time beyond [`TIPPED_TILT`], s.
 pub const TIPPED_TIME: f32 = 0.5;
-/// Time below the critical voltage, s: longer than a gust's current peak.
+/// Time below the critical voltage, or without a fresh one, s: longer than a gust's current peak. A battery that
+/// is no longer measured lands the vehicle 1.5 s after its last voltage, 0.5 s of it by the link's limit; a flight of ten
+/// minutes draws 0.25 % of the charge meanwhile.
 pub const BATTERY_TIME: f32 = 1.0;
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -29,6 +31,8 @@ pub struct Dangers {
     imu: Held,
     tipped: Held,
     battery: Held,
+    /// No fresh voltage: the guard is blind, and what it guards counts as lost.
+    battery_blind: bool,
     /// Set by the port after its own delay.
     line_silent: bool,
 }
@@ -42,7 +46,8 @@ impl Dangers {
             .is_some_and(|m| m.q.down_in_body().z < crate::math::cos(TIPPED_TILT));
         self.tipped.step(tipped, dt);
         self.battery
-            .step(i.battery.is_some_and(|v| v < p.battery_critical), dt);
+            .step(i.battery.is_none_or(|v| v < p.battery_critical), dt);
+        self.battery_blind = i.battery.is_none();
         self.line_silent = i.hardware.contains(ArmingInhibit::ImuLineSilent);
     }
 
@@ -54,8 +59,19 @@ impl Dangers {
         self.tipped.time() >= TIPPED_TIME
     }
 
+    /// The battery is at its end, or no one can say.
     pub fn battery_critical(&self) -> bool {
-        self.battery.time() >= BATTERY_TIME
+        self.battery().is_some()
+    }
+
+    /// What is wrong with the battery.
+    pub fn battery(&self) -> Option<Reason> {
+        let why = if self.battery_blind {
+            Reason::BATTERY_SILENT
+        } else {
+            Reason::BatteryCritical
+        };
+        (self.battery.time() >= BATTERY_TIME).then_some(why)
     }
 
     pub fn line_silent(&self) -> bool {
@@ -64,12 +80,7 @@ impl Dangers {
 
     /// Reason to land under the sticks, or not to leave a pipe, by priority.
     pub fn landing(&self) -> Option<Reason> {
-        if self.battery_critical() {
-            Some(Reason::BatteryCritical)
-        } else if self.line_silent {
-            Some(Reason::LINE_SILENT)
-        } else {
-            None
-        }
+        let line = self.line_silent.then_some(Reason::LINE_SILENT);
+        self.battery().or(line)
     }
 }
