@@ -6,7 +6,7 @@ use std::fmt::Write;
 const BOARDS: [&str; 3] = ["matek-h743", "cuav-v5", "f405"];
 
 /// What hangs on the board, and the resources of its file that carry it.
-const SIGNALS: [(&str, &[&str]); 17] = [
+const SIGNALS: [(&str, &[&str]); 18] = [
     (
         "motors 1 to 4",
         &[
@@ -42,6 +42,7 @@ const SIGNALS: [(&str, &[&str]); 17] = [
         "battery: voltage, current",
         &["analog.battery_voltage", "analog.battery_current"],
     ),
+    ("servo battery: voltage", &["analog.servo_battery"]),
     ("buzzer", &["lights.buzzer"]),
 ];
 
@@ -72,6 +73,7 @@ fn pad(board: &str, pin: &str) -> Option<&'static str> {
         ("matek-h743", "PA10") => "RX1",
         ("matek-h743", "PA9") => "TX1",
         ("matek-h743", "PC0" | "PC1" | "PA11" | "PA12") => "on board",
+        ("matek-h743", "PA4") => "VB2",
         ("matek-h743", "PA15") => "BZ-",
         ("cuav-v5", "PE9") => "AUX 4",
         ("cuav-v5", "PE11") => "AUX 3",
@@ -84,6 +86,7 @@ fn pad(board: &str, pin: &str) -> Option<&'static str> {
         ("cuav-v5", "PC4") => "ADC",
         ("cuav-v5", "PA5") => "CAP1",
         ("cuav-v5", "PB0") => "RSSI",
+        ("cuav-v5", "PA2") => "POWER2 voltage",
         ("cuav-v5", "PA3") => "POWER2 current",
         ("cuav-v5", "PB8" | "PB9") => "GPS",
         ("cuav-v5", "PF1" | "PF0") => "I2C2",

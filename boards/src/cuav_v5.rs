@@ -7,7 +7,7 @@
 //! | servos 1 and 2, 3 and 4 | TIM4, TIM12 | none | AUX 5 and 6, 7 and 8 |
 //! | arm sensors 1 and 2, 3 and 4 | I2C1, I2C2 | DMA1 0 and 6, 2 and 7 | GPS, I2C2 |
 //! | barometer, MS5611 | SPI4 | none | on board |
-//! | pressure 1 to 4, battery | ADC1 | DMA2 4 | ADC (PC4), CAP1 (PA5), RSSI (PB0), POWER2 current (PA3); POWER1 |
+//! | pressure 1 to 4, battery, servo battery | ADC1 | DMA2 4 | ADC (PC4), CAP1 (PA5), RSSI (PB0), POWER2 current (PA3); POWER1; POWER2 voltage (PA2) |
 //! | receiver | USART3 | DMA1 1 and 3 | TELEM2 |
 //! | console | UART7 | none | FMU debug |
 //! | MAVLink | USART2 | none | TELEM1 |
@@ -197,6 +197,7 @@ assign_resources! {
         fsr_4: PA3,
         battery_voltage: PA0,
         battery_current: PA1,
+        servo_battery: PA2,
         dma: DMA2_CH4,
     }
     receiver: ReceiverParts {
@@ -402,6 +403,7 @@ fn analog(p: AnalogParts) -> AnalogPort {
         p.fsr_4.degrade_adc(),
         p.battery_voltage.degrade_adc(),
         p.battery_current.degrade_adc(),
+        p.servo_battery.degrade_adc(),
     ];
     AnalogInputs::new(p.adc, channels, p.dma, Irqs)
 }

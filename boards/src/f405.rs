@@ -7,7 +7,7 @@
 //! | motors 1 to 4 | TIM8 | DMA2 1 | PC6, PC7, PC8, PC9 |
 //! | servos 1 and 2, 3 and 4 | TIM4, TIM12 | none | PB6, PB7; PB14, PB15 |
 //! | arm sensors 1 and 2, 3 and 4 | I2C1, I2C2 | DMA1 0 and 6, 2 and 7 | PB8 PB9, PB10 PB11 |
-//! | pressure 1 to 4, battery | ADC1 | DMA2 4 | PC0 to PC3; PA0 voltage, PA1 current |
+//! | pressure 1 to 4, battery, servo battery | ADC1 | DMA2 4 | PC0 to PC3; PA0 voltage, PA1 current; PB0 |
 //! | receiver | USART1 | DMA2 5 and 7 | PA10 in, PA9 out |
 //! | console | USART2 | none | PA3 in, PA2 out |
 //! | MAVLink | USART3 | none | PC11 in, PC10 out |
@@ -168,6 +168,7 @@ assign_resources! {
         fsr_4: PC3,
         battery_voltage: PA0,
         battery_current: PA1,
+        servo_battery: PB0,
         dma: DMA2_CH4,
     }
     receiver: ReceiverParts {
@@ -336,6 +337,7 @@ fn analog(p: AnalogParts) -> AnalogPort {
         p.fsr_4.degrade_adc(),
         p.battery_voltage.degrade_adc(),
         p.battery_current.degrade_adc(),
+        p.servo_battery.degrade_adc(),
     ];
     AnalogInputs::new(p.adc, channels, p.dma, Irqs)
 }

@@ -7,7 +7,7 @@
 //! | servos 1 to 4 | TIM5 | none | S3, S4, S5, S6 |
 //! | arm sensors 1 and 2, 3 and 4 | I2C1, I2C2 | DMA1 1 to 4 | CL1 DA1, CL2 DA2 |
 //! | barometer, DPS310 | I2C2, with arm sensors 3 and 4 | DMA1 3 and 4 | on board |
-//! | pressure 1 to 4, battery | ADC1 | DMA2 4 | S1, S2, RSSI, CU2; on board |
+//! | pressure 1 to 4, battery, servo battery | ADC1 | DMA2 4 | S1, S2, RSSI, CU2; on board; VB2 |
 //! | receiver | USART6 | DMA2 0 and 1 | RX6, TX6 |
 //! | console | UART7 | none | RX7, TX7 |
 //! | MAVLink | USART1 | none | RX1, TX1 |
@@ -175,6 +175,7 @@ assign_resources! {
         fsr_4: PA7,
         battery_voltage: PC0,
         battery_current: PC1,
+        servo_battery: PA4,
         dma: DMA2_CH4,
     }
     receiver: ReceiverParts {
@@ -359,6 +360,7 @@ fn analog(p: AnalogParts) -> AnalogPort {
         p.fsr_4.degrade_adc(),
         p.battery_voltage.degrade_adc(),
         p.battery_current.degrade_adc(),
+        p.servo_battery.degrade_adc(),
     ];
     AnalogInputs::new(p.adc, channels, p.dma, Irqs)
 }

@@ -83,8 +83,14 @@ arming_checks! {
     ArmsClosed = "arms closed", "perch switch on and off, until every arm is free; or a grip that holds";
     /// The vehicle leans by more than [`TILT_MAX`].
     TiltTooLarge = "tilt too large", "setting it upright";
-    /// The battery is below the warning voltage, or not measured.
+    /// No fresh voltage of the flight battery.
+    BatterySilent = "battery not measured", "the battery's input, when it reads a voltage";
+    /// The battery is below the warning voltage.
     BatteryLow = "battery low", "another battery";
+    /// No fresh voltage of the servo battery, which should be measured.
+    ServoBatterySilent = "servo battery not measured", "the servo battery's input, when it reads a voltage";
+    /// The servo battery is below its low voltage.
+    ServoBatteryLow = "servo battery low", "another servo battery";
     /// The analog inputs give nothing.
     AnalogSilent = "analog inputs silent", "the driver, when inputs answer";
     /// A pressure sensor of a chosen arm is faulty or silent.
@@ -97,6 +103,8 @@ arming_checks! {
     FsrRange3 = "pressure sensor 3: range too small", "a range that reaches the grip, at the next start";
     /// What the pressure sensor of arm 4 can read ends too near the grip pressure.
     FsrRange4 = "pressure sensor 4: range too small", "a range that reaches the grip, at the next start";
+    /// The marks of a servo have not been measured: where it stands, and what its arm is pulled by, is not known.
+    ServoUnmarked = "servo not calibrated", "`calibrate servo` for each, at the next start";
     /// The sensor on arm 1 gives nothing.
     ArmSensor1 = "arm sensor 1 silent", "the task `arms`, when the sensor answers";
     /// The sensor on arm 2 gives nothing.
@@ -199,7 +207,7 @@ impl Checks {
         let sticks = self.sticks.unwrap_or_default();
         // Written as "not good", so that a NaN refuses.
         let upright = self.cos_tilt.is_none_or(|c| c >= cos(TILT_MAX));
-        let charged = self.battery.is_some_and(|v| v >= params.battery_warning);
+        let charged = self.battery.is_none_or(|v| v >= params.battery_warning);
         let reasons = [
             (ArmingInhibit::RcLost, self.sticks.is_none()),
             (ArmingInhibit::ImuStale, self.cos_tilt.is_none()),
@@ -215,6 +223,7 @@ impl Checks {
             (ArmingInhibit::PerchSwitchOn, sticks.perch_switch),
             (ArmingInhibit::ArmsClosed, self.arms_closed),
             (ArmingInhibit::TiltTooLarge, !upright),
+            (ArmingInhibit::BatterySilent, self.battery.is_none()),
             (ArmingInhibit::BatteryLow, !charged),
             (ArmingInhibit::FsrFault, self.fsr_fault),
             (ArmingInhibit::Overruns, self.late),
@@ -290,7 +299,7 @@ mod tests {
             ),
             (|c, _| c.cos_tilt = Some(f32::NAN), ArmingInhibit::TiltTooLarge),
             (|c, _| c.battery = Some(13.5), ArmingInhibit::BatteryLow),
-            (|c, _| c.battery = None, ArmingInhibit::BatteryLow),
+            (|c, _| c.battery = None, ArmingInhibit::BatterySilent),
             (|_, s| s.perch_switch = true, ArmingInhibit::PerchSwitchOn),
             (|c, _| c.fsr_fault = true, ArmingInhibit::FsrFault),
             (|c, _| c.switch_seen_off = false, ArmingInhibit::SwitchOnAtPowerUp),

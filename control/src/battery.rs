@@ -1,11 +1,13 @@
-//! Flight battery from voltage and current.
+//! Flight battery from voltage and current, servo battery from its voltage.
 //!
-//! [`Monitor::step`] runs at 100 Hz in the task `analog` (V, A, s). After a missed reading thrusts are compensated for
-//! the last voltage; it is stale after 500 ms.
+//! [`Monitor::step`] runs at 100 Hz in the task `analog` (V, A, s). A voltage that is no measurement gives no message: the
+//! last one ages, is stale after 500 ms, and the vehicle lands a second later. Thrusts are compensated for the last voltage
+//! meanwhile. A current that is no measurement costs itself alone.
 
 use crate::filter::LowPass;
 use crate::math;
 use crate::params::Params;
+use crate::support::Held;
 
 /// Cut-off of the voltage, rad/s (2 Hz): between a manoeuvre's sag and the discharge.
 const VOLTAGE_CUTOFF: f32 = 12.6;
@@ -15,16 +17,26 @@ const CURRENT_CUTOFF: f32 = 12.6;
 const RATIO_BOUNDS: (f32, f32) = (0.7, 1.25);
 /// Largest plausible readings: V, A.
 const SANE: (f32, f32) = (60.0, 300.0);
+/// Counts from which a reading may be the rail that a torn lead floats to: full scale less the converter's total error
+/// (5 counts at most: STM32F405 and F765 datasheets, ADC accuracy).
+const RAIL_COUNTS: u16 = 4090;
+/// Time without a current after which the charge is no longer known, s: 2 % of the battery in hover.
+const UNCOUNTED_MAX: f32 = 10.0;
+
+/// The voltage (or current) of `counts` with `scale` for each; `None` at full scale, where it is that or more.
+pub fn reading(counts: u16, scale: f32) -> Option<f32> {
+    (counts < RAIL_COUNTS).then(|| f32::from(counts) * scale)
+}
 
 /// Measured state of the flight battery.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Battery {
     /// Voltage under load, V, low-passed.
     pub voltage: f32,
-    /// Current, A, low-passed.
-    pub current: f32,
-    /// Charge drawn since power-up, A·s.
-    pub used: f32,
+    /// Current, A, low-passed; `None` while its reading is no measurement.
+    pub current: Option<f32>,
+    /// Charge drawn since power-up, A·s; `None` once too much of it went uncounted.
+    pub used: Option<f32>,
     /// Voltage over nominal, bounded: compensates the thrust curve.
     pub ratio: f32,
 }
@@ -32,32 +44,55 @@ pub struct Battery {
 /// The battery's filters and counters.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Monitor {
-    filters: Option<(LowPass, LowPass)>,
+    voltage: Option<LowPass>,
+    /// Time since the last voltage, s.
+    unread: f32,
+    current: Option<LowPass>,
     used: f32,
     /// Charge not yet in `used`, A·s.
     fraction: f32,
+    /// Time without a current, s.
+    uncounted: f32,
 }
 
 impl Monitor {
-    /// Adds `voltage` V and `current` A, `dt` s after the last. Implausible values are ignored; `None` before the first
-    /// plausible ones.
-    pub fn step(&mut self, p: &Params, voltage: f32, current: f32, dt: f32) -> Option<Battery> {
+    /// Adds `voltage` V and `current` A, `dt` s after the last. `None` without a plausible voltage: what was measured
+    /// before is older than this step.
+    pub fn step(
+        &mut self,
+        p: &Params,
+        voltage: Option<f32>,
+        current: Option<f32>,
+        dt: f32,
+    ) -> Option<Battery> {
         let dt = math::clamp(dt, 0.0, 1.0);
-        let sane = (0.0..SANE.0).contains(&voltage) && (-SANE.1..SANE.1).contains(&current);
-        if sane {
-            let (v, i) = self
-                .filters
-                .get_or_insert((LowPass::at(voltage), LowPass::at(current)));
-            v.step(voltage, VOLTAGE_CUTOFF, dt);
-            let filtered = i.step(current, CURRENT_CUTOFF, dt);
-            self.add_charge(filtered * dt);
-        }
-        self.filters.map(|(v, i)| Battery {
-            voltage: v.value(),
-            current: i.value(),
-            used: self.used + self.fraction,
-            ratio: math::clamp(v.value() / p.battery_nominal, RATIO_BOUNDS.0, RATIO_BOUNDS.1),
+        let current = self.step_current(current.filter(|i| (-SANE.1..SANE.1).contains(i)), dt);
+        self.unread = math::clamp(self.unread + dt, 0.0, 1.0);
+        let voltage = voltage.filter(|v| (0.0..SANE.0).contains(v))?;
+        let voltage =
+            self.voltage
+                .get_or_insert(LowPass::at(voltage))
+                .step(voltage, VOLTAGE_CUTOFF, self.unread);
+        self.unread = 0.0;
+        Some(Battery {
+            voltage,
+            current,
+            used: (self.uncounted < UNCOUNTED_MAX).then_some(self.used + self.fraction),
+            ratio: math::clamp(voltage / p.battery_nominal, RATIO_BOUNDS.0, RATIO_BOUNDS.1),
         })
+    }
+
+    /// The current, and its charge. After a gap the filter starts from the reading.
+    fn step_current(&mut self, current: Option<f32>, dt: f32) -> Option<f32> {
+        let Some(current) = current else {
+            self.current = None;
+            self.uncounted = math::clamp(self.uncounted + dt, 0.0, UNCOUNTED_MAX);
+            return None;
+        };
+        let filter = self.current.get_or_insert(LowPass::at(current));
+        let filtered = filter.step(current, CURRENT_CUTOFF, dt);
+        self.add_charge(filtered * dt);
+        Some(filtered)
     }
 
     /// Adds charge in portions of 1 A·s: 10 ms of 1 A would vanish beside 6000 A·s in an `f32`.
@@ -67,6 +102,71 @@ impl Monitor {
             self.used = math::clamp(self.used + self.fraction, 0.0, 1e7);
             self.fraction = 0.0;
         }
+    }
+}
+
+/// Time below a level of the servo battery, s: longer than a closing (2.6 to 3.9 s in the paper), under which it sags.
+pub const SERVO_SAG_TIME: f32 = 5.0;
+
+/// What is known of the servo battery.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ServoSupply {
+    /// No one measures it.
+    #[default]
+    NotFitted,
+    /// It should be measured, and nothing fresh is there.
+    Silent,
+    /// Below `servo_batt_low`: no perch begins.
+    Low,
+    /// Below `servo_batt_warn`: a perch should end.
+    NearEnd,
+    /// Above both.
+    Good,
+}
+
+/// Measured state of the servo battery.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ServoBattery {
+    /// Voltage under load, V, low-passed.
+    pub voltage: f32,
+    /// How it is by that: `Low`, `NearEnd` or `Good`.
+    pub supply: ServoSupply,
+}
+
+/// The servo battery's filter and levels.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ServoMonitor {
+    voltage: Option<LowPass>,
+    /// Time since the last voltage, s.
+    unread: f32,
+    near_end: Held,
+    low: Held,
+}
+
+impl ServoMonitor {
+    /// Adds `voltage` V, `dt` s after the last. `None` without a plausible voltage, as [`Monitor::step`].
+    pub fn step(&mut self, p: &Params, voltage: Option<f32>, dt: f32) -> Option<ServoBattery> {
+        self.unread = math::clamp(self.unread + dt, 0.0, 1.0);
+        let voltage = voltage.filter(|v| (0.0..SANE.0).contains(v))?;
+        // What is connected at power-up has no closing behind it.
+        let held = if self.voltage.is_none() {
+            SERVO_SAG_TIME
+        } else {
+            self.unread
+        };
+        let voltage =
+            self.voltage
+                .get_or_insert(LowPass::at(voltage))
+                .step(voltage, VOLTAGE_CUTOFF, self.unread);
+        self.unread = 0.0;
+        let near_end = self.near_end.step(voltage < p.servo_batt_warn, held) >= SERVO_SAG_TIME;
+        let low = self.low.step(voltage < p.servo_batt_low, held) >= SERVO_SAG_TIME;
+        let supply = match (low, near_end) {
+            (true, _) => ServoSupply::Low,
+            (false, true) => ServoSupply::NearEnd,
+            (false, false) => ServoSupply::Good,
+        };
+        Some(ServoBattery { voltage, supply })
     }
 }
 
@@ -80,7 +180,7 @@ mod tests {
         let p = Params::default();
         let mut last = Battery::default();
         for _ in 0..(seconds * 100.0) as u32 {
-            last = m.step(&p, voltage, current, 0.01).unwrap_or_default();
+            last = m.step(&p, Some(voltage), Some(current), 0.01).unwrap_or_default();
         }
         last
     }
@@ -89,17 +189,17 @@ mod tests {
     fn charge_adds_up() {
         let r = run(&mut Monitor::default(), 15.2, 12.0, 600.0);
         // 12 A for 600 s; rounding of 60,000 steps stays below 0.1 %.
-        assert!((r.used - 7200.0).abs() < 7.2, "{}", r.used);
+        assert!(r.used.is_some_and(|used| (used - 7200.0).abs() < 7.2), "{r:?}");
         assert!((r.ratio - 15.2 / 14.8).abs() < 1e-4);
     }
 
     #[test]
     fn the_first_reading_starts_the_filter() {
-        let r = Monitor::default().step(&Params::default(), 16.4, 0.5, 0.01);
+        let r = Monitor::default().step(&Params::default(), Some(16.4), Some(0.5), 0.01);
         assert!(r.is_some_and(|r| (r.voltage - 16.4).abs() < 1e-5));
         assert!(
             Monitor::default()
-                .step(&Params::default(), f32::NAN, 0.5, 0.01)
+                .step(&Params::default(), Some(f32::NAN), Some(0.5), 0.01)
                 .is_none()
         );
     }
@@ -111,6 +211,74 @@ mod tests {
         assert!((run(&mut m, 50.0, 0.0, 5.0).ratio - 1.25).abs() < 1e-6);
     }
 
+    #[test]
+    fn an_absurd_current_costs_the_current_and_the_voltage_goes_on() {
+        let p = Params::default();
+        // Torn off: 3.3 V at 100 A/V, and the rail.
+        for absurd in [Some(330.0), Some(f32::NAN), reading(4095, 0.1)] {
+            let mut m = Monitor::default();
+            run(&mut m, 16.0, 12.0, 5.0);
+            let mut step = |volts, current| m.step(&p, Some(volts), current, 0.01).unwrap();
+            let before = step(16.0, Some(12.0));
+            assert!(before.current.is_some_and(|i| (i - 12.0).abs() < 1e-3));
+            let mut last = before;
+            for _ in 0..500 {
+                last = step(10.0, absurd);
+            }
+            assert!((last.voltage - 10.0).abs() < 0.01, "{last:?}");
+            assert_eq!((last.current, last.used), (None, before.used));
+            for _ in 0..500 {
+                last = step(10.0, absurd);
+            }
+            assert_eq!(last.used, None, "a tenth of the charge may be missing by now");
+            // From power-up.
+            let first = Monitor::default().step(&p, Some(16.0), absurd, 0.01);
+            assert!(first.is_some_and(|b| (b.voltage - 16.0).abs() < 1e-5));
+        }
+    }
+
+    #[test]
+    fn no_voltage_gives_no_battery_and_the_charge_is_counted_on() {
+        let p = Params::default();
+        for lost in [None, Some(f32::NAN), Some(-1.0), Some(70.0), reading(4095, 0.01)] {
+            let mut m = Monitor::default();
+            let used = run(&mut m, 16.0, 12.0, 5.0).used.unwrap();
+            for _ in 0..100 {
+                assert_eq!(m.step(&p, lost, Some(12.0), 0.01), None);
+            }
+            // The filter has a second to catch up, not one step.
+            let again = m.step(&p, Some(12.0), Some(12.0), 0.01).unwrap();
+            assert!((again.voltage - 12.3).abs() < 0.05, "{again:?}");
+            assert!(again.used.is_some_and(|u| (u - used - 12.12).abs() < 0.01));
+        }
+        assert_eq!(reading(4089, 1.0), Some(4089.0));
+    }
+
+    #[test]
+    fn the_servo_batterys_levels_outlast_a_closing_and_good_news_takes_them_back() {
+        let (p, mut m) = (Params::default(), ServoMonitor::default());
+        let mut run = |volts, seconds: f32| {
+            let mut last = None;
+            for _ in 0..(seconds * 100.0) as u32 {
+                last = m.step(&p, Some(volts), 0.01);
+            }
+            last.unwrap().supply
+        };
+        assert_eq!(run(8.0, 10.0), ServoSupply::Good);
+        // A closing of 3.9 s sags it by a volt.
+        assert_eq!(run(6.7, 3.9), ServoSupply::Good);
+        assert_eq!(run(7.9, 5.0), ServoSupply::Good);
+        assert_eq!(run(7.1, 4.9), ServoSupply::Good);
+        assert_eq!(run(7.1, 0.5), ServoSupply::NearEnd);
+        assert_eq!(run(6.7, 4.9), ServoSupply::NearEnd);
+        assert_eq!(run(6.7, 0.5), ServoSupply::Low);
+        assert_eq!(run(8.2, 1.0), ServoSupply::Good);
+        // No reading is no message, and one that is empty from the start is so at once.
+        assert_eq!(m.step(&p, reading(4095, 0.01), 0.01), None);
+        let first = ServoMonitor::default().step(&p, Some(0.1), 0.01);
+        assert_eq!(first.map(|b| b.supply), Some(ServoSupply::Low));
+    }
+
     proptest! {
         #[test]
         fn no_input_makes_a_bad_reading(
@@ -119,8 +287,8 @@ mod tests {
         ) {
             let mut m = Monitor::default();
             for (v, i, dt) in inputs {
-                if let Some(r) = m.step(&Params::default(), v, i, dt) {
-                    prop_assert!(r.voltage.is_finite() && r.current.is_finite() && r.used.is_finite());
+                if let Some(r) = m.step(&Params::default(), Some(v), Some(i), dt) {
+                    prop_assert!([Some(r.voltage), r.current, r.used].into_iter().flatten().all(f32::is_finite));
                     prop_assert!((0.7..=1.25).contains(&r.ratio));
                 }
             }

@@ -48,7 +48,8 @@ pub use self::escaping::{AWAY_LEAN as ESCAPE_LEAN, LIFT_SHARE as ESCAPE_LIFT};
 pub use self::logic::ModeLogic;
 pub use self::reason::Reason;
 pub use self::releasing::release_thrust;
-use crate::arming::ArmingInhibits;
+use crate::arming::{ArmingInhibit, ArmingInhibits};
+use crate::battery::ServoSupply;
 use crate::bench::{BenchAnswer, BenchRequest};
 use crate::grip::GripState;
 use crate::grip_memory::GripMemory;
@@ -203,6 +204,8 @@ pub struct Inputs {
     pub fsr_fault: PerArm<bool>,
     /// Battery voltage under load, V.
     pub battery: Option<f32>,
+    /// The servo battery.
+    pub servo_supply: ServoSupply,
     /// The flight level misses its deadlines.
     pub late: bool,
     /// Arming inhibits of drivers, storage and start-up.
@@ -218,6 +221,15 @@ pub struct Inputs {
 }
 
 impl Inputs {
+    /// Why the servo battery allows no perch, nor a longer one.
+    pub fn servo_trouble(&self) -> Option<ArmingInhibit> {
+        match self.servo_supply {
+            ServoSupply::Silent => Some(ArmingInhibit::ServoBatterySilent),
+            ServoSupply::Low => Some(ArmingInhibit::ServoBatteryLow),
+            ServoSupply::NotFitted | ServoSupply::NearEnd | ServoSupply::Good => None,
+        }
+    }
+
     /// Drops messages with a non-finite value: NaN must not stay in a filter or in the attitude held on the pipe. An
     /// arm switch that is off still stops the rotors.
     fn finite(self) -> Self {

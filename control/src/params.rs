@@ -8,7 +8,7 @@ use core::cmp::Ordering;
 
 pub use self::choices::{
     ArmBusSpeed, ArmSign, FlowMounting, FlowPort, ImuAccelRange, ImuGyroRange, ImuMounting, ImuRate,
-    MotorMap, MotorProtocol, RcProtocol,
+    MotorMap, MotorProtocol, RcProtocol, ServoMarks,
 };
 pub use self::names::{NAME_MAX, RENAMED, Renamed, check_names};
 pub use self::table::Params;

@@ -65,8 +65,8 @@ fn picture() -> Vehicle {
         }),
         battery: Some(Battery {
             voltage: 13.25,
-            current: 2.5,
-            used: 1620.0,
+            current: Some(2.5),
+            used: Some(1620.0),
             ratio: 1.0,
         }),
         capacity: 6480.0,

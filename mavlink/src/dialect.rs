@@ -89,6 +89,7 @@ impl Default for MavBatteryChargeState {
 #[repr(u32)]
 pub enum MavBatteryFunction {
     MAV_BATTERY_FUNCTION_ALL = 1,
+    MAV_BATTERY_FUNCTION_PAYLOAD = 4,
 }
 impl MavBatteryFunction {
     pub const DEFAULT: Self = Self::MAV_BATTERY_FUNCTION_ALL;

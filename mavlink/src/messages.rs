@@ -4,6 +4,7 @@
 //! has the standard's own value for it.
 
 use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
+use sophie_control::battery::ServoSupply;
 use sophie_control::grip::ArmState;
 use sophie_control::math::GRAVITY;
 use sophie_control::mode::Mode;
@@ -114,7 +115,7 @@ pub fn sys_status(vehicle: &Vehicle) -> SYS_STATUS_DATA {
         onboard_control_sensors_health: health.bits(),
         load: vehicle.load,
         voltage_battery: battery.map_or(u16::MAX, |b| (b.voltage * 1e3 + 0.5) as u16),
-        current_battery: battery.map_or(-1, |b| (b.current * 1e2 + 0.5) as i16),
+        current_battery: current(vehicle),
         battery_remaining: remaining(vehicle),
         ..SYS_STATUS_DATA::DEFAULT
     }
@@ -183,7 +184,11 @@ const SENSORS: &[Part] = &[
     },
     Part {
         bit: MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_BATTERY,
-        inhibits: &[ArmingInhibit::BatteryLow, ArmingInhibit::AnalogSilent],
+        inhibits: &[
+            ArmingInhibit::BatteryLow,
+            ArmingInhibit::BatterySilent,
+            ArmingInhibit::AnalogSilent,
+        ],
         needs: Needs::Battery,
     },
     Part {
@@ -193,11 +198,22 @@ const SENSORS: &[Part] = &[
     },
 ];
 
+/// Current, cA; -1 where it is not known.
+fn current(vehicle: &Vehicle) -> i16 {
+    let current = vehicle.battery.and_then(|b| b.current);
+    current.map_or(-1, |current| (current * 1e2 + 0.5) as i16)
+}
+
+/// Charge drawn, A·s.
+fn used(vehicle: &Vehicle) -> Option<f32> {
+    vehicle.battery?.used
+}
+
 /// Charge left, %; -1 where it is not known.
 fn remaining(vehicle: &Vehicle) -> i8 {
-    match vehicle.battery {
-        Some(battery) if vehicle.capacity > 0.0 => {
-            let left = 100.0 * (1.0 - battery.used / vehicle.capacity);
+    match used(vehicle) {
+        Some(used) if vehicle.capacity > 0.0 => {
+            let left = 100.0 * (1.0 - used / vehicle.capacity);
             // The conversion takes NaN as 0.
             left.clamp(0.0, 100.0) as i8
         }
@@ -226,17 +242,42 @@ pub fn battery_status(vehicle: &Vehicle) -> BATTERY_STATUS_DATA {
     }
     BATTERY_STATUS_DATA {
         // A·s to mAh.
-        current_consumed: vehicle.battery.map_or(-1, |b| (b.used / 3.6) as i32),
+        current_consumed: used(vehicle).map_or(-1, |used| (used / 3.6) as i32),
         energy_consumed: -1,
         temperature: i16::MAX,
         voltages,
-        current_battery: vehicle.battery.map_or(-1, |b| (b.current * 1e2 + 0.5) as i16),
+        current_battery: current(vehicle),
         battery_function: MavBatteryFunction::MAV_BATTERY_FUNCTION_ALL as u8,
         mavtype: MavBatteryType::MAV_BATTERY_TYPE_LIPO as u8,
         battery_remaining: remaining(vehicle),
         charge_state: charge as u8,
         ..BATTERY_STATUS_DATA::DEFAULT
     }
+}
+
+/// The servo battery, of which the voltage alone is measured; `None` without one.
+pub fn servo_battery_status(vehicle: &Vehicle) -> Option<BATTERY_STATUS_DATA> {
+    let battery = vehicle.servo_battery?;
+    let charge = match battery.supply {
+        ServoSupply::Low => MavBatteryChargeState::MAV_BATTERY_CHARGE_STATE_CRITICAL,
+        ServoSupply::NearEnd => MavBatteryChargeState::MAV_BATTERY_CHARGE_STATE_LOW,
+        _ => MavBatteryChargeState::MAV_BATTERY_CHARGE_STATE_OK,
+    };
+    let mut voltages = [u16::MAX; 10];
+    let [first, ..] = &mut voltages;
+    *first = (battery.voltage * 1e3 + 0.5) as u16;
+    Some(BATTERY_STATUS_DATA {
+        id: 1,
+        current_consumed: -1,
+        energy_consumed: -1,
+        temperature: i16::MAX,
+        voltages,
+        current_battery: -1,
+        battery_function: MavBatteryFunction::MAV_BATTERY_FUNCTION_PAYLOAD as u8,
+        battery_remaining: -1,
+        charge_state: charge as u8,
+        ..BATTERY_STATUS_DATA::DEFAULT
+    })
 }
 
 /// Roll, pitch and yaw with the body's rates.

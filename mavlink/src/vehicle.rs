@@ -1,7 +1,7 @@
 //! What the server says of the vehicle: one picture of it, in the units and axes of the flight stack.
 
 use sophie_control::arming::ArmingInhibits;
-use sophie_control::battery::Battery;
+use sophie_control::battery::{Battery, ServoBattery};
 use sophie_control::bench::BenchView;
 use sophie_control::calibration::AccelFit;
 use sophie_control::chain::Attitude;
@@ -39,6 +39,8 @@ pub struct Vehicle {
     pub battery: Option<Battery>,
     /// Usable charge of a fresh battery, A·s.
     pub capacity: f32,
+    /// The servo battery, if one is measured.
+    pub servo_battery: Option<ServoBattery>,
     /// Motor commands, shares of full drive, 0 for a stopped one.
     pub motors: Option<PerArm<f32>>,
     /// The pulses that these are.
@@ -89,6 +91,7 @@ impl Default for Vehicle {
             sticks: None,
             battery: None,
             capacity: 0.0,
+            servo_battery: None,
             motors: None,
             motor_pulses: MotorPulses::DIGITAL,
             servos: None,

@@ -67,6 +67,7 @@ struct AnalogTruth {
     pressure: PerArm<f64>,
     voltage: f64,
     current: f64,
+    servo_voltage: f64,
     /// Since the last conversion, s.
     elapsed: f64,
 }
@@ -204,6 +205,7 @@ impl Board {
             pressure: plant.pressure(),
             voltage: plant.battery_voltage(),
             current: plant.battery_current(),
+            servo_voltage: plant.servo_voltage(),
             elapsed: self.truth.get().elapsed + 1e-3,
         });
         self.imu_ready.signal(batch);
@@ -313,6 +315,7 @@ impl ports::Analog for Port {
             fsr: [0; 4],
             battery_voltage: battery.voltage(truth.voltage),
             battery_current: battery.current(truth.current),
+            servo_battery: battery.servo_voltage(truth.servo_voltage),
         };
         for ((counts, sensor), pressure) in frame.fsr.iter_mut().zip(fsr).zip(truth.pressure) {
             *counts = sensor.sample(pressure, truth.elapsed);

@@ -7,7 +7,7 @@ use embassy_futures::yield_now;
 use embassy_time::{Instant, Timer};
 use sophie_control::arming::ArmingInhibit;
 use sophie_control::mode::{Mode, Reason};
-use sophie_control::params::Params;
+use sophie_control::params::{Params, ServoMarks};
 use sophie_drivers::param_store::ParamStore;
 use sophie_fakes::{Answer, BrokenLine, FakeAnalog, FakeChip, FakeImu, FakeLine, FakeServos, Flash, Part};
 use sophie_sim::clock::VirtualTime;
@@ -234,7 +234,10 @@ fn a_parameter_is_found_changed_saved_and_in_force_after_the_restart() {
 
 #[test]
 fn status_says_all_that_forbids_arming() {
-    let mut bench = Bench::new(Params::default());
+    let mut bench = Bench::new(Params {
+        servo_marks: ServoMarks::S1234,
+        ..Params::default()
+    });
     let links = bench.links;
     let analog = FakeAnalog::default();
     analog.frame.set(AnalogFrame {

@@ -9,7 +9,7 @@ use sophie_control::grip_fault::GripFault;
 use sophie_control::grip_memory::GripMemory;
 use sophie_control::mixer::Flexible;
 use sophie_control::mode::{Mode, Reason};
-use sophie_control::params::Params;
+use sophie_control::params::{Params, ServoMarks};
 use sophie_control::rc::{ArmChoice, Sticks};
 use sophie_control::tendon::Reel;
 use sophie_control::vector::Vec3;
@@ -59,7 +59,11 @@ impl Vehicle {
     fn start(cause: StartCause, copies: [Words; 2], counts: [u16; 4]) -> Self {
         let time = VirtualTime::new();
         let start = Start::new(cause, &copies);
-        let links: &'static Links = Box::leak(Box::new(Links::starting(Params::default(), start)));
+        let params = Params {
+            servo_marks: ServoMarks::S1234,
+            ..Params::default()
+        };
+        let links: &'static Links = Box::leak(Box::new(Links::starting(params, start)));
         let converter = FakeAnalog::default();
         converter.frame.set(AnalogFrame {
             fsr: counts,

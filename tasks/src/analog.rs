@@ -1,4 +1,4 @@
-//! Samples contact pressures at 500 Hz and the battery in every fifth run, from one converter.
+//! Samples contact pressures at 500 Hz and the batteries in every fifth run, from one converter.
 //!
 //! A conversion must end before the next; messages carry the time of its beginning. A failing converter's links go
 //! stale; after 100 ms arming is refused, and from the start if a sensor cannot read the grip pressure.
@@ -8,7 +8,7 @@ use core::pin::pin;
 use embassy_futures::select::{Either, select};
 use embassy_time::{Duration, Instant, Timer};
 use sophie_control::arming::ArmingInhibit;
-use sophie_control::battery::Monitor;
+use sophie_control::battery::{Monitor, ServoMonitor, reading};
 use sophie_control::fsr::{Fsr, FsrScale};
 
 use crate::deadline::{FixedRate, TaskId};
@@ -29,6 +29,7 @@ pub async fn run(links: &Links, mut port: impl Analog) -> ! {
     }
     let mut sensors = scales.map(Sensor::new);
     let mut battery = Monitor::default();
+    let mut servo_battery = ServoMonitor::default();
     let mut battery_dt = 0.0;
     let mut until_battery = BATTERY_EVERY;
     let mut sensor_dt = 0.0;
@@ -69,10 +70,16 @@ pub async fn run(links: &Links, mut port: impl Analog) -> ! {
         until_battery = BATTERY_EVERY;
         links.counts.send(at, frame);
         let (params, volts) = (&links.params, port.volts_per_count());
-        let voltage = f32::from(frame.battery_voltage) * (volts * params.battery_divider);
-        let current = f32::from(frame.battery_current) * (volts * params.battery_a_per_v);
+        let voltage = reading(frame.battery_voltage, volts * params.battery_divider);
+        let current = reading(frame.battery_current, volts * params.battery_a_per_v);
         if let Some(measured) = battery.step(params, voltage, current, battery_dt) {
             links.battery.send(at, measured);
+        }
+        if params.servo_batt_div > 0.0 {
+            let voltage = reading(frame.servo_battery, volts * params.servo_batt_div);
+            if let Some(measured) = servo_battery.step(params, voltage, battery_dt) {
+                links.servo_battery.send(at, measured);
+            }
         }
         battery_dt = 0.0;
     }

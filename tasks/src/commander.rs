@@ -62,6 +62,7 @@ pub async fn run(links: &Links) -> ! {
 /// Warning that does not affect the modes.
 fn warning(links: &Links, mode: Mode, limit: Option<SightLimit>) -> &'static str {
     let started = Warning::Restarted(links.start.cause);
+    let servos = Warning::Servos(links.servo_supply());
     let clipped = links
         .attitude
         .fresh_to(Instant::now(), |a| a.clipped)
@@ -72,6 +73,8 @@ fn warning(links: &Links, mode: Mode, limit: Option<SightLimit>) -> &'static str
         Warning::AccelClips.text()
     } else if links.mix.fresh().is_some_and(|m| m.running && m.tilt_fault) {
         Warning::ArmTilt.text()
+    } else if !servos.text().is_empty() {
+        servos.text()
     } else if mode.rotors_stand() && !started.text().is_empty() {
         started.text()
     } else if let Some(fault) = links.position_fault.fresh() {
@@ -96,6 +99,7 @@ fn collect(links: &Links, late: bool) -> Inputs {
             accel: a.accel,
             calibrated: a.calibrated,
         }),
+        // Zero is the truth then: the motors stop at the same age of the mix.
         lift: links.mix.fresh().map_or(0.0, |mix| mix.lift()),
         roll_moment: links.mix.fresh().map_or(0.0, |mix| mix.roll(links.params.arm_d)),
         grip: links.grip.fresh(),
@@ -105,6 +109,7 @@ fn collect(links: &Links, late: bool) -> Inputs {
             .fresh()
             .map_or([true; 4], |contact| contact.arms.map(|arm| arm.is_err())),
         battery: links.battery.fresh().map(|b| b.voltage),
+        servo_supply: links.servo_supply(),
         late,
         hardware: links.hardware(),
         bench: links.bench.fresh(),

@@ -22,7 +22,8 @@ use embassy_time::{Duration, Instant};
 pub use sophie_control::air_pressure::AirPressure;
 use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
 use sophie_control::attitude::Target;
-pub use sophie_control::battery::Battery;
+use sophie_control::battery::ServoSupply;
+pub use sophie_control::battery::{Battery, ServoBattery};
 use sophie_control::bench::Place;
 pub use sophie_control::bench::{BenchAnswer, BenchRequest, BenchView};
 pub use sophie_control::chain::{Attitude, Demand, ImuSample, MixOutput};
@@ -395,6 +396,8 @@ links! {
     contact: Contact, Analog to "clamp, commander, console", stale after 20 ms;
     /// The flight battery, with each fifth conversion; the mixer keeps the last one.
     battery: Battery, Analog to "mixer, commander, telemetry, console, mavlink", stale after 500 ms;
+    /// The servo battery, if one is measured, with each fifth conversion; without it no perch begins.
+    servo_battery: ServoBattery, Analog to "commander, console, mavlink", stale after 500 ms;
     /// What the converter gave, with each fifth conversion.
     counts: AnalogFrame, Analog to "console", stale after 100 ms;
     /// Tilt of the arms, each with its own time; without one its servo stays.
@@ -480,6 +483,22 @@ impl Links {
             newest: self.bench.look(|m| m.value.number).unwrap_or(0),
             renewed: self.bench.fresh().is_some(),
             answer: self.bench_answer.fresh().unwrap_or_default(),
+        }
+    }
+
+    /// The servo battery as it is now.
+    pub fn servo_supply(&self) -> ServoSupply {
+        if self.params.servo_batt_div > 0.0 {
+            match self.servo_battery.fresh() {
+                Some(battery) => battery.supply,
+                // The first reading may still come.
+                None if Instant::now() < Instant::MIN + self.servo_battery.stale_after => {
+                    ServoSupply::NotFitted
+                }
+                None => ServoSupply::Silent,
+            }
+        } else {
+            ServoSupply::NotFitted
         }
     }
 

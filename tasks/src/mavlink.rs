@@ -405,6 +405,7 @@ fn picture(links: &Links, reels: &PerArm<Reel>) -> Vehicle {
         sticks: links.rc.fresh().map(|rc| rc.sticks),
         battery: links.battery.fresh(),
         capacity: links.params.battery_capacity,
+        servo_battery: links.servo_battery.fresh(),
         motors: links
             .mix
             .fresh()
@@ -413,8 +414,9 @@ fn picture(links: &Links, reels: &PerArm<Reel>) -> Vehicle {
         motor_pulses: pulses.unwrap_or(MotorPulses::DIGITAL),
         servos: angles.map(|angles| {
             let mut pulses = angles;
-            for (pulse, reel) in pulses.iter_mut().zip(reels) {
-                *pulse = reel.pulse(*pulse);
+            for (servo, (pulse, reel)) in pulses.iter_mut().zip(reels).enumerate() {
+                let marked = links.params.servo_marks.has(servo);
+                *pulse = if marked { reel.pulse(*pulse) } else { 0.0 };
             }
             pulses
         }),

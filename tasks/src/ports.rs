@@ -97,6 +97,8 @@ pub struct AnalogFrame {
     pub battery_voltage: u16,
     /// Pin of the current sensor.
     pub battery_current: u16,
+    /// Pin of the servo battery's voltage; anything where nothing is connected.
+    pub servo_battery: u16,
 }
 
 /// The analog inputs.

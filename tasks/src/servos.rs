@@ -4,9 +4,13 @@
 //! at power-up the gears hold. After a restart the drives continue from the retained angles. Stale forces hold the
 //! servos; so does a missing tilt, unless its arm is to be released.
 //!
+//! A servo whose marks have not been measured gets a pulse on the bench alone: what its parameters say of them may lie beyond
+//! an end stop, where it draws its stall current until it burns.
+//!
 //! The task ends the chain from contact pressure to pulse and measures it (`ChainWatch`).
 
 use embassy_time::{Duration, Instant};
+use sophie_control::arming::ArmingInhibit;
 use sophie_control::grip_memory::GripMemory;
 use sophie_control::tendon::{Drive, Reel, TendonDrive};
 use sophie_control::wrench::PerArm;
@@ -46,6 +50,8 @@ pub async fn run(links: &Links, mut port: impl Servos) -> ! {
     let period = period(links.params.servo_frame_rate);
     let mut rate = FixedRate::new(links, TaskId::Servos, period, period);
     let mut tendons = Tendons::new(links);
+    let unmarked = tendons.arms.iter().any(|arm| !arm.marked);
+    links.report(ArmingInhibit::ServoUnmarked, unmarked);
     let mut chain = ChainWatch::new(period);
     loop {
         let tick = rate.next().await;
@@ -71,6 +77,8 @@ pub async fn run(links: &Links, mut port: impl Servos) -> ! {
 struct Tendon {
     reel: Reel,
     drive: TendonDrive,
+    /// Its marks have been measured.
+    marked: bool,
 }
 
 impl Tendon {
@@ -95,10 +103,16 @@ struct Tendons {
 
 impl Tendons {
     fn new(links: &Links) -> Self {
+        let marks = links.params.servo_marks;
+        let marked = [0, 1, 2, 3].map(|servo| marks.has(servo));
         let mut arms = Reel::all(&links.params).map(|reel| Tendon {
             reel,
             drive: TendonDrive::new(),
+            marked: false,
         });
+        for (tendon, marked) in arms.iter_mut().zip(marked) {
+            tendon.marked = marked;
+        }
         // Without pulses the angle is unknown.
         let known = links
             .start
@@ -149,6 +163,13 @@ impl Tendons {
                 for ((tendon, tilt), out) in arms {
                     *out = tendon.stay(tilt, dt);
                 }
+            }
+        }
+        for (arm, (tendon, out)) in self.arms.iter().zip(&mut output).enumerate() {
+            if !tendon.marked {
+                // At once: where it stands, from where it could be led there, is not known.
+                let place = placed.filter(|place| place.servo == arm);
+                out.pulse_us = place.map_or(0.0, |place| place.pulse_us);
             }
         }
         self.begun = true;

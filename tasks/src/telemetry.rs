@@ -107,14 +107,16 @@ fn tenths_of_mrad(angle: f32) -> i16 {
     (angle * 1e4) as i16
 }
 
+/// What is not known is -1, which transmitters show as such: EdgeTX reads the fields with their sign.
 fn battery(b: Battery, capacity: f32) -> packets::Battery {
-    let remaining = 100.0 * (1.0 - b.used / capacity);
     packets::Battery {
         voltage: (b.voltage * 10.0 + 0.5) as i16,
-        current: (b.current * 10.0 + 0.5) as i16,
+        current: b.current.map_or(-1, |current| (current * 10.0 + 0.5) as i16),
         // A·s to mAh.
-        capacity_used: (b.used / 3.6) as u32,
-        remaining: remaining as u8,
+        capacity_used: b.used.map_or(0xFF_FFFF, |used| (used / 3.6) as u32),
+        remaining: b
+            .used
+            .map_or(0xFF, |used| (100.0 * (1.0 - used / capacity)) as u8),
         id: 0,
     }
 }
@@ -169,8 +171,8 @@ mod tests {
         let b = battery(
             Battery {
                 voltage: 15.26,
-                current: 21.3,
-                used: 1800.0,
+                current: Some(21.3),
+                used: Some(1800.0),
                 ratio: 1.0,
             },
             6480.0,
@@ -182,7 +184,7 @@ mod tests {
         assert_eq!(
             battery(
                 Battery {
-                    used: 1e9,
+                    used: Some(1e9),
                     ..Default::default()
                 },
                 6480.0
@@ -190,6 +192,9 @@ mod tests {
             .remaining,
             0
         );
+        let unknown = encode(Some(battery(Battery::default(), 6480.0))).unwrap();
+        // Behind address, length and type: voltage, then current, charge and share left, all ones.
+        assert_eq!(unknown.get(5..11), Some(&[0xFF; 6][..]));
         assert_eq!(tenths_of_mrad(f32::NAN), 0);
         assert_eq!(tenths_of_mrad(-core::f32::consts::PI), -31415);
     }

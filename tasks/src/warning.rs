@@ -1,5 +1,7 @@
 //! Warnings to the pilot that do not affect the modes.
 
+use sophie_control::arming::ArmingInhibit;
+use sophie_control::battery::ServoSupply;
 use sophie_control::position::{Fault, PoseFault, PressureFault, SightFault, SightLimit};
 
 use crate::start::StartCause;
@@ -13,6 +15,8 @@ pub enum Warning {
     Stack,
     /// An arm's tilt is beyond its model's correction.
     ArmTilt,
+    /// The servo battery nears its end, is there or cannot be read.
+    Servos(ServoSupply),
     /// Cause of an unusual start of the board.
     Restarted(StartCause),
     /// Pose, flow, range or air pressure is left out as faulty.
@@ -27,10 +31,13 @@ pub enum Warning {
 
 impl Warning {
     /// Every warning.
-    pub const ALL: [Self; 23] = [
+    pub const ALL: [Self; 26] = [
         Self::AccelClips,
         Self::Stack,
         Self::ArmTilt,
+        Self::Servos(ServoSupply::NearEnd),
+        Self::Servos(ServoSupply::Low),
+        Self::Servos(ServoSupply::Silent),
         Self::Restarted(StartCause::BrownOut),
         Self::Restarted(StartCause::Watchdog),
         Self::Restarted(StartCause::Fault),
@@ -59,6 +66,10 @@ impl Warning {
             Self::AccelClips => "vibration: accelerometer clips",
             Self::Stack => "stack nearly full",
             Self::ArmTilt => "arm tilt beyond its model",
+            Self::Servos(ServoSupply::NearEnd) => "servo battery near its end",
+            Self::Servos(ServoSupply::Low) => ArmingInhibit::ServoBatteryLow.text(),
+            Self::Servos(ServoSupply::Silent) => ArmingInhibit::ServoBatterySilent.text(),
+            Self::Servos(ServoSupply::NotFitted | ServoSupply::Good) => "",
             Self::Restarted(cause) => cause.warning(),
             Self::Position(fault) => fault.text(),
             Self::Limit(limit) => limit.text(),

@@ -99,6 +99,7 @@ impl Default for Hands {
                 fsr: [0; 4],
                 battery_voltage: 1520,
                 battery_current: 0,
+                servo_battery: 0,
             },
             tilt: [0.0; 4],
             air: None,

@@ -158,7 +158,7 @@ fn first_part(builder: &mut Builder, board: &Board) {
     builder.at("Enter keeps battery_capacity", "5");
     builder.hears("battery_capacity cannot be 5");
     builder.at("Enter keeps battery_capacity", "5400");
-    for name in ["battery_warning", "battery_critical", "infill"] {
+    for name in ["battery_warning", "battery_critical", "infill", "servo_range"] {
         builder.at(&format!("Enter keeps {name}"), "");
     }
     builder.hears("saving");
@@ -255,9 +255,9 @@ fn sensors_and_actuators(builder: &mut Builder, board: &Board) {
     }
     for servo in 1..=4 {
         builder.step(&format!("servo-{servo}"));
-        builder.at("+ or - moves it", "+3");
+        builder.at("+ or - moves it", "-92");
         builder.at("580 us", "");
-        builder.at("full mark", "--");
+        builder.at("full mark", "+185");
         builder.at("2430 us", "");
     }
     builder.step("flow");

@@ -65,6 +65,7 @@ fn a_bring_up_goes_over_a_serial_port_and_has_it_alone() {
         "battery_warning",
         "battery_critical",
         "infill",
+        "servo_range",
     ] {
         builder.at(&format!("Enter keeps {name}"), "");
     }

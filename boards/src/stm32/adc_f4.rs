@@ -30,7 +30,7 @@ impl<D: RxDma<ADC1>, I> Converter<D, I> {
     /// Bits beyond the port's twelve.
     pub const EXTRA_BITS: u32 = 0;
 
-    /// Pressure sensors 1 to 4, battery voltage and battery current on `channels`.
+    /// Pressure sensors 1 to 4, battery voltage and current, and servo battery on `channels`.
     pub fn new(
         adc: Peri<'static, ADC1>,
         channels: [AnyAdcChannel<'static, ADC1>; CHANNELS],
@@ -49,8 +49,11 @@ impl<D: RxDma<ADC1>, I> Converter<D, I> {
         registers.sqr1().modify(|w| w.set_l(CHANNELS as u8 - 1));
         for (rank, channel) in channels.iter().enumerate() {
             let number = channel.get_hw_channel();
-            // The third register holds ranks 1 to 6: all in use.
-            registers.sqr3().modify(|w| w.set_sq(rank, number));
+            // Ranks 1 to 6 are in the third register, the next six in the second.
+            match rank.checked_sub(6) {
+                None => registers.sqr3().modify(|w| w.set_sq(rank, number)),
+                Some(rank) => registers.sqr2().modify(|w| w.set_sq(rank, number)),
+            }
             // For the 10 kOhm of a pressure sensor's divider.
             if number <= 9 {
                 registers

@@ -30,7 +30,7 @@ impl<D: RxDma<ADC1>, I> Converter<D, I> {
     /// Bits beyond the port's twelve.
     pub const EXTRA_BITS: u32 = 4;
 
-    /// Pressure sensors 1 to 4, battery voltage and battery current on `channels`.
+    /// Pressure sensors 1 to 4, battery voltage and current, and servo battery on `channels`.
     pub fn new(
         adc: Peri<'static, ADC1>,
         channels: [AnyAdcChannel<'static, ADC1>; CHANNELS],

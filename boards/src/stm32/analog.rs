@@ -1,4 +1,4 @@
-//! Analog inputs: six channels of one converter, scanned on demand by DMA.
+//! Analog inputs: seven channels of one converter, scanned on demand by DMA.
 
 use embassy_stm32::Peri;
 use embassy_stm32::adc::{AnyAdcChannel, RxDma};
@@ -11,8 +11,8 @@ use static_cell::ConstStaticCell;
 use super::Aligned;
 use super::adc::Converter;
 
-/// Channels: pressure sensors 1 to 4, battery voltage, battery current.
-pub const CHANNELS: usize = 6;
+/// Channels: pressure sensors 1 to 4, battery voltage, battery current, servo battery.
+pub const CHANNELS: usize = 7;
 /// Full scale at the pin, V, per count.
 const VOLTS_PER_COUNT: f32 = 3.3 / 4095.0;
 
@@ -34,7 +34,7 @@ where
     D: RxDma<ADC1>,
     I: Binding<D::Interrupt, InterruptHandler<D>> + Copy,
 {
-    /// Pressure sensors 1 to 4, battery voltage and battery current on `channels`. Called once.
+    /// Pressure sensors 1 to 4, battery voltage and current, and servo battery on `channels`. Called once.
     pub fn new(
         adc: Peri<'static, ADC1>,
         channels: [AnyAdcChannel<'static, ADC1>; CHANNELS],
@@ -58,12 +58,13 @@ where
 
     async fn read(&mut self) -> Result<AnalogFrame, PortError> {
         let counts = self.converter.scan().await?;
-        let [a, b, c, d, battery_voltage, battery_current] =
+        let [a, b, c, d, battery_voltage, battery_current, servo_battery] =
             counts.map(|n| n >> Converter::<D, I>::EXTRA_BITS);
         Ok(AnalogFrame {
             fsr: [a, b, c, d],
             battery_voltage,
             battery_current,
+            servo_battery,
         })
     }
 }

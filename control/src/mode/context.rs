@@ -189,8 +189,8 @@ impl Context {
     /// The reason shown beside most modes; `radio`: include its loss.
     pub fn reason(&self, i: &Inputs, radio: bool) -> Option<Reason> {
         let note = self.noted();
-        if self.dangers.battery_critical() {
-            Some(Reason::BatteryCritical)
+        if let Some(battery) = self.dangers.battery() {
+            Some(battery)
         } else if radio && i.sticks.is_none() {
             Some(Reason::RADIO_LOST)
         } else if note.is_none() && self.dangers.line_silent() {
@@ -224,7 +224,10 @@ impl Context {
                 .zip(chosen)
                 .any(|(&fault, chosen)| fault && chosen),
             late: i.late,
-            hardware: i.hardware,
+            hardware: match i.servo_trouble() {
+                Some(why) => i.hardware.with(why),
+                None => i.hardware,
+            },
             arms_closed,
         }
         .inhibits(&self.params);
@@ -236,10 +239,12 @@ impl Context {
             .fold(inhibits, |all, (range, _)| all.without(range));
         if grip_memory.arms().is_some() {
             // Armed on the pipe, the rotors stay stopped. The perch switch is on there, and off opens the arms; a
-            // broken supply cannot be repaired.
+            // broken supply cannot be repaired, and servos that will be without power are to open the arms before.
             inhibits
                 .without(ArmingInhibit::PerchSwitchOn)
                 .without(ArmingInhibit::BrownOut)
+                .without(ArmingInhibit::ServoBatterySilent)
+                .without(ArmingInhibit::ServoBatteryLow)
         } else {
             inhibits
         }

@@ -6,7 +6,7 @@
 //! | radio lost | stop | level, over one place if that is known, sink, stop on what carries | keep closing, keep the grip |
 //! | inertial sensor silent | stop | stop | stop, arms stay closed |
 //! | tipped over, or turned faster than the gyro reads | stop | stop | stop, arms stay closed |
-//! | battery critical | - | sink, the pilot still steers | reported; release refused |
+//! | battery critical, or not measured | - | sink, the pilot still steers | reported; release refused |
 //! | data-ready line silent | stop | sink, the pilot still steers | reported; release refused |
 
 use super::{Inputs, Reason};
@@ -25,7 +25,9 @@ pub const TIPPED_TIME: f32 = 0.5;
 const GYRO_SATURATED: f32 = 0.98;
 /// Turn at full scale after which the attitude is unknown, rad: twice as fast, it has turned as far again unseen.
 const UNSEEN_TURN: f32 = deg(30.0);
-/// Time below the critical voltage, s: longer than a gust's current peak.
+/// Time below the critical voltage, or without a fresh one, s: longer than a gust's current peak. A battery that
+/// is no longer measured lands the vehicle 1.5 s after its last voltage, 0.5 s of it by the link's limit; a flight of ten
+/// minutes draws 0.25 % of the charge meanwhile.
 pub const BATTERY_TIME: f32 = 1.0;
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -35,6 +37,8 @@ pub struct Dangers {
     saturated: Held,
     turned_unseen: bool,
     battery: Held,
+    /// No fresh voltage: the guard is blind, and what it guards counts as lost.
+    battery_blind: bool,
     /// Set by the port after its own delay.
     line_silent: bool,
 }
@@ -56,7 +60,8 @@ impl Dangers {
         let time = self.saturated.step(saturated, dt);
         self.turned_unseen = saturated && time * full_scale >= UNSEEN_TURN;
         self.battery
-            .step(i.battery.is_some_and(|v| v < p.battery_critical), dt);
+            .step(i.battery.is_none_or(|v| v < p.battery_critical), dt);
+        self.battery_blind = i.battery.is_none();
         self.line_silent = i.hardware.contains(ArmingInhibit::ImuLineSilent);
     }
 
@@ -68,8 +73,19 @@ impl Dangers {
         self.tipped.time() >= TIPPED_TIME || self.turned_unseen
     }
 
+    /// The battery is at its end, or no one can say.
     pub fn battery_critical(&self) -> bool {
-        self.battery.time() >= BATTERY_TIME
+        self.battery().is_some()
+    }
+
+    /// What is wrong with the battery.
+    pub fn battery(&self) -> Option<Reason> {
+        let why = if self.battery_blind {
+            Reason::BATTERY_SILENT
+        } else {
+            Reason::BatteryCritical
+        };
+        (self.battery.time() >= BATTERY_TIME).then_some(why)
     }
 
     pub fn line_silent(&self) -> bool {
@@ -78,12 +94,7 @@ impl Dangers {
 
     /// Reason to land under the sticks, or not to leave a pipe, by priority.
     pub fn landing(&self) -> Option<Reason> {
-        if self.battery_critical() {
-            Some(Reason::BatteryCritical)
-        } else if self.line_silent {
-            Some(Reason::LINE_SILENT)
-        } else {
-            None
-        }
+        let line = self.line_silent.then_some(Reason::LINE_SILENT);
+        self.battery().or(line)
     }
 }

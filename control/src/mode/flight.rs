@@ -46,7 +46,15 @@ impl Behaviour for Flight {
                 step.context.note(Some(Reason::NoPosition));
             }
         }
-        if !(Self::means_to_perch(step) && step.context.support.resting()) {
+        if !Self::means_to_perch(step) {
+            return;
+        }
+        if let Some(why) = step.inputs.servo_trouble() {
+            // Before the pipe is reached: arms that would lose their servos must not close.
+            step.context.note(Some(Reason::Check(why)));
+            return;
+        }
+        if !step.context.support.resting() {
             return;
         }
         if !step.context.perch_switch.seen_off {

@@ -44,7 +44,7 @@ guards! {
     };
     IMU_SILENT = "inertial sensor silent", |_, s| s.context.dangers.imu_silent();
     TIPPED_OVER = "tipped over", |_, s| s.context.dangers.tipped_over();
-    BATTERY_CRITICAL = "battery critical", |_, s| s.context.dangers.battery_critical();
+    MUST_LAND = "battery critical or not measured, or data-ready line silent", |_, s| s.context.dangers.landing().is_some();
     LINE_SILENT = "data-ready line silent", |_, s| s.context.dangers.line_silent();
     MAY_FLY = "nothing forces a landing", |_, s| s.context.dangers.landing().is_none();
     RADIO_LOST = "radio lost", |_, s| s.inputs.sticks.is_none();
@@ -71,7 +71,8 @@ guards! {
     POSITION_ADRIFT = "position stale", |_, s| holding::adrift(s.inputs);
 
     ASKED_TO_PERCH = "perch switch turned on", |_, s| nearing::asked(s);
-    MAY_APPROACH = "position and range or pipe known, sticks centred", |_, s| nearing::obstacle(s).is_none();
+    SERVOS_FED = "servo battery, if measured, not low", |_, s| s.inputs.servo_trouble().is_none();
+    MAY_APPROACH = "position and range or pipe known, sticks centred, servo battery not low", |_, s| nearing::obstacle(s).is_none();
     TAKEN_OVER = "a stick moved, or perch or hold switch turned", |_, s| s.context.by_itself.taken;
     BY_ITSELF = "perching or leaving by itself", |_, s| s.context.by_itself.active;
     BY_HAND = "flown by hand", |_, s| !s.context.by_itself.acts();
@@ -126,7 +127,7 @@ guards! {
     SPOOLED_ON_GRIP = "arms hold and rotors spool down", |state, s| closing(state, |c| c.holds(s) && c.spool.down);
     STANDS = "rotors stand", |state, s| closing(state, |c| c.stands(s));
     GRIP_PROVEN = "grip proven", |_, s| s.grip_proven();
-    LAST_RESORT = "radio lost and battery critical", |_, s| Clamping::last_resort(s);
+    LAST_RESORT = "radio lost, and battery critical or not measured", |_, s| Clamping::last_resort(s);
 
     RELEASE_ASKED = "perch switch off again, throttle set", |_, s| Perched::release_asked(s);
     UPRIGHT = "attitude known, lean small", |_, s| s.inputs.motion.is_some() && !s.context.lean.too_far_to_release();

@@ -37,7 +37,9 @@ pub fn asked(step: &Step<'_>) -> bool {
 pub fn obstacle(step: &Step<'_>) -> Option<Reason> {
     let sticks = step.inputs.sticks.unwrap_or_default();
     let ranged = |e: Estimate| e.foot.age <= RANGE_AGE;
-    if !centred(&sticks) {
+    if let Some(why) = step.inputs.servo_trouble() {
+        Some(Reason::Check(why))
+    } else if !centred(&sticks) {
         Some(Reason::SticksNotCentred)
     } else if !fresh(step.inputs) {
         Some(Reason::NoPosition)

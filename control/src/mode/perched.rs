@@ -83,7 +83,9 @@ impl Perched {
         } else if asked {
             Some(Reason::ThrottleTooHigh)
         } else {
-            None
+            // The servos lose their power, and with it the grip or the way out of it. Rotors never start unasked: the pilot
+            // lets go.
+            i.servo_trouble().map(Reason::Check)
         }
     }
 }

@@ -139,6 +139,8 @@ impl Reason {
     pub const RADIO_LOST: Self = Self::Check(ArmingInhibit::RcLost);
     /// No fresh attitude.
     pub const IMU_SILENT: Self = Self::Check(ArmingInhibit::ImuStale);
+    /// No fresh voltage of the flight battery.
+    pub const BATTERY_SILENT: Self = Self::Check(ArmingInhibit::BatterySilent);
     /// The inertial sensor is read by the clock, its data-ready line being silent.
     pub const LINE_SILENT: Self = Self::Check(ArmingInhibit::ImuLineSilent);
 }

@@ -17,6 +17,8 @@ pub enum Notice {
     ShowOf(fn(&State, &Step<'_>) -> Option<Reason>),
     /// This, by the new state itself for as long as it lasts.
     Lasting(Reason),
+    /// The same of what the function gives.
+    LastingOf(fn(&Step<'_>) -> Option<Reason>),
 }
 
 /// The modes in which a row applies.
@@ -73,7 +75,7 @@ use Mode::{
     Approach, Armed, Calibrating, Clamping, Contact, Disarmed, Escaping, Failsafe, Flight, Hold, Landed,
     Perched, Releasing,
 };
-use Notice::{Clear, Keep, Lasting, Show, ShowOf};
+use Notice::{Clear, Keep, Lasting, LastingOf, Show, ShowOf};
 
 /// The modes in which an arm may hold while rotors turn.
 const CLOSED: &[Mode] = &[Clamping, Releasing];
@@ -98,6 +100,9 @@ const CAUSE: Notice = ShowOf(|state, _| match state {
     _ => None,
 });
 
+/// What forces the landing.
+const LANDS: Notice = LastingOf(|step| step.context.dangers.landing());
+
 /// Every transition in the order of priority.
 #[rustfmt::skip]
 pub const TRANSITIONS: &[Transition] = &[
@@ -120,8 +125,7 @@ pub const TRANSITIONS: &[Transition] = &[
     row(&[Landed], &[STOOD], To::Disarmed(entries::stopped), Clear),
     // In the air.
     row(AIRBORNE, &[RADIO_LOST], To::Failsafe(entries::failsafe), Lasting(Reason::RADIO_LOST)),
-    row(AIRBORNE, &[BATTERY_CRITICAL], To::Failsafe(entries::failsafe), Lasting(Reason::BatteryCritical)),
-    row(AIRBORNE, &[LINE_SILENT], To::Failsafe(entries::failsafe), Lasting(Reason::LINE_SILENT)),
+    row(AIRBORNE, &[MUST_LAND], To::Failsafe(entries::failsafe), LANDS),
     // The pilot's hands first.
     row(&[Hold, Approach], &[HOLD_OFF], To::Flight(entries::flight), Clear),
     // What it feels would slide from under a hold: up, as from the pipe.
@@ -138,7 +142,7 @@ pub const TRANSITIONS: &[Transition] = &[
     row(&[Flight], &[SETS_DOWN, SWITCH_TURNED, SLIDES_AT_TOUCH],
         To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
     row(&[Flight], &[SETS_DOWN, SWITCH_TURNED, FALLS_BESIDE], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
-    row(&[Flight], &[MEANS_TO_PERCH, SWITCH_TURNED, TOUCHED, LEVEL], To::Contact(entries::contact), Keep),
+    row(&[Flight], &[MEANS_TO_PERCH, SWITCH_TURNED, SERVOS_FED, TOUCHED, LEVEL], To::Contact(entries::contact), Keep),
     row(&[Flight], &[HOLD_ON, HOLD_TURNED, POSITION_FRESH, NOT_RESTING], To::Hold(entries::holding), Clear),
     row(&[Hold], &[ASKED_TO_PERCH, MAY_APPROACH], To::Approach(entries::approach), Clear),
     row(&[Approach], &[COMMITTED, SLIDES_AT_TOUCH], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
@@ -178,22 +182,17 @@ pub const TRANSITIONS: &[Transition] = &[
     row(&[Releasing], &[GROUNDED_ON_PIPE], To::Clamping(entries::closing_again), Keep),
     row(&[Escaping], &[STUCK], To::Releasing(entries::releasing_stuck), Show(Reason::ArmsStuck)),
     row(&[Escaping], &[CLEAR, RADIO_LOST], To::Failsafe(entries::failsafe), Lasting(Reason::RADIO_LOST)),
-    row(&[Escaping], &[CLEAR, BATTERY_CRITICAL], To::Failsafe(entries::failsafe), Lasting(Reason::BatteryCritical)),
-    row(&[Escaping], &[CLEAR, LINE_SILENT], To::Failsafe(entries::failsafe), Lasting(Reason::LINE_SILENT)),
+    row(&[Escaping], &[CLEAR, MUST_LAND], To::Failsafe(entries::failsafe), LANDS),
     row(&[Escaping], &[CLEAR, LEAVES, POSITION_FRESH], To::Approach(entries::approach_again), Keep),
-    row(&[Escaping], &[CLEAR, TRY_LEFT, POSITION_FRESH], To::Approach(entries::approach_again), Keep),
+    row(&[Escaping], &[CLEAR, TRY_LEFT, SERVOS_FED, POSITION_FRESH], To::Approach(entries::approach_again), Keep),
     row(&[Escaping], &[CLEAR, BY_ITSELF, HOLD_KEPT, POSITION_FRESH], To::Hold(entries::handed_back), Keep),
     row(&[Escaping], &[CLEAR, BY_HAND, TAKES_OVER], To::Flight(entries::flight), Keep),
     row(&[Escaping], &[CLEAR, NOT_TAKEN_OVER], To::Failsafe(entries::failsafe), Lasting(Reason::NotTakenOver)),
     // Not by its support alone: a vehicle lighter or stronger than its parameters would seem carried in free air. On
     // real ground the probe takes thrust away until most of the weight is carried.
     row(&[Failsafe], &[GROUNDED], To::Disarmed(entries::stopped), CAUSE),
-    row(&[Failsafe], &[LOST_RADIO, RADIO, BATTERY_CRITICAL],
-        To::Failsafe(entries::failsafe), Lasting(Reason::BatteryCritical)),
-    row(&[Failsafe], &[LOST_RADIO, RADIO, LINE_SILENT], To::Failsafe(entries::failsafe), Lasting(Reason::LINE_SILENT)),
-    row(&[Failsafe], &[LOST_PILOT, RADIO, BATTERY_CRITICAL],
-        To::Failsafe(entries::failsafe), Lasting(Reason::BatteryCritical)),
-    row(&[Failsafe], &[LOST_PILOT, RADIO, LINE_SILENT], To::Failsafe(entries::failsafe), Lasting(Reason::LINE_SILENT)),
+    row(&[Failsafe], &[LOST_RADIO, RADIO, MUST_LAND], To::Failsafe(entries::failsafe), LANDS),
+    row(&[Failsafe], &[LOST_PILOT, RADIO, MUST_LAND], To::Failsafe(entries::failsafe), LANDS),
     row(&[Failsafe], &[LOST_PILOT, TAKES_OVER], To::Flight(entries::flight), Keep),
     row(&[Failsafe], &[LOST_PILOT, RADIO_LOST], To::Failsafe(entries::failsafe), Lasting(Reason::RADIO_LOST)),
     row(&[Failsafe], &[LOST_RADIO, RESUMES], To::Flight(entries::flight), Keep),
@@ -214,8 +213,9 @@ impl Transition {
             Keep | Clear => None,
             Show(why) | Lasting(why) => Some(why),
             ShowOf(why) => why(from, step),
+            LastingOf(why) => why(step),
         };
-        if !matches!(self.notice, Keep | Lasting(_)) {
+        if !matches!(self.notice, Keep | Lasting(_) | LastingOf(_)) {
             step.context.note(why);
         }
         self.to.enter(from, step, why)

@@ -256,6 +256,42 @@ choices! {
         M4321 = 4321.0, "";
     }
 
+    /// Servos whose marks have been measured: their digits, ascending.
+    ServoMarks {
+        /// No servo.
+        None = 0.0, "";
+        /// Servo 1.
+        S1 = 1.0, "";
+        /// Servo 2.
+        S2 = 2.0, "";
+        /// Servo 3.
+        S3 = 3.0, "";
+        /// Servo 4.
+        S4 = 4.0, "";
+        /// Servos 1 and 2.
+        S12 = 12.0, "";
+        /// Servos 1 and 3.
+        S13 = 13.0, "";
+        /// Servos 1 and 4.
+        S14 = 14.0, "";
+        /// Servos 2 and 3.
+        S23 = 23.0, "";
+        /// Servos 2 and 4.
+        S24 = 24.0, "";
+        /// Servos 3 and 4.
+        S34 = 34.0, "";
+        /// Servos 1, 2 and 3.
+        S123 = 123.0, "";
+        /// Servos 1, 2 and 4.
+        S124 = 124.0, "";
+        /// Servos 1, 3 and 4.
+        S134 = 134.0, "";
+        /// Servos 2, 3 and 4.
+        S234 = 234.0, "";
+        /// Servos 1, 2, 3 and 4.
+        S1234 = 1234.0, "";
+    }
+
     /// Full scale of the accelerometer, g.
     ImuAccelRange {
         /// ±2 g.
@@ -269,8 +305,31 @@ choices! {
     }
 }
 
+impl ServoMarks {
+    /// True where those of `servo` (0 to 3) have been measured.
+    pub fn has(self, servo: usize) -> bool {
+        let mut digits = self.number() as usize;
+        while digits > 0 {
+            if digits % 10 == servo + 1 {
+                return true;
+            }
+            digits /= 10;
+        }
+        false
+    }
+
+    /// With those of `servo` (0 to 3).
+    pub fn with(self, servo: usize) -> Self {
+        let has = (0..4).filter(|&other| other == servo || self.has(other));
+        let number = has.fold(0, |number, servo| 10 * number + servo + 1);
+        Self::from_number(number as f32).unwrap_or(self)
+    }
+}
+
 #[cfg(test)]
 mod tests {
+    extern crate std;
+
     use super::super::Params;
     use super::*;
 
@@ -290,7 +349,21 @@ mod tests {
                 assert!(choice.name.parse::<f32>().is_err(), "{}", choice.name);
             }
         }
-        assert_eq!(enumerated, 13);
+        assert_eq!(enumerated, 14);
+    }
+
+    #[test]
+    fn a_servos_marks_are_found_in_the_number_and_added_to_it() {
+        for &marks in ServoMarks::ALL {
+            for servo in 0..4 {
+                let digit = char::from_digit(servo as u32 + 1, 10).unwrap();
+                let number = std::format!("{}", marks.number());
+                assert_eq!(marks.has(servo), number.contains(digit), "{number} {servo}");
+                let with = marks.with(servo);
+                assert!((0..4).all(|other| with.has(other) == (other == servo || marks.has(other))));
+            }
+        }
+        assert_eq!(ServoMarks::S24.with(0), ServoMarks::S124);
     }
 
     #[test]

@@ -4,7 +4,7 @@
 use super::ParamInfo;
 use super::choices::{
     ArmBusSpeed, ArmSign, FlowMounting, FlowPort, ImuAccelRange, ImuGyroRange, ImuMounting, ImuRate,
-    MotorMap, MotorProtocol, RcProtocol, Value,
+    MotorMap, MotorProtocol, RcProtocol, ServoMarks, Value,
 };
 use super::names::check_names;
 
@@ -326,6 +326,9 @@ params! {
     servo_full_3 = 2450.0, "us", 550.0 ..= 2450.0;
     /// Pulse of servo 4 at `servo_range`.
     servo_full_4 = 2450.0, "us", 550.0 ..= 2450.0;
+    /// Servos whose release and full pulses have been measured (`calibrate servo` adds its digit): 1234 for all. The others
+    /// get no pulse, since their pulses are a guess that may lie beyond an end stop, and arming is refused.
+    servo_marks: ServoMarks = ServoMarks::None, "1";
     /// Slew of servo 1 (MG996R datasheet, 0.17 s for 60 degrees at 4.8 V).
     servo_slew_1 = 6.16, "rad/s", 0.5 ..= 20.0;
     /// Slew of servo 2.
@@ -378,4 +381,10 @@ params! {
     battery_warning = 13.6, "V", 5.0 ..= 52.0;
     /// Battery voltage under load at which the failsafe lands.
     battery_critical = 12.6, "V", 5.0 ..= 52.0;
+    /// Servo battery's voltage over that at its pin (docs/wiring.md); 0 where it is not measured.
+    servo_batt_div = 0.0, "1", 0.0 ..= 60.0;
+    /// Servo battery's voltage under load at which the pilot is warned: 3.6 V a cell of 2S, a tenth to a fifth is left.
+    servo_batt_warn = 7.2, "V", 0.0 ..= 52.0;
+    /// Servo battery's voltage under load at which arming and perching are refused: 3.4 V a cell, about a twentieth.
+    servo_batt_low = 6.8, "V", 0.0 ..= 52.0;
 }

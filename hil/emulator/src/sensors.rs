@@ -134,7 +134,8 @@ impl Sensors {
         let voltage = plant.battery_voltage() * self.battery_share;
         let voltage = f64::from(self.battery.voltage(voltage)) * VOLTS_PER_COUNT;
         let amps = f64::from(self.battery.current(plant.battery_current())) * AMPS_PER_COUNT;
-        let [.., v, i] = &mut wires.analog;
-        (*v, *i) = (voltage, amps);
+        let servos = f64::from(self.battery.servo_voltage(plant.servo_voltage())) * VOLTS_PER_COUNT;
+        let [.., v, i, s] = &mut wires.analog;
+        (*v, *i, *s) = (voltage, amps, servos);
     }
 }

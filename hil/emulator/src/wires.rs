@@ -16,8 +16,8 @@ pub struct Wires {
     pub arms: PerArm<[f64; 3]>,
     /// Pressure (Pa) and temperature (°C) at the barometer; `None`: it answers no more.
     pub air: Option<(f64, f64)>,
-    /// Pads of pressure 1 to 4 (V), battery voltage (V) and current (A).
-    pub analog: [f64; 6],
+    /// Pads of pressure 1 to 4 (V), battery voltage (V) and current (A), servo battery (V).
+    pub analog: [f64; 7],
     /// Parity, if any, is the top bit.
     pub receiver: Vec<u16>,
     /// Bytes typed at the console.

@@ -26,6 +26,8 @@ pub(super) enum Answer {
     Parameter(Place),
     /// A stream's message, once.
     Stream(u32),
+    /// The servo battery, behind the flight battery.
+    ServoBattery,
     Version,
     /// Where the description of the parameters is.
     Metadata,
@@ -46,6 +48,7 @@ impl Answer {
             Self::Interval { .. } => frame_bytes::<MESSAGE_INTERVAL_DATA>(),
             Self::Parameter(_) => frame_bytes::<PARAM_VALUE_DATA>(),
             Self::Stream(id) => STREAMS.iter().find(|s| s.id == *id).map_or(0, |s| s.bytes),
+            Self::ServoBattery => frame_bytes::<BATTERY_STATUS_DATA>(),
             Self::Version => frame_bytes::<AUTOPILOT_VERSION_DATA>(),
             Self::Metadata => frame_bytes::<COMPONENT_METADATA_DATA>(),
             Self::Mode { .. } => frame_bytes::<AVAILABLE_MODES_DATA>(),

@@ -98,7 +98,12 @@ impl Server {
                 message_id: id,
             })),
             Answer::Parameter(place) => Some(encoder.encode(&self.parameters.value(place)?)),
-            Answer::Stream(id) => stream(encoder, id, now, vehicle),
+            Answer::Stream(id) => {
+                let sent = stream(encoder, id, now, vehicle);
+                self.second_battery(id, vehicle);
+                sent
+            }
+            Answer::ServoBattery => Some(encoder.encode(&make::servo_battery_status(vehicle)?)),
             Answer::Version => Some(encoder.encode(&make::autopilot_version())),
             // Wraps after 49 days, as the standard's field does.
             Answer::Metadata => Some(encoder.encode(&COMPONENT_METADATA_DATA {
@@ -152,11 +157,19 @@ impl Server {
             if self.budget.allows(due.bytes + RESERVE) {
                 let sent = stream(&mut self.encoder, due.id, now, vehicle);
                 if sent.is_some() {
+                    self.second_battery(due.id, vehicle);
                     return sent;
                 }
             }
         }
         None
+    }
+
+    /// Behind the message `id` of the flight battery the servo battery's, if one is measured.
+    fn second_battery(&mut self, id: u32, vehicle: &Vehicle) {
+        if id == BATTERY_STATUS_DATA::ID && vehicle.servo_battery.is_some() {
+            self.answer(Answer::ServoBattery);
+        }
     }
 
     fn send_file(&mut self) -> Option<u32> {

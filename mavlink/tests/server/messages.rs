@@ -3,7 +3,7 @@
 use std::f32::consts::{FRAC_1_SQRT_2, FRAC_PI_2, FRAC_PI_6};
 
 use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
-use sophie_control::battery::Battery;
+use sophie_control::battery::{Battery, ServoBattery, ServoSupply};
 use sophie_control::grip::{ArmGrip, ArmState, GripState};
 use sophie_control::math::deg;
 use sophie_control::mode::{Mode, Reason};
@@ -14,7 +14,9 @@ use sophie_control::vector::{Quat, Vec3};
 use sophie_mavlink::Vehicle;
 use sophie_mavlink::messages::*;
 
-use crate::station::vehicle;
+use sophie_mavlink::dialect::*;
+
+use crate::station::{Station, vehicle};
 
 const ARMED: u8 = 128;
 
@@ -120,8 +122,8 @@ fn the_battery_is_in_mv_ca_mah_and_percent() {
     let mut v = vehicle(Mode::Flight);
     v.battery = Some(Battery {
         voltage: 15.264,
-        current: 21.3,
-        used: 1620.0,
+        current: Some(21.3),
+        used: Some(1620.0),
         ratio: 1.0,
     });
     let b = battery_status(&v);
@@ -138,8 +140,8 @@ fn the_battery_is_in_mv_ca_mah_and_percent() {
     // Beyond what the fields hold.
     v.battery = Some(Battery {
         voltage: 1e6,
-        current: 1e6,
-        used: 1e6,
+        current: Some(1e6),
+        used: Some(1e6),
         ratio: 1.0,
     });
     let s = sys_status(&v);
@@ -147,6 +149,20 @@ fn the_battery_is_in_mv_ca_mah_and_percent() {
         (s.voltage_battery, s.current_battery, s.battery_remaining),
         (u16::MAX, i16::MAX, 0)
     );
+    // A current that is no measurement, and with it the charge, is marked; the voltage goes on.
+    v.battery = Some(Battery {
+        voltage: 15.0,
+        current: None,
+        used: None,
+        ratio: 1.0,
+    });
+    let (b, s) = (battery_status(&v), sys_status(&v));
+    assert_eq!((b.voltages[0], s.voltage_battery), (15_000, 15_000));
+    assert_eq!(
+        (b.current_battery, b.current_consumed, b.battery_remaining),
+        (-1, -1, -1)
+    );
+    assert_eq!((s.current_battery, s.battery_remaining), (-1, -1));
     v.battery = None;
     let b = battery_status(&v);
     assert_eq!(
@@ -168,6 +184,30 @@ fn the_battery_is_in_mv_ca_mah_and_percent() {
 }
 
 #[test]
+fn the_servo_battery_is_a_second_one_of_which_the_voltage_is_known() {
+    let mut v = vehicle(Mode::Perched);
+    assert_eq!(servo_battery_status(&v), None);
+    for (supply, charge) in [
+        (ServoSupply::Good, 1),
+        (ServoSupply::NearEnd, 2),
+        (ServoSupply::Low, 3),
+    ] {
+        v.servo_battery = Some(ServoBattery {
+            voltage: 7.164,
+            supply,
+        });
+        let b = servo_battery_status(&v).unwrap();
+        assert_eq!((b.id, b.voltages[0], b.voltages[1]), (1, 7164, u16::MAX));
+        assert_eq!(
+            (b.current_battery, b.current_consumed, b.battery_remaining),
+            (-1, -1, -1)
+        );
+        // MAV_BATTERY_FUNCTION_PAYLOAD.
+        assert_eq!((b.charge_state, b.battery_function), (charge, 4));
+    }
+}
+
+#[test]
 fn each_sick_part_loses_its_bit_and_arming_with_it() {
     let healthy = sys_status(&vehicle(Mode::Disarmed));
     assert_eq!(
@@ -179,6 +219,7 @@ fn each_sick_part_loses_its_bit_and_arming_with_it() {
         (ArmingInhibit::ImuAbsent, 1 | 2),
         (ArmingInhibit::RcLost, 1 << 16),
         (ArmingInhibit::BatteryLow, 1 << 25),
+        (ArmingInhibit::BatterySilent, 1 << 25),
         (ArmingInhibit::NotCalibrated, 1 << 21),
         (ArmingInhibit::Overruns, 1 << 10 | 1 << 11 | 1 << 15),
         (ArmingInhibit::PerchSwitchOn, 0),
@@ -287,4 +328,26 @@ fn every_mode_can_be_listed_once() {
         assert_eq!((listed.custom_mode, listed.number_modes), (*mode as u32, count));
     }
     assert!(available_mode(0).is_none());
+}
+
+#[test]
+fn a_second_battery_follows_the_first_as_often_and_on_request() {
+    let mut station = Station::new();
+    station.run(3000);
+    let ids = |station: &Station| -> Vec<u8> {
+        let got = station.got::<BATTERY_STATUS_DATA>();
+        got.iter().map(|battery| battery.id).collect()
+    };
+    assert_eq!(ids(&station), [0; 3]);
+    station.vehicle.servo_battery = Some(ServoBattery {
+        voltage: 7.6,
+        supply: ServoSupply::Good,
+    });
+    station.sent.clear();
+    station.run(3000);
+    assert_eq!(ids(&station), [0, 1, 0, 1, 0, 1]);
+    station.sent.clear();
+    station.command(MavCmd::MAV_CMD_REQUEST_MESSAGE, [147.0, 0.0]);
+    station.run(100);
+    assert_eq!(ids(&station), [0, 1]);
 }

@@ -9,7 +9,7 @@ use embassy_time::{Duration, Instant, Timer};
 use heapless::Vec as Few;
 use sophie_control::air_pressure::AirPressure;
 use sophie_control::math::GRAVITY;
-use sophie_control::params::Params;
+use sophie_control::params::{Params, ServoMarks};
 use sophie_control::vector::Vec3;
 use sophie_control::wrench::PerArm;
 use sophie_tasks::links::{Links, Raw};
@@ -24,9 +24,13 @@ pub fn links() -> &'static Links {
     links_with(Params::default())
 }
 
-/// The same with these parameters.
+/// The same with these parameters, of a vehicle whose servos are calibrated.
 pub fn links_with(params: Params) -> &'static Links {
-    Box::leak(Box::new(Links::new(params)))
+    let servo_marks = ServoMarks::S1234;
+    Box::leak(Box::new(Links::new(Params {
+        servo_marks,
+        ..params
+    })))
 }
 
 /// How a port answers.

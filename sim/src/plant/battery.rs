@@ -1,36 +1,75 @@
-//! The flight battery: 4S lithium with a resistance.
+//! Flight and servo battery: lithium cells with a resistance.
 
-/// A·s: 1800 mAh (paper).
-const CAPACITY: f64 = 1.8 * 3600.0;
-/// Pack and leads, Ω (assumed).
-const RESISTANCE: f64 = 0.035;
-const CELLS: f64 = 4.0;
-/// A (assumed).
-const ELECTRONICS: f64 = 0.6;
+use super::servo_power;
+
+/// A pack as built.
+#[derive(Clone, Copy, Debug)]
+struct Pack {
+    cells: f64,
+    /// A·s.
+    capacity: f64,
+    /// With its leads, Ω (assumed).
+    resistance: f64,
+    /// What always flows, A (assumed).
+    always: f64,
+}
+
+/// 4S 1800 mAh (paper), with the electronics.
+const FLIGHT: Pack = Pack {
+    cells: 4.0,
+    capacity: 1.8 * 3600.0,
+    resistance: 0.035,
+    always: 0.6,
+};
+/// 2S 1200 mAh (paper).
+const SERVOS: Pack = Pack {
+    cells: 2.0,
+    capacity: servo_power::CAPACITY,
+    resistance: 0.05,
+    always: 0.0,
+};
 /// V per cell, per 10 % of charge from 0 (typical LiPo).
 const OPEN_VOLTAGE: [f64; 11] = [3.27, 3.69, 3.73, 3.77, 3.80, 3.84, 3.87, 3.95, 4.02, 4.11, 4.20];
 
 /// The battery's state.
 #[derive(Clone, Copy, Debug)]
 pub struct Battery {
+    pack: Pack,
     charge: f64,
     current: f64,
 }
 
 impl Battery {
-    /// A battery with `charge` (0..1) of its capacity.
+    /// A flight battery with `charge` (0..1) of its capacity.
     #[must_use]
     pub fn new(charge: f64) -> Self {
+        Self::of(FLIGHT, charge)
+    }
+
+    /// A servo battery with `charge` (0..1) of its capacity.
+    #[must_use]
+    pub fn of_servos(charge: f64) -> Self {
+        Self::of(SERVOS, charge)
+    }
+
+    fn of(pack: Pack, charge: f64) -> Self {
         Self {
+            pack,
             charge: charge.clamp(0.0, 1.0),
-            current: ELECTRONICS,
+            current: pack.always,
         }
     }
 
-    /// Draws `motors` A for `dt` s.
-    pub fn step(&mut self, dt: f64, motors: f64) {
-        self.current = motors + ELECTRONICS;
-        self.charge = (self.charge - self.current * dt / CAPACITY).max(0.0);
+    /// Draws `current` A, of motors or servos, for `dt` s.
+    pub fn step(&mut self, dt: f64, current: f64) {
+        self.current = current + self.pack.always;
+        self.charge = (self.charge - self.current * dt / self.pack.capacity).max(0.0);
+    }
+
+    /// Nothing is left: what hangs on it has no supply.
+    #[must_use]
+    pub fn empty(&self) -> bool {
+        self.charge <= 0.0
     }
 
     /// Voltage under load, V.
@@ -39,7 +78,7 @@ impl Battery {
         let x = self.charge * 10.0;
         let i = (x as usize).min(9);
         let (low, high) = (OPEN_VOLTAGE[i], OPEN_VOLTAGE[i + 1]);
-        CELLS * (low + (high - low) * (x - i as f64)) - self.current * RESISTANCE
+        self.pack.cells * (low + (high - low) * (x - i as f64)) - self.current * self.pack.resistance
     }
 
     /// Current, A.
@@ -56,12 +95,17 @@ mod tests {
     #[test]
     fn a_full_pack_rests_at_16_8_volts_and_empties() {
         let mut b = Battery::new(1.0);
-        assert!((b.voltage() + ELECTRONICS * RESISTANCE - 16.8).abs() < 1e-9);
-        b.step(CAPACITY / 20.0, 10.0 - ELECTRONICS);
+        assert!((b.voltage() + FLIGHT.always * FLIGHT.resistance - 16.8).abs() < 1e-9);
+        b.step(FLIGHT.capacity / 20.0, 10.0 - FLIGHT.always);
         assert!(
             (b.voltage() - (4.0 * 3.84 - 0.35)).abs() < 1e-9,
             "{}",
             b.voltage()
         );
+        let mut b = Battery::of_servos(0.1);
+        assert!((b.voltage() - 7.38).abs() < 1e-9 && !b.empty());
+        // 432 A s.
+        b.step(100.0, 4.32);
+        assert!((b.voltage() - (6.54 - 0.216)).abs() < 1e-9 && b.empty());
     }
 }

@@ -31,6 +31,7 @@ use self::flexible::{Carrier, Drive, Flexible, Nearby};
 use self::gust::Gust;
 use self::hinged::HingedArm;
 use self::rotor::Rotor;
+use self::servo_power::MG996R;
 use self::tendon::{ServoSpec, Tendon, TendonSpec};
 use crate::scenario::{ArmBending, Scenario, Vehicle};
 
@@ -89,6 +90,7 @@ struct Base {
     state: BodyState,
     limbs: PerArm<Limb>,
     battery: Battery,
+    servo_battery: Battery,
     gust: Gust,
     ground_belly: Belly,
     pipe_belly: Belly,
@@ -258,6 +260,12 @@ impl Plant {
         self.base.battery.voltage()
     }
 
+    /// Voltage of the servo battery under load, V.
+    #[must_use]
+    pub fn servo_voltage(&self) -> f64 {
+        self.base.servo_battery.voltage()
+    }
+
     /// The pipe.
     #[must_use]
     pub fn pipe(&self) -> &Pipe {
@@ -305,6 +313,7 @@ impl Base {
             },
             limbs: std::array::from_fn(limb),
             battery: Battery::new(v.battery_charge),
+            servo_battery: Battery::of_servos(v.servo_charge),
             gust: Gust::new(w.gust_force, w.gust_moment, scenario.streams())
                 .in_wind(w.steady_wind, scenario.wind_from()),
             ground_belly: Belly::default(),
@@ -332,15 +341,21 @@ impl Base {
             coupled: self.body.coupled(),
         };
         let voltage = self.battery.voltage();
-        let mut current = 0.0;
+        let (mut current, mut servo_current) = (0.0, 0.0);
+        let powered = !self.servo_battery.empty();
         let commands = actuators.motors.iter().zip(&actuators.servos);
         for ((limb, arm), (motor, servo)) in self.limbs.iter_mut().zip(arms.iter_mut()).zip(commands) {
             let thrust = limb.rotor.step(STEP, *motor, voltage);
             current += limb.rotor.current(voltage);
+            // Without supply as without pulse: the gears hold what they can.
+            let servo = if powered { *servo } else { 0.0 };
+            if servo > 0.0 {
+                servo_current += MG996R.at(limb.tendon.servo_torque());
+            }
             let drive = Drive {
                 dt: STEP,
                 thrust,
-                tendon: limb.tendon.step(STEP, *servo, arm.tilt()),
+                tendon: limb.tendon.step(STEP, servo, arm.tilt()),
                 momentum: limb.rotor.momentum(),
                 drag: limb.rotor.drag(),
             };
@@ -348,6 +363,7 @@ impl Base {
             arm.drive(&drive, &carrier, &mut load);
         }
         self.battery.step(STEP, current);
+        self.servo_battery.step(STEP, servo_current);
 
         let acceleration = self.body.accelerate(&pose, load, gravity, arms.each_ref());
         self.specific_force = acceleration.linear - gravity;

@@ -34,6 +34,7 @@ impl Default for Vehicle {
             coupled_arms: true,
             arm_damping: 0.15,
             battery_charge: 1.0,
+            servo_charge: 1.0,
             servo: ServoProfile::Paper,
             body: BodySpec::default(),
             rotor: RotorSpec::default(),

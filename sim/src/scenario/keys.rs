@@ -387,6 +387,11 @@ pub const KEYS: &[Key] = &[
         Range::new(5.0, 100.0, "%").times(PERCENT),
         vehicle.battery_charge
     ),
+    number!(
+        "vehicle.servo_charge_percent",
+        Range::new(0.0, 100.0, "%").times(PERCENT),
+        vehicle.servo_charge
+    ),
     Key {
         name: "vehicle.servo",
         kind: Kind::Choice(SERVOS, |s, v| s.vehicle.servo = servo(v)),

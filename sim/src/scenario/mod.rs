@@ -107,6 +107,8 @@ pub struct Vehicle {
     pub arm_damping: f64,
     /// Battery charge at power-up, 0..1.
     pub battery_charge: f64,
+    /// Charge of the servo battery at power-up, 0..1.
+    pub servo_charge: f64,
     /// The tendon servo.
     pub servo: ServoProfile,
     /// Mass and inertia.

@@ -3,6 +3,7 @@
 
 use core::ops::Range as Span;
 
+use sophie_control::params::ServoMarks;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -236,6 +237,8 @@ fn params_from_vehicle(scenario: &mut Scenario) {
     (params.servo_slew_1, params.servo_slew_2) = (slew, slew);
     (params.servo_slew_3, params.servo_slew_4) = (slew, slew);
     params.servo_range = servo.range as f32;
+    // Pulses and marks of the servos are the parameters' (`ServoSpec::measured`).
+    params.servo_marks = ServoMarks::S1234;
 }
 
 /// In the file's order: the first mistake is reported.

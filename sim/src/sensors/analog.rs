@@ -1,4 +1,4 @@
-//! Battery voltage divider and current sensor.
+//! Voltage dividers of both batteries and current sensor.
 
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
@@ -32,6 +32,8 @@ pub struct BatteryInputs {
     current_gain: f64,
     current_offset: f64,
     rng: Pcg64Mcg,
+    servo_gain: f64,
+    servo_rng: Pcg64Mcg,
 }
 
 impl BatteryInputs {
@@ -44,12 +46,19 @@ impl BatteryInputs {
             current_gain: 1.0 + within("current", GAIN_ERROR.1),
             current_offset: within("offset", OFFSET),
             rng: streams.of("battery"),
+            servo_gain: 1.0 + within("servos", GAIN_ERROR.0),
+            servo_rng: streams.of("servo battery"),
         }
     }
 
     /// Counts for a true voltage (V).
     pub fn voltage(&mut self, volts: f64) -> u16 {
         counts(volts * self.voltage_gain / VOLTS_PER_COUNT, &mut self.rng)
+    }
+
+    /// Counts for a true voltage (V) of the servo battery, behind the same divider.
+    pub fn servo_voltage(&mut self, volts: f64) -> u16 {
+        counts(volts * self.servo_gain / VOLTS_PER_COUNT, &mut self.servo_rng)
     }
 
     /// Counts for a true current (A).

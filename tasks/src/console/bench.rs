@@ -83,6 +83,15 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         let Some(servo) = self.one_of_four("servo", number).await else {
             return;
         };
+        let marked = self.links.params.servo_marks.has(servo);
+        if !marked && to != "pulse" {
+            return self
+                .out
+                .line(format_args!(
+                    "servo {number} has no marks yet: 'calibrate servo {number}', or 'servo {number} pulse'"
+                ))
+                .await;
+        }
         let reel = Reel::from_params(&self.links.params, servo);
         let most = to_deg(self.links.params.servo_range);
         let value = at.and_then(decimal::parse);
@@ -101,13 +110,26 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
             }
         };
         let (pulse, angle) = (Decimal(pulse_us), Decimal(to_deg(reel.angle_of(pulse_us))));
-        let begun =
-            format_args!("servo {number} to {pulse:.0} us, {angle:.0} deg from release; any key ends it");
-        let end = self
-            .order(BenchOrder::Place(Place { servo, pulse_us }), begun)
+        let order = BenchOrder::Place(Place { servo, pulse_us });
+        let end = if marked {
+            let begun =
+                format_args!("servo {number} to {pulse:.0} us, {angle:.0} deg from release; any key ends it");
+            self.order(order, begun).await
+        } else {
+            let begun = format_args!("servo {number} to {pulse:.0} us; any key ends it");
+            self.order(order, begun).await
+        };
+        self.say_end(format_args!("servo {number} {}", self.goes(servo)), end)
             .await;
-        self.say_end(format_args!("servo {number} back to its release mark"), end)
-            .await;
+    }
+
+    /// What `servo` does behind an order.
+    pub(super) fn goes(&self, servo: usize) -> &'static str {
+        if self.links.params.servo_marks.has(servo) {
+            "back to its release mark"
+        } else {
+            "without pulse again"
+        }
     }
 
     /// The index of motor or servo `number`, 1 to 4, or a line that there is none.

@@ -32,6 +32,8 @@ const TURNS_SHOWN: u16 = 200;
 const STEP_US: f32 = 10.0;
 /// First pulse of a motor above its stop, µs: less than any dead zone, and the bench's least drive of every range.
 const FIRST_US: f32 = 30.0;
+/// Where a servo without marks begins, µs: the middle of every servo, far from its stops.
+const MIDDLE_US: f32 = 1500.0;
 
 /// What can be calibrated, and what that buys.
 const WHAT: [(&str, &str); 10] = [
@@ -378,15 +380,28 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         };
         let allowed = [row.min + trim, row.max + trim];
         let reel = Reel::from_params(&self.links.params, servo);
-        let mut marks = [reel.pulse(0.0), reel.pulse(self.links.params.servo_range)];
+        let marked = self.links.params.servo_marks.has(servo);
+        let mut marks = if marked {
+            [reel.pulse(0.0), reel.pulse(self.links.params.servo_range)]
+        } else {
+            [MIDDLE_US; 2]
+        };
+        let mut from = None;
         for (mark, name) in marks.iter_mut().zip(["release", "full"]) {
+            if !marked {
+                // On from where it stands.
+                *mark = from.unwrap_or(*mark);
+            }
             self.out
                 .line(format_args!(
                     "{name} mark: + and - move the servo, Enter takes it, any other key ends"
                 ))
                 .await;
             match self.move_servo(servo, *mark, allowed).await {
-                Some(pulse) => *mark = pulse,
+                Some(pulse) => {
+                    *mark = pulse;
+                    from = Some(pulse);
+                }
                 None => return self.out.line(format_args!("ended: nothing is changed")).await,
             }
         }
@@ -401,7 +416,9 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
                 ))
                 .await;
         }
-        self.put_all(&[*release, *full], [at_release, at_full]).await;
+        let marks = self.params.servo_marks.with(servo).number();
+        self.put_all(&[*release, *full, "servo_marks"], [at_release, at_full, marks])
+            .await;
     }
 
     /// Moves `servo` from `pulse` µs by the keys; the pulse that the builder takes.
@@ -413,7 +430,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
             let key = match self.order_until_key(order, format_args!("{shown:.0} us")).await {
                 Ok(key) => key,
                 Err(end) => {
-                    self.say_end(format_args!("servo back to its release mark"), end)
+                    self.say_end(format_args!("servo {}", self.goes(servo)), end)
                         .await;
                     return None;
                 }

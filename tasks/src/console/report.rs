@@ -31,8 +31,10 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         }
         match self.links.battery.fresh() {
             Some(b) => {
-                // A·s to mAh.
-                let [volts, amps, used] = [b.voltage, b.current, b.used / 3.6].map(Decimal);
+                // What is not known is shown as -1. A·s to mAh.
+                let known =
+                    [b.current, b.used.map(|used| used / 3.6)].map(|value| Decimal(value.unwrap_or(-1.0)));
+                let (volts, [amps, used]) = (Decimal(b.voltage), known);
                 self.out
                     .line(format_args!(
                         "battery {volts:.2} V, {amps:.1} A, {used:.0} mAh used"
@@ -40,6 +42,10 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
                     .await;
             }
             None => self.out.line(format_args!("battery not measured")).await,
+        }
+        if let Some(b) = self.links.servo_battery.fresh() {
+            let volts = Decimal(b.voltage);
+            self.out.line(format_args!("servo battery {volts:.2} V")).await;
         }
         match self.links.rc.latest() {
             Some(rc) => {

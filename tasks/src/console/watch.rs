@@ -65,15 +65,15 @@ const GROUPS: [Group; 11] = [
     },
     Group {
         name: "power",
-        what: "battery in V and A, charge used in mAh",
-        columns: "   volts  ampere    used",
+        what: "battery in V and A, charge used in mAh, servo battery in V",
+        columns: "   volts  ampere    used  servos",
         places: 2,
         read: power,
     },
     Group {
         name: "counts",
-        what: "counts of the converter, 0 to 4095: pressures, battery V and A",
-        columns: "    fsr1    fsr2    fsr3    fsr4    volt  ampere",
+        what: "counts of the converter, 0 to 4095: pressures, battery, servos",
+        columns: "    fsr1    fsr2    fsr3    fsr4    volt  ampere  servos",
         places: 0,
         read: counts,
     },
@@ -169,21 +169,21 @@ fn both(first: PerArm<Option<f32>>, second: Option<PerArm<f32>>, shown: fn(f32) 
 }
 
 fn power(links: &Links) -> Row {
-    let Some(b) = links.battery.fresh() else {
-        return silent(3);
-    };
+    let battery = links.battery.fresh();
+    let current = battery.and_then(|b| b.current);
     // A·s to mAh.
-    [b.voltage, b.current, b.used / 3.6]
+    let used = battery.and_then(|b| b.used).map(|used| used / 3.6);
+    let servos = links.servo_battery.fresh().map(|b| b.voltage);
+    [battery.map(|b| b.voltage), current, used, servos]
         .into_iter()
-        .map(Some)
         .collect()
 }
 
 fn counts(links: &Links) -> Row {
     let Some(frame) = links.counts.fresh() else {
-        return silent(6);
+        return silent(7);
     };
-    let battery = [frame.battery_voltage, frame.battery_current];
+    let battery = [frame.battery_voltage, frame.battery_current, frame.servo_battery];
     frame
         .fsr
         .into_iter()

@@ -1,6 +1,7 @@
 //! Counts as pressures, volts and amperes; rates and silence.
 
 use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
+use sophie_control::battery::ServoSupply;
 use sophie_control::fsr::FsrFault;
 use sophie_control::params::Params;
 use sophie_tasks::analog;
@@ -15,6 +16,7 @@ const FRAME: AnalogFrame = AnalogFrame {
     fsr: [0; 4],
     battery_voltage: 1600,
     battery_current: 250,
+    servo_battery: 0,
 };
 
 fn started() -> (Rig, FakeAnalog) {
@@ -51,11 +53,94 @@ fn counts_become_volts_amperes_and_charge() {
     let (mut rig, _) = started();
     rig.run(20_000);
     let battery = rig.links.battery.fresh().unwrap();
-    assert!((battery.voltage - 16.0).abs() < 1e-3 && (battery.current - 9.0909).abs() < 1e-3);
+    assert!(
+        (battery.voltage - 16.0).abs() < 1e-3 && battery.current.is_some_and(|i| (i - 9.0909).abs() < 1e-3)
+    );
     // 9.09 A for 20 s, less the first reading's 10 ms.
-    assert!((battery.used - 181.8).abs() < 0.2, "{}", battery.used);
+    assert!(
+        battery.used.is_some_and(|used| (used - 181.8).abs() < 0.2),
+        "{battery:?}"
+    );
     // 16 V over 14.8 V.
     assert!((battery.ratio - 1.0811).abs() < 1e-3, "{}", battery.ratio);
+}
+
+#[test]
+fn a_current_at_the_rail_leaves_the_voltage_and_a_voltage_at_the_rail_leaves_nothing() {
+    let (mut rig, port) = started();
+    rig.run(1000);
+    // The current's lead is off, and the battery goes from 16 to 10 V.
+    port.frame.set(AnalogFrame {
+        battery_voltage: 1000,
+        battery_current: 4095,
+        ..FRAME
+    });
+    rig.run(2000);
+    let battery = rig.links.battery.fresh().unwrap();
+    assert!((battery.voltage - 10.0).abs() < 0.01, "{battery:?}");
+    assert_eq!(battery.current, None);
+    // Now the voltage's: no reading is sent with a new time.
+    port.frame.set(AnalogFrame {
+        battery_voltage: 4095,
+        ..FRAME
+    });
+    let last = rig.links.battery.latest().unwrap();
+    rig.run(490);
+    assert_eq!(rig.links.battery.latest(), Some(last));
+    assert!(rig.links.battery.fresh().is_some());
+    rig.run(20);
+    assert_eq!(rig.links.battery.fresh(), None);
+    port.frame.set(FRAME);
+    rig.run(1000);
+    assert!(
+        rig.links
+            .battery
+            .fresh()
+            .is_some_and(|b| (b.voltage - 16.0).abs() < 0.05)
+    );
+}
+
+#[test]
+fn the_servo_battery_is_measured_where_it_is_fitted_and_said_where_it_cannot_be() {
+    let params = Params {
+        servo_batt_div: 11.0,
+        ..Params::default()
+    };
+    let (mut rig, port) = (Rig::with(params), FakeAnalog::default());
+    rig.run(600);
+    assert_eq!(rig.links.servo_supply(), ServoSupply::Silent);
+    let volts = |volts: f32| AnalogFrame {
+        servo_battery: (100.0 * volts) as u16,
+        ..FRAME
+    };
+    port.frame.set(volts(8.0));
+    rig.time.spawn(analog::run(rig.links, port.clone()));
+    rig.run(1000);
+    let battery = rig.links.servo_battery.fresh().unwrap();
+    assert!((battery.voltage - 8.0).abs() < 1e-3, "{battery:?}");
+    assert_eq!(rig.links.servo_supply(), ServoSupply::Good);
+    for (now, expected) in [
+        (7.1, ServoSupply::NearEnd),
+        (6.7, ServoSupply::Low),
+        (7.6, ServoSupply::Good),
+    ] {
+        port.frame.set(volts(now));
+        rig.run(6000);
+        assert_eq!(rig.links.servo_supply(), expected, "{now} V");
+    }
+    // At the rail, or from a converter that fails.
+    port.frame.set(AnalogFrame {
+        servo_battery: 4095,
+        ..FRAME
+    });
+    rig.run(600);
+    assert_eq!(rig.links.servo_supply(), ServoSupply::Silent);
+    // Not fitted: whatever the pad reads is nothing.
+    let (mut rig, port) = started();
+    port.frame.set(volts(3.0));
+    rig.run(1000);
+    assert_eq!(rig.links.servo_supply(), ServoSupply::NotFitted);
+    assert_eq!(rig.links.servo_battery.latest(), None);
 }
 
 #[test]
@@ -79,9 +164,10 @@ fn the_batterys_scales_are_the_parameters() {
         battery.voltage
     );
     assert!(
-        (battery.current - 24.0 * volts * 250.0 / 1600.0).abs() < 1e-3,
-        "{}",
-        battery.current
+        battery
+            .current
+            .is_some_and(|i| (i - 24.0 * volts * 250.0 / 1600.0).abs() < 1e-3),
+        "{battery:?}"
     );
 }
 

@@ -6,7 +6,7 @@ use std::rc::Rc;
 use embassy_time::Instant;
 use sophie_control::bench::{BenchOrder, BenchRequest, PLACE_TIME, Spin};
 use sophie_control::mixer::Flexible;
-use sophie_control::params::Params;
+use sophie_control::params::{Params, ServoMarks};
 use sophie_control::rc::Sticks;
 use sophie_control::wrench::{Configuration, PerArm};
 use sophie_fakes::{Answer, FakeAnalog, FakeArms, FakeImu, FakeLine, FakeMotors, FakeServos};
@@ -22,6 +22,7 @@ pub const UNLOADED: AnalogFrame = AnalogFrame {
     fsr: [0; 4],
     battery_voltage: 1520,
     battery_current: 0,
+    servo_battery: 0,
 };
 
 /// A vehicle on the table, all its tasks on scripted ports.
@@ -52,8 +53,26 @@ impl Table {
         Self::with(frame, Params::DEFAULT)
     }
 
-    /// The same with these parameters in force.
+    /// The same with these parameters in force, and calibrated servos.
     pub fn with(frame: AnalogFrame, params: Params) -> Self {
+        let servo_marks = ServoMarks::S1234;
+        let mut table = Self::new(
+            frame,
+            Params {
+                servo_marks,
+                ..params
+            },
+        );
+        assert_eq!(table.says("status", 100)[0], "DISARMED");
+        table
+    }
+
+    /// A new board, whose servos have no marks.
+    pub fn blank() -> Self {
+        Self::new(UNLOADED, Params::DEFAULT)
+    }
+
+    fn new(frame: AnalogFrame, params: Params) -> Self {
         let mut table = Self {
             rig: Rig::with(params),
             line: FakeLine::default(),
@@ -82,7 +101,6 @@ impl Table {
         let (line, screen, board) = (table.line.clone(), table.screen.clone(), Board::default());
         time.spawn(console::run(links, line, screen, board.clone(), board));
         table.run(5000);
-        assert_eq!(table.says("status", 100)[0], "DISARMED");
         table
     }
 
@@ -356,8 +374,11 @@ fn numbers_are_watched_until_a_key() {
             "grip",
             "     0.0     0.0     0.0     0.0     0.0     0.0     0.0     0.0",
         ),
-        ("power", "   15.20    0.00    0.00"),
-        ("counts", "       0       0       0       0    1520       0"),
+        ("power", "   15.20    0.00    0.00       -"),
+        (
+            "counts",
+            "       0       0       0       0    1520       0       0",
+        ),
     ] {
         let said = table.says(&format!("watch {group}"), 1100);
         assert!((7..=8).contains(&said.len()), "{said:?}");

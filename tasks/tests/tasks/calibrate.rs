@@ -195,6 +195,53 @@ fn the_gyro_is_shown_and_a_key_ends_any_of_it() {
 }
 
 #[test]
+fn a_servo_without_marks_starts_in_the_middle_and_goes_on_from_where_it_stands() {
+    let mut table = Table::blank();
+    assert_eq!(table.says("status", 100)[0], "DISARMED: servo not calibrated");
+    assert_eq!(table.servos.now(), [0.0; 4]);
+    for (typed, to) in [("release", "release"), ("angle", "angle 0")] {
+        let said = table.says(&format!("servo 3 {to}"), 300);
+        assert_eq!(
+            said,
+            ["servo 3 has no marks yet: 'calibrate servo 3', or 'servo 3 pulse'"],
+            "{typed}"
+        );
+    }
+    for (servo, number) in [(2, 3), (0, 1)] {
+        let said = table.says(&format!("calibrate servo {number}"), 300);
+        assert_eq!(said[1..], ["1500 us"]);
+        let mut alone = [0.0; 4];
+        alone[servo] = 1500.0;
+        assert_eq!(table.servos.now(), alone);
+        let said = table.presses(&"-".repeat(92), 200);
+        assert_eq!(said.last().unwrap(), "580 us");
+        let said = table.presses("\r", 200);
+        assert_eq!(said[1..], ["580 us"], "on from the release mark");
+        let said = table.presses(&"+".repeat(185), 200);
+        assert_eq!(said.last().unwrap(), "2430 us");
+        let marks = if number == 3 { "0 -> 3" } else { "3 -> 13" };
+        assert_eq!(
+            table.presses("\r", 200),
+            [
+                format!("servo_release_{number} 550 -> 580 us, in force after save"),
+                format!("servo_full_{number} 2450 -> 2430 us, in force after save"),
+                format!("servo_marks {marks}, in force after save"),
+            ]
+        );
+        table.run(1000);
+        assert_eq!(table.servos.now(), [0.0; 4]);
+    }
+    // One that is turned off by hand, and one that is given up.
+    assert_eq!(
+        table.says("servo 2 pulse 1500", 300),
+        ["servo 2 to 1500 us; any key ends it"]
+    );
+    table.line.put(b" ");
+    assert_eq!(table.goes_on(500), ["servo 2 without pulse again by a key"]);
+    assert_eq!(table.servos.now(), [0.0; 4]);
+}
+
+#[test]
 fn a_servos_marks_are_found_by_keys() {
     let mut table = Table::set();
     let said = table.says("calibrate servo 2", 300);
@@ -229,6 +276,7 @@ fn a_servos_marks_are_found_by_keys() {
             "2420 us",
             "servo_release_2 550 -> 580 us, in force after save",
             "servo_full_2 2450 -> 2420 us, in force after save",
+            "servo_marks 1234 -> 1234, as in force",
         ]
     );
     table.run(6000);

@@ -294,7 +294,7 @@ fn a_link_that_falls_silent_counts_as_none() {
             ArmingInhibit::ImuStale,
             ArmingInhibit::NotCalibrated,
             ArmingInhibit::ArmsClosed,
-            ArmingInhibit::BatteryLow,
+            ArmingInhibit::BatterySilent,
             ArmingInhibit::FsrFault
         ]
     );

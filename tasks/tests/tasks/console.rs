@@ -305,8 +305,8 @@ fn status_says_how_the_vehicle_is() {
     // 3600 A s are 1000 mAh.
     let battery = Battery {
         voltage: 15.678,
-        current: 2.46,
-        used: 3600.0,
+        current: Some(2.46),
+        used: Some(3600.0),
         ratio: 1.0,
     };
     let at = Instant::now() + Duration::from_millis(300);

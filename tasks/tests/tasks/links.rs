@@ -49,6 +49,7 @@ fn every_link_goes_stale_when_the_safety_of_its_readers_wants_it() {
         ("grip_memory", l.grip_memory.stale_after, 200),
         ("status", l.status.stale_after, 200),
         ("battery", l.battery.stale_after, 500),
+        ("servo_battery", l.servo_battery.stale_after, 500),
         ("rc", l.rc.stale_after, 500),
     ] {
         assert_eq!(limit, Duration::from_millis(ms), "{name}");

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use sophie_control::battery::ServoSupply;
 use sophie_control::position::{Fault, PoseFault, SightFault, SightLimit};
 use sophie_tasks::start::StartCause;
 use sophie_tasks::warning::Warning;
@@ -15,6 +16,14 @@ fn to_do(warning: Warning) -> &'static str {
         Warning::ArmTilt => {
             "Land; `infill`, `gain_k` and the arm's sensor ([calibration](calibration.md#arms))."
         }
+        Warning::Servos(ServoSupply::NearEnd) => "Perched: let go within the minute. Else no long perch.",
+        Warning::Servos(ServoSupply::Low) => {
+            "No perch; land, charge it. Perched: let go now, while the servos can open the arms."
+        }
+        Warning::Servos(ServoSupply::Silent) => {
+            "No perch; land. Its lead, `servo_batt_div`. Perched: let go."
+        }
+        Warning::Servos(ServoSupply::NotFitted | ServoSupply::Good) => "",
         Warning::Restarted(StartCause::PowerOn | StartCause::Software) => "",
         Warning::Restarted(StartCause::BrownOut) => {
             "Do not fly: find why the supply broke down; power off and on."

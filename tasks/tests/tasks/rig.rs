@@ -2,7 +2,7 @@
 
 use embassy_time::Instant;
 use sophie_clock::VirtualTime;
-use sophie_control::params::Params;
+use sophie_control::params::{Params, ServoMarks};
 use sophie_tasks::links::Links;
 use sophie_tasks::start::Start;
 
@@ -10,6 +10,14 @@ pub struct Rig {
     pub time: VirtualTime,
     pub links: &'static Links,
     ms: u64,
+}
+
+/// The default parameters once every servo is calibrated.
+pub fn calibrated() -> Params {
+    Params {
+        servo_marks: ServoMarks::S1234,
+        ..Params::default()
+    }
 }
 
 impl Rig {

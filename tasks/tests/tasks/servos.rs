@@ -1,8 +1,10 @@
 //! Pulses for forces: when there are none, their speed, standing still.
 
 use embassy_time::{Duration, Instant};
+use sophie_control::arming::ArmingInhibit;
+use sophie_control::bench::Place;
 use sophie_control::grip_memory::GripMemory;
-use sophie_control::params::Params;
+use sophie_control::params::{Params, ServoMarks};
 use sophie_control::rc::ArmChoice;
 use sophie_control::wrench::PerArm;
 use sophie_tasks::links::{ArmAngles, Links, Stamped, TendonForce, TendonForces, TendonOrder};
@@ -11,13 +13,17 @@ use sophie_tasks::servos;
 use sophie_tasks::start::{Start, StartCause};
 use sophie_tasks::timing::Quantity;
 
-use crate::rig::Rig;
+use crate::rig::{Rig, calibrated};
 use sophie_fakes::FakeServos;
 
 const CLOSED: f32 = -1.2;
 
 fn started(start: Start) -> (Rig, FakeServos) {
-    let (rig, port) = (Rig::starting(Params::default(), start), FakeServos::default());
+    started_with(calibrated(), start)
+}
+
+fn started_with(params: Params, start: Start) -> (Rig, FakeServos) {
+    let (rig, port) = (Rig::starting(params, start), FakeServos::default());
     rig.time.spawn(servos::run(rig.links, port.clone()));
     (rig, port)
 }
@@ -43,6 +49,55 @@ fn forces(force: f32, found: bool) -> TendonForces {
 
 fn near(pulses: PerArm<f32>, expected: f32) -> bool {
     pulses.iter().all(|p| (p - expected).abs() < 1.0)
+}
+
+#[test]
+fn a_servo_without_marks_gets_a_pulse_on_the_bench_alone() {
+    let blank = |links: &Links| links.hardware().contains(ArmingInhibit::ServoUnmarked);
+    let (mut rig, port) = started_with(Params::default(), Start::COLD);
+    for order in [forces(0.0, false), forces(60.0, false), forces(60.0, true)] {
+        rig.run_with(1000, |links, at| speak(links, at, Some(order), CLOSED));
+    }
+    // Stale ones neither.
+    rig.run(1000);
+    assert!(port.pulses.borrow().iter().all(|p| *p == [0.0; 4]) && blank(rig.links));
+    // The one on the bench, at once and alone.
+    port.pulses.borrow_mut().clear();
+    let place = Place {
+        servo: 2,
+        pulse_us: 1500.0,
+    };
+    rig.run_with(500, |links, at| {
+        let forces = forces(0.0, false);
+        links.tendons.send(at, TendonOrder::Placed { forces, place });
+    });
+    let pulses = port.pulses.borrow().clone();
+    let placed = [0.0, 0.0, 1500.0, 0.0];
+    assert!(
+        pulses.len() == 25 && pulses[2..].iter().all(|p| *p == placed),
+        "{pulses:?}"
+    );
+    rig.run_with(100, |links, at| {
+        speak(links, at, Some(forces(0.0, false)), CLOSED)
+    });
+    assert_eq!(port.now(), [0.0; 4]);
+
+    // Those that have theirs are driven beside those that do not, and arming waits for all.
+    for (servo_marks, expected) in [
+        (ServoMarks::S13, [550.0, 0.0, 550.0, 0.0]),
+        (ServoMarks::S1234, [550.0; 4]),
+    ] {
+        let params = Params {
+            servo_marks,
+            ..Params::default()
+        };
+        let (mut rig, port) = started_with(params, Start::COLD);
+        rig.run_with(200, |links, at| {
+            speak(links, at, Some(forces(0.0, false)), CLOSED)
+        });
+        assert_eq!(port.now(), expected);
+        assert_eq!(blank(rig.links), servo_marks != ServoMarks::S1234);
+    }
 }
 
 #[test]

@@ -22,6 +22,7 @@ fn notice(row: &Transition) -> String {
         Notice::Clear => "(cleared)".to_string(),
         Notice::Show(reason) => reason.text().to_string(),
         Notice::ShowOf(_) => "(the cause)".to_string(),
+        Notice::LastingOf(_) => "(the cause), as long as it lasts".to_string(),
         Notice::Lasting(reason) => std::format!("{}, as long as it lasts", reason.text()),
     }
 }

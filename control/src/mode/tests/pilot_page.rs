@@ -152,7 +152,19 @@ fn on_inhibit(inhibit: ArmingInhibit) -> &'static str {
         ArmingInhibit::PerchSwitchOn => "Perch off.",
         ArmingInhibit::ArmsClosed => "Perch on and off: the arms open. Hands away.",
         ArmingInhibit::TiltTooLarge => "Set it upright.",
+        ArmingInhibit::BatterySilent => {
+            "The lead of the battery's voltage, or power by USB alone. In the air it lands: steer it. On the pipe it stays."
+        }
         ArmingInhibit::BatteryLow => "Charge; or `battery_divider` is wrong.",
+        ArmingInhibit::ServoBatterySilent => {
+            "Its lead; or `servo_batt_div` 0 where it is not measured. On the pipe: let go."
+        }
+        ArmingInhibit::ServoBatteryLow => {
+            "Charge it. In the air: no perch. On the pipe: let go now, while the servos can open the arms."
+        }
+        ArmingInhibit::ServoUnmarked => {
+            "`calibrate servo 1` to `4` ([calibration](calibration.md#servos)), then `save`."
+        }
         ArmingInhibit::AnalogSilent => "Power off and on; then the board is broken.",
         ArmingInhibit::FsrFault => "A chosen arm's sensor or its lead: look, or choose the other arms.",
         ArmingInhibit::FsrRange1

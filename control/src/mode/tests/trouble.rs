@@ -187,7 +187,7 @@ fn a_push_that_rocks_a_perched_body_on_its_pads_tightens_nothing() {
 #[test]
 fn nothing_but_the_pilot_starts_the_rotors_of_a_perched_vehicle() {
     type Edit = fn(&mut Rig);
-    let cases: [(Edit, Reason); 5] = [
+    let cases: [(Edit, Reason); 6] = [
         (
             |r| r.grip(false, false, ArmState::Touching, 100.0),
             Reason::GripLost,
@@ -196,6 +196,7 @@ fn nothing_but_the_pilot_starts_the_rotors_of_a_perched_vehicle() {
         (|r| r.inputs.sticks = None, Reason::RADIO_LOST),
         (|r| r.inputs.motion = None, Reason::IMU_SILENT),
         (|r| r.inputs.battery = Some(12.0), Reason::BatteryCritical),
+        (|r| r.inputs.battery = None, Reason::BATTERY_SILENT),
     ];
     for (edit, why) in cases {
         let mut r = Rig::perched();
@@ -252,6 +253,113 @@ fn a_lost_radio_in_flight_sinks_and_stops_on_what_carries() {
     // The sink rate must fade first.
     r.expect(10.0, Mode::Disarmed);
     assert_eq!(r.out.reason, Some(Reason::RADIO_LOST));
+}
+
+#[test]
+fn a_battery_that_is_no_longer_measured_lands_like_a_low_one() {
+    for lost in [None, Some(f32::NAN)] {
+        let mut r = Rig::flying();
+        // A few conversions that gave nothing are no blindness.
+        for _ in 0..20 {
+            r.inputs.battery = lost;
+            r.expect(0.9, Mode::Flight);
+            r.inputs.battery = Some(16.0);
+            r.expect(0.01, Mode::Flight);
+        }
+        r.inputs.battery = lost;
+        r.expect(0.98, Mode::Flight);
+        assert_eq!(r.out.reason, None);
+        r.expect(0.04, Mode::Failsafe);
+        assert_eq!(r.out.reason, Some(Reason::BATTERY_SILENT));
+        // The pilot steers, and a reading that comes back does not end it: it was good for a moment before as well.
+        r.sticks().roll = 0.5;
+        r.inputs.battery = Some(16.0);
+        r.run(0.6);
+        assert!(
+            matches!(r.out.rotors, Setpoint::Angle { roll, .. } if roll > 0.2),
+            "{:?}",
+            r.out.rotors
+        );
+        r.expect(2.0, Mode::Failsafe);
+        assert_eq!(r.out.reason, Some(Reason::BATTERY_SILENT));
+    }
+    // With the radio back the landing goes on for the battery.
+    let mut r = Rig::flying();
+    r.inputs.sticks = None;
+    r.inputs.battery = None;
+    r.expect(2.0, Mode::Failsafe);
+    assert_eq!(r.out.reason, Some(Reason::RADIO_LOST));
+    r.inputs.sticks = Some(Sticks {
+        arm_switch: true,
+        throttle: 0.5,
+        ..Sticks::default()
+    });
+    r.expect(0.1, Mode::Failsafe);
+    assert_eq!(r.out.reason, Some(Reason::BATTERY_SILENT));
+}
+
+#[test]
+fn a_servo_battery_that_is_low_or_not_measured_begins_no_perch() {
+    for (supply, why) in [
+        (ServoSupply::Low, ArmingInhibit::ServoBatteryLow),
+        (ServoSupply::Silent, ArmingInhibit::ServoBatterySilent),
+    ] {
+        let mut r = Rig::flying();
+        r.inputs.servo_supply = supply;
+        r.expect(1.0, Mode::Flight);
+        assert_eq!(r.out.reason, None);
+        // It is named before the pipe is reached, and on it the arms stay open.
+        r.sticks().throttle = 0.3;
+        r.sticks().perch_switch = true;
+        r.expect(0.1, Mode::Flight);
+        assert_eq!(r.out.reason, Some(Reason::Check(why)));
+        r.carried = true;
+        r.expect(2.0, Mode::Flight);
+        assert_eq!(r.out.tendons, ClampCommand::Release);
+        // Near its end it still closes.
+        r.inputs.servo_supply = ServoSupply::NearEnd;
+        r.expect(0.1, Mode::Contact);
+
+        // On the ground it is one more reason against arming.
+        let mut r = Rig::armed();
+        r.sticks().arm_switch = false;
+        r.expect(0.1, Mode::Disarmed);
+        r.inputs.servo_supply = supply;
+        r.run(0.1);
+        assert!(r.out.inhibits.contains(why));
+    }
+}
+
+#[test]
+fn a_perched_vehicle_says_that_its_servos_lose_their_power_and_may_leave() {
+    let mut r = Rig::perched();
+    r.inputs.servo_supply = ServoSupply::Low;
+    r.expect(30.0, Mode::Perched);
+    let low = Reason::Check(ArmingInhibit::ServoBatteryLow);
+    assert_eq!((r.out.reason, r.out.rotors), (Some(low), Setpoint::Stop));
+    assert_eq!(r.out.tendons, ClampCommand::Close { arms: ArmChoice::All });
+    // Disarmed meanwhile, it may be armed again to leave.
+    r.sticks().arm_switch = false;
+    r.sticks().yaw = -1.0;
+    r.expect(1.1, Mode::Disarmed);
+    assert_eq!(
+        r.out
+            .inhibits
+            .iter()
+            .find(|i| *i == ArmingInhibit::ServoBatteryLow),
+        None
+    );
+    r.sticks().arm_switch = true;
+    r.sticks().yaw = 1.0;
+    r.expect(1.1, Mode::Perched);
+    // What a release lacks is said before it.
+    r.sticks().yaw = 0.0;
+    r.sticks().perch_switch = false;
+    r.sticks().throttle = 0.5;
+    r.expect(0.1, Mode::Perched);
+    assert_eq!(r.out.reason, Some(Reason::ThrottleTooHigh));
+    r.sticks().throttle = 0.3;
+    r.expect(0.1, Mode::Releasing);
 }
 
 #[test]

@@ -118,8 +118,8 @@ impl<C: Chip> Wired<C> {
         self.chip.brown_out();
     }
 
-    /// Sets the pads of pressure 1 to 4, battery voltage (V) and current (A).
-    pub fn set_analog(&mut self, values: [f64; 6]) {
+    /// Sets the pads of pressure 1 to 4, battery voltage (V) and current (A), servo battery (V).
+    pub fn set_analog(&mut self, values: [f64; 7]) {
         let mut values = values;
         for (pad, divider) in values.iter_mut().zip(self.dividers) {
             *pad /= divider;

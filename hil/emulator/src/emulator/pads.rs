@@ -107,6 +107,8 @@ pub struct Pads {
     pub battery: AnalogPad,
     /// Current sensor, scaled in amperes per volt.
     pub current: AnalogPad,
+    /// Pad of the servo battery's voltage, with what divides it.
+    pub servo_battery: AnalogPad,
     /// Serial port of the receiver.
     pub receiver: usize,
     /// With its alternate function; unused with SBUS.
@@ -132,9 +134,11 @@ pub struct Pads {
 }
 
 impl Pads {
-    /// ADC channels and millivolts for volts at the pads of pressure 1 to 4, battery voltage (V) and current (A).
-    pub fn analog(&self, values: [f64; 6]) -> impl Iterator<Item = (u8, u32)> {
-        let inputs = self.pressure.into_iter().chain([self.battery, self.current]);
+    /// ADC channels and millivolts for volts at the pads of pressure 1 to 4, battery voltage (V) and current (A), servo
+    /// battery (V).
+    pub fn analog(&self, values: [f64; 7]) -> impl Iterator<Item = (u8, u32)> {
+        let others = [self.battery, self.current, self.servo_battery];
+        let inputs = self.pressure.into_iter().chain(others);
         inputs
             .zip(values)
             .map(|(pad, volts)| (pad.channel, pad.millivolts(volts)))

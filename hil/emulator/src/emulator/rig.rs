@@ -143,8 +143,8 @@ impl Rig {
         } else {
             HALF
         };
-        let [battery, current] = [0.0; 2];
-        board.set_analog([half, half, half, half, battery, current]);
+        let [battery, current, servos] = [0.0; 3];
+        board.set_analog([half, half, half, half, battery, current, servos]);
         for arm in 0..4 {
             if let Some(sensor) = board.arm(arm) {
                 sensor.up = UP;

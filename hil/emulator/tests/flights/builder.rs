@@ -141,7 +141,7 @@ impl Builder {
             return "q";
         }
         self.moves = None;
-        self.marks = ["+3", "", "--", ""].into();
+        self.marks = ["-92", "", "+185", ""].into();
         let on = matches!(&*self.step, "radio" | "final");
         self.does(|held| {
             held.below = Face::Belly;

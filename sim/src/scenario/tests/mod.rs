@@ -4,7 +4,7 @@ mod refusals;
 
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-use sophie_control::params::{Params, RcProtocol};
+use sophie_control::params::{Params, RcProtocol, ServoMarks};
 use sophie_control::rc::ArmChoice;
 use sophie_control::wrench::Configuration;
 use sophie_mixers::Variant;
@@ -36,6 +36,8 @@ fn the_default_mission_states_the_defaults() {
         Params {
             infill: 6.9,
             gain_k: 7.75,
+            // Found by a calibration.
+            servo_marks: ServoMarks::S1234,
             ..Params::default()
         }
     );

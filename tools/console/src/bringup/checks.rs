@@ -8,13 +8,15 @@ use crate::parameters::{self, Version};
 use crate::session::{Session, restarts};
 
 /// What a builder says about the parts; the rest has sound defaults or is measured.
-const SETUP: [&str; 6] = [
+const SETUP: [&str; 7] = [
     "motor_protocol",
     "rc_protocol",
     "battery_capacity",
     "battery_warning",
     "battery_critical",
     "infill",
+    // Before any servo moves: its angles follow from it.
+    "servo_range",
 ];
 /// The ends of controllers that take pulses.
 const PULSES: [&str; 3] = ["motor_pulse_min", "motor_pulse_idle", "motor_pulse_max"];

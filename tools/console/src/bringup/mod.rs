@@ -66,8 +66,7 @@ const fn step(
 const ARM: &str =
     "Body level and still. First the arm straight, by a ruler along it, then its tip bent up and held.";
 const FSR: &str = "Nothing on the sensor first, then a known weight on its pad, all of it.";
-const SERVO: &str =
-    "Tendons off, servos on their own battery. Find the reel's release mark, then its full mark.";
+const SERVO: &str = "Tendons off, servos on their own battery, hands away: it goes to its middle at once. Find the reel's release mark, then its full mark.";
 
 /// All steps, in their order.
 pub const STEPS: [Step; 28] = [

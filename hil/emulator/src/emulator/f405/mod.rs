@@ -96,6 +96,8 @@ pub static PADS: Pads = Pads {
     // 1:11 and 40 A/V.
     battery: AnalogPad::divided(At(0, 0), 0, 11.0),
     current: AnalogPad::divided(At(0, 1), 1, 40.0),
+    // 10 kΩ over 1 kΩ before the pin, as docs/wiring.md has it.
+    servo_battery: AnalogPad::divided(At(1, 0), 8, 11.0),
     receiver: 0,
     receiver_out: (At(0, 9), 7),
     console: 1,

@@ -69,6 +69,8 @@ const S2: AnalogPad = AnalogPad::bare(At(1, 1), 5);
 const RSSI: AnalogPad = AnalogPad::bare(At(2, 5), 8);
 /// For the current of a second battery, 0 to 3.3 V.
 const CU2: AnalogPad = AnalogPad::bare(At(0, 7), 7);
+/// For the voltage of a second battery.
+const VB2: AnalogPad = AnalogPad::divided(At(0, 4), 18, 11.0);
 
 /// The control path: data-ready on PB2, the sensor's words by DMA2 stream 2, the motors on TIM4.
 pub const MARKS: Marks = Marks {
@@ -93,6 +95,7 @@ pub static MATEK: Pads = Pads {
     // 1:11 and 40 A/V.
     battery: AnalogPad::divided(At(2, 0), 10, 11.0),
     current: AnalogPad::divided(At(2, 1), 11, 40.0),
+    servo_battery: VB2,
     receiver: 5,
     receiver_out: (At(2, 6), 7),
     console: 6,
@@ -441,8 +444,6 @@ mod tests {
 
     /// For an airspeed sensor of 5 V.
     const AIRS: AnalogPad = AnalogPad::divided(At(2, 4), 4, 2.0);
-    /// For the voltage of a second battery.
-    const VB2: AnalogPad = AnalogPad::divided(At(0, 4), 18, 11.0);
 
     /// What the flight stack reads (Pa), through the pads `pads`, of sensors that feel `pressure` (Pa).
     fn read(pads: [AnalogPad; 4], params: &Params, pressure: f64) -> [f64; 4] {
@@ -454,7 +455,7 @@ mod tests {
             pressure: pads,
             ..MATEK
         };
-        let inputs = wired.analog([volts, volts, volts, volts, 1.5, 0.1]);
+        let inputs = wired.analog([volts, volts, volts, volts, 1.5, 0.1, 0.7]);
         for ((seen, scale), (_, millivolts)) in seen.iter_mut().zip(FsrScale::all(params)).zip(inputs) {
             *seen = f64::from(scale.pressure((f64::from(millivolts) / 3300.0 * 4095.0).round() as u16));
         }
@@ -468,8 +469,8 @@ mod tests {
                 assert!((seen - pressure).abs() < 0.01 * pressure, "{pressure}: {seen}");
             }
         }
-        let channels: Vec<u8> = MATEK.analog([0.0; 6]).map(|(channel, _)| channel).collect();
-        assert_eq!(channels, [9, 5, 8, 7, 10, 11]);
+        let channels: Vec<u8> = MATEK.analog([0.0; 7]).map(|(channel, _)| channel).collect();
+        assert_eq!(channels, [9, 5, 8, 7, 10, 11, 18]);
     }
 
     #[test]
