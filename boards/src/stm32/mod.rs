@@ -57,7 +57,7 @@ pub use flash::ParamFlash;
 pub(crate) use i2c_bus::i2c_bus;
 pub use i2c_bus::{ArmBus, BusParts, i2c_config, set_fast_mode};
 pub use lights::{Lamp, Lights};
-pub use loader::{enter_loader_if_asked, leave_for_loader};
+pub use loader::{enter_or_leave_loader, leave_for_loader};
 pub use pads::{Pad, Pupdr, Taken, Wiring, pad};
 pub use rails::{PortLevels, drive, hold};
 pub use reset::take_reset_cause;
