@@ -151,6 +151,9 @@ assign_resources! {
         other_imu: PF3,
         other_gyro: PF4,
         other_accel: PG10,
+        other_memory: PH5,
+        other_on_barometer: PF11,
+        radio_hold: PD4,
     }
     motors: MotorParts {
         timer: TIM1,
@@ -322,11 +325,15 @@ fn clocks() -> embassy_stm32::Config {
 /// power-up: 100 ms at the most).
 const SENSORS_START: Duration = Duration::from_millis(100);
 
-/// Switches the supplies on, keeps the other chips on the sensor's bus from answering, and waits for the sensors.
+/// Switches the supplies on, keeps other chips on the sensors' buses from answering, and waits for the sensors. The radio at
+/// TELEM1 stays in its loader where it finds this chip's RTS low as it gets its supply.
 async fn rails(p: RailParts) {
     hold(p.other_imu.into(), Level::High);
     hold(p.other_gyro.into(), Level::High);
     hold(p.other_accel.into(), Level::High);
+    hold(p.other_memory.into(), Level::High);
+    hold(p.other_on_barometer.into(), Level::High);
+    hold(p.radio_hold.into(), Level::High);
     hold(p.sensors.into(), Level::High);
     hold(p.peripherals_off.into(), Level::Low);
     hold(p.high_power_off.into(), Level::Low);
@@ -366,15 +373,15 @@ pub fn stop_motors() {
     drive(&MOTORS_LOW);
 }
 
-/// What the outputs are until their ports take them: motors, servos and sounder low, no chip selected, every supply on,
-/// as they were before a restart.
+/// What the outputs are until their ports take them: motors, servos and sounder low, no chip selected, the radio not held
+/// in its loader, every supply on, as they were before a restart.
 pub const FIRST_LEVELS: [PortLevels; 7] = [
     MOTORS_LOW[0],
     MOTORS_LOW[1],
-    PortLevels::new(pac::GPIOD, &[13, 14], &[]),
-    PortLevels::new(pac::GPIOH, &[6, 9], &[]),
+    PortLevels::new(pac::GPIOD, &[13, 14], &[4]),
+    PortLevels::new(pac::GPIOH, &[6, 9], &[5]),
     PortLevels::new(pac::GPIOE, &[5], &[3]),
-    PortLevels::new(pac::GPIOF, &[12], &[2, 3, 4, 5, 10]),
+    PortLevels::new(pac::GPIOF, &[12], &[2, 3, 4, 5, 10, 11]),
     PortLevels::new(pac::GPIOG, &[4], &[10]),
 ];
 
@@ -418,8 +425,9 @@ fn storage(p: StorageParts) -> StoragePort {
 
 fn lights(p: LightParts) -> LightsPort {
     Lights {
-        state: Lamp::new(p.green, Level::Low),
-        fault: Lamp::new(p.red, Level::Low),
+        // As PX4 drives them: their other end may be at 5 V.
+        state: Lamp::open_drain(p.green),
+        fault: Lamp::open_drain(p.red),
         buzzer: Tone::new(p.tone, p.buzzer),
     }
 }

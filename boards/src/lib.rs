@@ -34,6 +34,6 @@ pub use sophie_fault::ends_with;
 #[cfg(target_os = "none")]
 pub use stm32::{
     BufferedInput, BufferedOutput, GroundLine, MAVLINK_BYTES_PER_SECOND, Pad, Pupdr, ReceiverLine, Taken,
-    TelemetryLine, ThisChip, USB_BYTES_PER_SECOND, UsbDriver, UsbPort, Wiring, enter_loader_if_asked,
+    TelemetryLine, ThisChip, USB_BYTES_PER_SECOND, UsbDriver, UsbPort, Wiring, enter_or_leave_loader,
     restart, stop_with_core, take_reset_cause,
 };

@@ -56,6 +56,47 @@ mod tests {
         }
     }
 
+    /// Selects of what is or was at the CUAV's internal buses: inertial sensors and memory at SPI1, FRAM at SPI2, barometer
+    /// and a second chip at SPI4 (PX4 `px4/fmu-v5`, ArduPilot `fmuv5`).
+    const CUAV_SELECTS: [(&str, u32); 8] = [
+        ("GPIOF", 2),
+        ("GPIOF", 3),
+        ("GPIOF", 4),
+        ("GPIOG", 10),
+        ("GPIOH", 5),
+        ("GPIOF", 5),
+        ("GPIOF", 10),
+        ("GPIOF", 11),
+    ];
+
+    /// Pins of `port` that a board's first levels have high.
+    fn first_high(table: &str, port: &str) -> Vec<u32> {
+        let (_, levels) = table.split_once("FIRST_LEVELS:").expect("first levels");
+        let (levels, _) = levels.split_once("];\n").expect("their end");
+        let of_port = levels
+            .split("PortLevels::new(")
+            .filter(|entry| entry.starts_with(&format!("pac::{port},")));
+        let high = of_port.filter_map(|entry| entry.rsplit_once("&[")?.1.split_once(']'));
+        high.flat_map(|(pins, _)| pins.split(',').filter_map(|pin| pin.trim().parse().ok()))
+            .collect()
+    }
+
+    #[test]
+    fn every_chip_on_a_bus_of_the_cuav_is_deselected_from_the_first_instructions_on() {
+        let (_, table) = BOARDS[1];
+        for (port, pin) in CUAV_SELECTS {
+            assert!(first_high(table, port).contains(&pin), "{port} {pin}");
+            // Held by its port afterwards.
+            let name = format!("P{}{pin}", &port[4..]);
+            let held = table
+                .lines()
+                .filter(|line| line.trim_end().ends_with(&format!(": {name},")));
+            assert_eq!(held.count(), 1, "{name}");
+        }
+        // The radio's CTS, low at its start, keeps it in its loader.
+        assert_eq!(first_high(table, "GPIOD"), [4]);
+    }
+
     #[test]
     fn a_servo_or_a_motor_on_such_a_pin_is_refused() {
         let (_, table) = BOARDS[2];

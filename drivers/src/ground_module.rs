@@ -96,8 +96,10 @@ impl GroundDecoder for GroundModule {
                         news = true;
                     }
                 }
-                Some(Message::Range { quality, distance }) => {
-                    let seen = distance > 0 && quality > 0;
+                // The distance alone says whether there is one, as for INAV and ArduPilot: modules are seen that send no
+                // quality of their ranges.
+                Some(Message::Range { distance, .. }) => {
+                    let seen = distance > 0;
                     let range = Range {
                         at_us: at.checked_sub(RANGE_DELAY).map_or(0, |at| at.as_micros()),
                         distance: seen.then_some(distance as f32 / 1000.0),
@@ -185,8 +187,18 @@ mod tests {
             let view = say(&mut module, Message::Range { quality, distance }, 1000);
             view.unwrap().range.unwrap().distance
         };
-        assert_eq!(range(200, 1500), Some(1.5));
-        for (quality, distance) in [(200, -1), (0, 1500), (200, 10), (200, 9000), (200, i32::MIN)] {
+        // Modules are seen that send no quality of a range.
+        for quality in [200, 1, 0] {
+            assert_eq!(range(quality, 1500), Some(1.5), "{quality}");
+        }
+        for (quality, distance) in [
+            (200, -1),
+            (0, -1),
+            (200, 0),
+            (200, 10),
+            (200, 9000),
+            (200, i32::MIN),
+        ] {
             assert_eq!(range(quality, distance), None, "{quality} {distance}");
         }
     }

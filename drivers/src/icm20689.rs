@@ -161,6 +161,7 @@ impl Chip for Config {
     const NAME: &'static str = "ICM-20689";
     const WHO_AM_I: u8 = reg::WHO_AM_I;
     const IDENTITY: u8 = 0x98;
+    const ALIKE: &'static [(u8, &'static str)] = &[];
     const BANK_SELECT: Option<u8> = None;
     // Accelerometer, temperature, gyroscope.
     const DATA: u8 = reg::ACCEL_XOUT_H;

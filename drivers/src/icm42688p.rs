@@ -1,5 +1,8 @@
 //! TDK ICM-42688-P on SPI, up to 24 MHz, mode 0 or 3. Sections are those of DS-000347 rev. 1.8.
 //!
+//! The ICM-42688-V (DS-000439) is the same to it but for its identity: ArduPilot takes one for the other (pull request
+//! 31199, tried on a board with a V).
+//!
 //! Samples at 1, 2, 4 (default) or 8 kHz, one burst per data-ready pulse, with wide filters: the imu task filters. From
 //! 2 kHz the rate fixes the UI filter's bandwidth (§5.5: 1048 Hz at 4 kHz); only its order can be chosen.
 
@@ -224,6 +227,7 @@ impl Chip for Config {
     const NAME: &'static str = "ICM-42688-P";
     const WHO_AM_I: u8 = reg::WHO_AM_I;
     const IDENTITY: u8 = 0x47;
+    const ALIKE: &'static [(u8, &'static str)] = &[(0xDB, "ICM-42688-V")];
     const BANK_SELECT: Option<u8> = Some(reg::REG_BANK_SEL);
     // Temperature, accelerometer, gyroscope (§13.1).
     const DATA: u8 = reg::TEMP_DATA1;

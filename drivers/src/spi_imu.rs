@@ -91,6 +91,8 @@ pub trait Chip {
     const WHO_AM_I: u8;
     /// Content of the identity register.
     const IDENTITY: u8;
+    /// Identity and name of each part that is the same to the driver.
+    const ALIKE: &'static [(u8, &'static str)];
     /// Bank select register, on parts that have banks.
     const BANK_SELECT: Option<u8>;
     /// First of the 14 data registers.
@@ -186,6 +188,8 @@ impl Repeats {
 /// Driver of chip `C` on SPI device `S` with data-ready line `D`.
 pub struct SpiImu<C, S, D> {
     chip: C,
+    /// Identity and name of the part that answered, or is expected.
+    part: (u8, &'static str),
     registers: Registers<S>,
     data_ready: D,
     ready_at: Instant,
@@ -211,6 +215,7 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
         let [pause, _] = PAUSE;
         Self {
             chip,
+            part: (C::IDENTITY, C::NAME),
             registers: Registers::new(spi, C::BANK_SELECT),
             data_ready,
             ready_at: Instant::from_ticks(0),
@@ -259,9 +264,14 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
         self.note(restored)?;
         if let Err(fault) = &verdict {
             self.last_fault = Some(*fault);
-            report(C::NAME, fault);
+            report(self.part.1, fault);
         }
         verdict
+    }
+
+    /// Name of the part that answered; before one did, of the one that is expected.
+    pub const fn name(&self) -> &'static str {
+        self.part.1
     }
 
     /// Die temperature at the last sample, °C.
@@ -426,20 +436,23 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
         Ok(())
     }
 
+    /// Looks which part it is, of those that the driver is for.
     async fn identify(&mut self) -> Result<(), Fault> {
         let [found] = self.registers.read(C::WHO_AM_I).await?;
-        if found == C::IDENTITY {
-            Ok(())
-        } else {
-            Err(Fault::Identity {
-                expected: C::IDENTITY,
-                found,
-            })
-        }
+        let expected = C::IDENTITY;
+        let mut parts = C::ALIKE.iter().copied().chain([(expected, C::NAME)]);
+        self.part = parts
+            .find(|(identity, _)| *identity == found)
+            .ok_or(Fault::Identity { expected, found })?;
+        Ok(())
     }
 
     async fn check(&mut self) -> Result<(), Fault> {
-        self.identify().await?;
+        let (expected, _) = self.part;
+        let [found] = self.registers.read(C::WHO_AM_I).await?;
+        if found != expected {
+            return Err(Fault::Identity { expected, found });
+        }
         let read: [u8; WATCHED] = self.registers.read(C::WATCH_FROM).await?;
         let settings = self.chip.settings();
         for (register, value) in (C::WATCH_FROM..).zip(read) {
@@ -514,7 +527,7 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
             return result;
         }
         if first {
-            report(C::NAME, fault);
+            report(self.part.1, fault);
         }
         let [_, longest] = PAUSE;
         self.state = State::Down(Instant::now() + self.pause);

@@ -162,6 +162,27 @@ fn samples_come_at_4_khz_in_body_axes_one_burst_each() {
 }
 
 #[test]
+fn the_v_of_the_same_part_is_taken_and_named() {
+    run(async {
+        let (mut driver, part) = pair(Config::default());
+        part.borrow_mut().identity = Some(0xDB);
+        assert_eq!(driver.name(), "ICM-42688-P");
+        driver.init().await.unwrap();
+        assert_eq!(driver.name(), "ICM-42688-V");
+        let (good, errors, _) = read_for(&mut driver, Duration::from_secs(1)).await;
+        assert!(good > 3990 && errors.is_empty(), "{good} {errors:?}");
+        // It does not become the other in flight: that is a byte misread.
+        part.borrow_mut().banks[0][0x75] = 0x47;
+        let (_, errors, _) = read_for(&mut driver, Duration::from_millis(150)).await;
+        let misread = Fault::Identity {
+            expected: 0xDB,
+            found: 0x47,
+        };
+        assert_eq!(driver.last_fault(), Some(misread), "{errors:?}");
+    });
+}
+
+#[test]
 fn what_is_wrong_at_start_up_is_named() {
     let cases: [(Spoil, Fault, PortError); 6] = [
         (

@@ -63,7 +63,7 @@ struct Beginning {
 /// Takes the reset cause, the last run's state and the memory for the next. Called once, before all else.
 fn begin() -> (Beginning, Memory) {
     let cause = sophie_boards::take_reset_cause();
-    sophie_boards::enter_loader_if_asked(cause);
+    sophie_boards::enter_or_leave_loader(cause);
     let (kept, memory) = retained::start(cause);
     let start = Start::new(cause.with_record(kept.last_words.is_some()), &kept.copies);
     (Beginning { cause, start, kept }, memory)

@@ -59,9 +59,7 @@ pub fn flash(board: &Board, image: &Image, dry: bool) -> Result<(), Error> {
         })?;
     }
     if !dry {
-        eprintln!(
-            "written and started; unplug the board once before it flies: its loader has left clocks and ports in use"
-        );
+        eprintln!("written and started");
     }
     Ok(())
 }

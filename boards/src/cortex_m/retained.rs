@@ -131,34 +131,47 @@ unsafe impl Sync for Copies {}
 #[unsafe(link_section = ".retained")]
 static COPIES: Copies = Copies(UnsafeCell::new([[0; STATE_WORDS]; 2]));
 
-/// Asks the next start for the chip's loader: "LOAD" and its complement.
-const LOADER: [u32; 2] = [0x4C4F_4144, !0x4C4F_4144];
+/// What a run asks of the next start. Kept as a word and its complement.
+#[derive(Clone, Copy, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Request {
+    /// To enter the chip's loader ("LOAD").
+    EnterLoader = 0x4C4F_4144,
+    /// To go on with whatever clocks run: the reset was meant to stop them ("GOON").
+    GoOn = 0x474F_4F4E,
+}
 
 #[repr(transparent)]
-struct Request(UnsafeCell<[u32; 2]>);
+struct Requested(UnsafeCell<[u32; 2]>);
 
-// SAFETY: accessed only by `loader_asked_for`, at start-up before any task, and `ask_for_loader`, just before a reset.
-unsafe impl Sync for Request {}
+// SAFETY: accessed only by `requested`, at start-up before any task, and `request`, just before a reset.
+unsafe impl Sync for Requested {}
 
 // SAFETY: as for the block.
 #[unsafe(link_section = ".retained")]
-static REQUEST: Request = Request(UnsafeCell::new([0; 2]));
+static REQUEST: Requested = Requested(UnsafeCell::new([0; 2]));
 
-/// Has the next start enter the chip's loader. Called just before a reset.
-pub fn ask_for_loader() {
-    // SAFETY: valid and aligned, and nothing else accesses it (see `Request`).
-    unsafe { REQUEST.0.get().write_volatile(LOADER) }
+/// Has the next start do as asked. Called just before a reset.
+pub fn request(what: Request) {
+    let word = what as u32;
+    // SAFETY: valid and aligned, and nothing else accesses it (see `Requested`).
+    unsafe { REQUEST.0.get().write_volatile([word, !word]) }
 }
 
-/// The run before has asked for the chip's loader. Called once, before [`start`]; the request is withdrawn.
-pub fn loader_asked_for(cause: ResetCause) -> bool {
+/// What the run before has asked for. Called once, before [`start`]; the request is withdrawn.
+pub fn requested(cause: ResetCause) -> Option<Request> {
     // As in `start`: noise is not read.
-    let asked = cause == ResetCause::Software
+    let words = if cause == ResetCause::Software {
         // SAFETY: valid, aligned, any bits are words; volatile, since the compiler assumes the initialiser.
-        && unsafe { REQUEST.0.get().read_volatile() } == LOADER;
+        unsafe { REQUEST.0.get().read_volatile() }
+    } else {
+        [0; 2]
+    };
     // SAFETY: as above.
     unsafe { REQUEST.0.get().write_volatile([0; 2]) };
-    asked
+    [Request::EnterLoader, Request::GoOn]
+        .into_iter()
+        .find(|&request| words == [request as u32, !(request as u32)])
 }
 
 /// Writer of the copies; only [`start`] makes one.

@@ -1,7 +1,7 @@
 //! Lights and buzzer.
 
 use embassy_stm32::Peri;
-use embassy_stm32::gpio::{Level, Output, Pin, Speed};
+use embassy_stm32::gpio::{Flex, Level, Pin, Speed};
 
 /// A switchable device.
 pub trait Switch {
@@ -11,7 +11,7 @@ pub trait Switch {
 
 /// A device switched by a pin.
 pub struct Lamp {
-    pin: Output<'static>,
+    pin: Flex<'static>,
     on: Level,
 }
 
@@ -23,10 +23,19 @@ impl Lamp {
         } else {
             Level::High
         };
-        Self {
-            pin: Output::new(pin, off, Speed::Low),
-            on,
-        }
+        let mut pin = Flex::new(pin);
+        pin.set_level(off);
+        pin.set_as_output(Speed::Low);
+        Self { pin, on }
+    }
+
+    /// A device, off, that is on while `pin` is low; off, the pin floats and takes 5 V.
+    pub fn open_drain(pin: Peri<'static, impl Pin>) -> Self {
+        let mut pin = Flex::new(pin);
+        pin.set_level(Level::High);
+        pin.set_as_input_output(Speed::Low);
+        let on = Level::Low;
+        Self { pin, on }
     }
 }
 

@@ -59,7 +59,7 @@ pub use i2c_bus::{ArmBus, BusParts, BusRegisters, i2c_config};
 #[cfg(any(family = "f7", family = "h7"))]
 pub use i2c_bus::{BusErrors, WatchErrors, set_times};
 pub use lights::{Lamp, Lights};
-pub use loader::{enter_loader_if_asked, leave_for_loader};
+pub use loader::{enter_or_leave_loader, leave_for_loader};
 pub use pads::{Pad, Pupdr, Taken, Wiring, pad};
 pub use rails::{PortLevels, drive, hold};
 pub use reset::take_reset_cause;

@@ -33,6 +33,8 @@ pub enum Failure {
 pub struct Part {
     pub kind: Kind,
     pub failure: Failure,
+    /// Another identity than the kind's.
+    pub identity: Option<u8>,
     pub banks: [[u8; 128]; 5],
     bank: u8,
     /// Registers that ignore writes.
@@ -67,6 +69,7 @@ impl Part {
         let mut part = Self {
             kind,
             failure: Failure::None,
+            identity: None,
             banks: [[0; 128]; 5],
             bank: 0,
             deaf: Vec::new(),
@@ -126,6 +129,9 @@ impl Part {
                 b0[0x00..0x03].copy_from_slice(&CODES[..3]);
                 b0[0x0D..0x10].copy_from_slice(&CODES[3..]);
             }
+        }
+        if let Some(identity) = self.identity {
+            self.banks[0][0x75] = identity;
         }
     }
 

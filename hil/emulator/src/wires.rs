@@ -71,6 +71,11 @@ pub enum BoardFault {
     NoCrystal,
     /// Core PLL never locks. Before the first instruction only.
     NoPll,
+    /// Started by the chip's loader, its clocks running; true: after each reset as well. Before the first instruction only.
+    LoaderClocks(bool),
+    /// This many in a million bytes from the receiver come right but with noise on them, as the port sees it. Before the
+    /// first instruction only.
+    ReceiverNoise(u32),
     /// Processor halted (true) or running; the watchdog runs.
     Hang(bool),
     /// A pulse.

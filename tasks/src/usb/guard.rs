@@ -4,6 +4,9 @@
 //!   time here.
 //! - The chip's driver panics at an endpoint that it does not have, which any host may ask for: others than those of this
 //!   device do not get to it.
+//! - The chip keeps an IN endpoint's enable bit over a reset of the bus, while the driver empties its packet memory: a
+//!   packet that the host did not fetch before its cable was pulled would be waited for until a restart. Each of this
+//!   device's is disabled at a reset.
 //! - A suspension that was noticed late would keep a stack that waits for the bus to resume from being enumerated: it is
 //!   told to the port alone. The board has other supplies and does not save power for the host.
 
@@ -41,6 +44,13 @@ impl Endpoints {
 
     fn has(self, at: EndpointAddress) -> bool {
         self.0 & Self::bit(at) != 0
+    }
+
+    /// Those towards the host, with the control endpoint, which a chip has always.
+    fn inward(self) -> impl Iterator<Item = EndpointAddress> {
+        (0..16)
+            .map(|index| EndpointAddress::from_parts(index, Direction::In))
+            .filter(move |at| at.index() == 0 || self.has(*at))
     }
 }
 
@@ -108,6 +118,21 @@ pub(super) struct Watched<'d, B> {
     endpoints: Endpoints,
 }
 
+impl<B: Bus> Watched<'_, B> {
+    /// Ends what was being sent before a reset of the bus.
+    ///
+    /// The driver orders NAK and the end at once, but the core only ends what has sent NAK before (RM0090 §34.17.6, "IN
+    /// endpoint disable"), and at a reset the driver does not order it for the control endpoint: the second round ends
+    /// what the first has made ready. The host asks for nothing within 10 ms of a reset (USB 2.0 §7.1.7.5).
+    fn end_transfers(&mut self) {
+        for _ in 0..2 {
+            for at in self.endpoints.inward() {
+                self.bus.endpoint_set_enabled(at, false);
+            }
+        }
+    }
+}
+
 impl<B: Bus> Bus for Watched<'_, B> {
     async fn enable(&mut self) {
         self.bus.enable().await;
@@ -119,9 +144,13 @@ impl<B: Bus> Bus for Watched<'_, B> {
 
     async fn poll(&mut self) -> Event {
         loop {
-            let event = self.bus.poll().await;
-            // A core that reports without end must not take the background.
+            // A core that reports without end must not take the background. Before the event: the stack drops this call for
+            // a request of the host, and an event with it.
             embassy_futures::yield_now().await;
+            let event = self.bus.poll().await;
+            if event == Event::Reset {
+                self.end_transfers();
+            }
             match event {
                 // A cable without a host looks the same.
                 Event::Suspend | Event::PowerRemoved => self.port.suspend(true),

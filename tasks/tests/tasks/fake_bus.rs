@@ -1,7 +1,9 @@
 //! A USB bus without wires: the chip's driver for the stack, the host's end for a script.
 //!
 //! As the chips' driver it panics at an endpoint that the device does not have, waits for a host that does not go on
-//! with a control transfer, and holds one packet for each endpoint.
+//! with a control transfer, and holds one packet for each endpoint. As the chips' core (RM0090 §34.17.6) it keeps an IN
+//! endpoint's enable bit over a reset of the bus, which empties the packet memory alone, and obeys an order to disable
+//! one only where it has sent NAK before.
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
@@ -16,6 +18,9 @@ use embassy_usb::driver::{
 
 /// Endpoints that a chip has in each direction: the F405, which has the fewest.
 const ENDPOINTS: usize = 4;
+
+/// The control endpoint, towards the host.
+const CONTROL_IN: u8 = 0x80;
 
 /// How the device took a control request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,6 +45,10 @@ struct Wires {
     endpoints: BTreeMap<u8, EndpointInfo>,
     out: VecDeque<Vec<u8>>,
     to_host: BTreeMap<u8, Vec<u8>>,
+    /// IN endpoints whose enable bit is set: nothing more is taken from the device until the host has fetched what it had.
+    sending: BTreeSet<u8>,
+    /// IN endpoints that send NAK.
+    refusing: BTreeSet<u8>,
     wakers: Vec<Waker>,
     /// Polls of the bus: what the device costs.
     polls: u32,
@@ -87,7 +96,9 @@ impl FakeBus {
                 wires.stalled.clear();
                 wires.address = 0;
                 wires.out.clear();
+                // `sending` stays; the driver has all but the control endpoint send NAK.
                 wires.to_host.clear();
+                wires.refusing = wires.endpoints.keys().copied().collect();
             }
             wires.events.push_back(event);
         });
@@ -105,7 +116,10 @@ impl FakeBus {
 
     /// From here on the host does not go on with control transfers, or does.
     pub fn absent(&self, absent: bool) {
-        self.change(|wires| wires.absent = absent);
+        self.change(|wires| {
+            wires.absent = absent;
+            wires.fetch_control();
+        });
     }
 
     /// How the control transfer has ended, and what came.
@@ -146,9 +160,45 @@ impl FakeBus {
         self.0.borrow().out.len()
     }
 
+    /// A packet waits for the host at endpoint `at`.
+    pub fn has_packet(&self, at: u8) -> bool {
+        self.0.borrow().to_host.contains_key(&at)
+    }
+
     /// Fetches what the device has for the host at endpoint `at`.
     pub fn fetch(&self, at: u8) -> Option<Vec<u8>> {
-        self.change(|wires| wires.to_host.remove(&at))
+        self.change(|wires| wires.fetch(at))
+    }
+}
+
+impl Wires {
+    fn fetch(&mut self, at: u8) -> Option<Vec<u8>> {
+        let packet = self.to_host.remove(&at)?;
+        self.sending.remove(&at);
+        Some(packet)
+    }
+
+    fn fetch_control(&mut self) {
+        if !self.absent {
+            let packet = self.fetch(CONTROL_IN);
+            self.control_in.extend(packet.unwrap_or_default());
+        }
+    }
+
+    /// Takes a packet for the host, if the one before has been fetched.
+    fn load(&mut self, at: u8, bytes: &[u8]) -> Option<()> {
+        let free = self.sending.insert(at);
+        free.then(|| {
+            self.refusing.remove(&at);
+            self.to_host.insert(at, bytes.to_vec());
+        })
+    }
+
+    fn disable(&mut self, at: u8) {
+        self.to_host.remove(&at);
+        if !self.refusing.insert(at) {
+            self.sending.remove(&at);
+        }
     }
 }
 
@@ -238,6 +288,9 @@ impl Bus for FakeBus {
                 wires.enabled.insert(at.into());
             } else {
                 wires.enabled.remove(&at.into());
+                if at.direction() == Direction::In {
+                    wires.disable(at.into());
+                }
             }
         });
     }
@@ -316,11 +369,7 @@ impl EndpointIn for FakeEndpoint {
                 if !wires.enabled.contains(&at) {
                     return Some(Err(EndpointError::Disabled));
                 }
-                if wires.to_host.contains_key(&at) {
-                    return None;
-                }
-                wires.to_host.insert(at, bytes.to_vec());
-                Some(Ok(()))
+                wires.load(at, bytes).map(Ok)
             })
             .await
     }
@@ -349,18 +398,19 @@ impl ControlPipe for FakePipe {
     }
 
     async fn data_in(&mut self, data: &[u8], _first: bool, last: bool) -> Result<(), EndpointError> {
-        self.0.until(|wires| (!wires.absent).then_some(())).await;
-        self.0.change(|wires| {
-            wires.control_in.extend_from_slice(data);
-            if last {
-                wires.status = Some(Status::Accepted);
-            }
-        });
+        self.send(data).await;
+        if last {
+            // The host's empty packet follows what it has fetched.
+            self.0
+                .until(|wires| (!wires.absent && !wires.to_host.contains_key(&CONTROL_IN)).then_some(()))
+                .await;
+            self.0.change(|wires| wires.status = Some(Status::Accepted));
+        }
         Ok(())
     }
 
     async fn accept(&mut self) {
-        self.0.until(|wires| (!wires.absent).then_some(())).await;
+        self.send(&[]).await;
         self.0.change(|wires| wires.status = Some(Status::Accepted));
     }
 
@@ -369,9 +419,14 @@ impl ControlPipe for FakePipe {
     }
 
     async fn accept_set_address(&mut self, address: u8) {
-        self.0.change(|wires| {
-            wires.address = address;
-            wires.status = Some(Status::Accepted);
-        });
+        self.0.change(|wires| wires.address = address);
+        self.accept().await;
+    }
+}
+
+impl FakePipe {
+    async fn send(&self, packet: &[u8]) {
+        self.0.until(|wires| wires.load(CONTROL_IN, packet)).await;
+        self.0.change(Wires::fetch_control);
     }
 }

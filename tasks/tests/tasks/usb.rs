@@ -602,6 +602,49 @@ fn a_reset_in_the_midst_of_a_transfer_is_got_over() {
 }
 
 #[test]
+fn a_cable_that_is_pulled_while_the_device_sends_can_be_put_back() {
+    // In a `watch`, with MAVLink's streams, and with a descriptor on its way.
+    for sends in [&b"watch imu\r"[..], &heartbeat(), b""] {
+        let mut bench = Bench::opened();
+        for _ in 0..3 {
+            bench.send(sends);
+            bench.hear(1000);
+            if sends.is_empty() {
+                bench.bus.absent(true);
+                let asks = setup(FROM_DEVICE, GET_DESCRIPTOR, 0x0200, 0, 255);
+                bench.bus.setup(asks, &[]);
+            }
+            bench.run(600);
+            let waiting = if sends.is_empty() { 0x80 } else { bench.bulk_in };
+            assert!(bench.bus.has_packet(waiting), "{waiting:#x}");
+            bench.bus.event(Event::Suspend);
+            bench.run(5000);
+            bench.bus.event(Event::Reset);
+            bench.bus.absent(false);
+            bench.run(20);
+            bench.enumerate();
+            bench.open(true);
+            assert!(bench.says("version\r").contains("SOPHIE"), "{sends:?}");
+        }
+    }
+}
+
+#[test]
+fn a_reset_that_is_noticed_with_the_hosts_first_request_counts() {
+    let mut bench = Bench::opened();
+    bench.send(b"list\r");
+    bench.run(20);
+    assert!(bench.bus.has_packet(bench.bulk_in));
+    bench.bus.event(Event::Reset);
+    let (status, _) = bench.control(setup(FROM_DEVICE, GET_DESCRIPTOR, 0x0100, 0, 64), &[]);
+    assert_eq!(status, Some(Status::Accepted));
+    let (status, _) = bench.control(setup(TO_DEVICE, 9, 1, 0, 0), &[]);
+    assert_eq!(status, Some(Status::Accepted));
+    bench.open(true);
+    assert!(bench.says("version\r").contains("SOPHIE"));
+}
+
+#[test]
 fn a_stage_that_never_comes_ends_in_time() {
     let mut bench = Bench::opened();
     // Line coding announced, and never sent.

@@ -167,6 +167,10 @@ impl<C: Chip> Wired<C> {
         self.chip.line(self.pads.receiver)
     }
 
+    pub fn receiver_noise(&mut self, per_million: u32) {
+        self.chip.noisy_line(self.pads.receiver, per_million);
+    }
+
     pub fn console(&mut self) -> Option<&mut Line> {
         self.chip.line(self.pads.console)
     }

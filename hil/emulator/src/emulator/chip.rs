@@ -79,10 +79,14 @@ pub trait Chip: Mcu + Debug + Send + 'static {
     /// Makes the next reset a brown-out.
     fn brown_out(&mut self);
     fn serial_setup(&self, port: usize) -> Setup;
+    /// Has `per_million` of the words to a port arrive right, but with the noise flag.
+    fn noisy_line(&mut self, port: usize, per_million: u32);
     fn set_options(&mut self, options: Options);
     fn age(&mut self);
     /// From the next clock reset on.
     fn stop_clock(&mut self, clock: Clock);
+    /// Starts the clocks as the chip's loader leaves them, and again after each reset if `always`.
+    fn start_from_loader(&mut self, now: VirtualNanos, always: bool);
     /// Whether the write changes flash while its data cache is on.
     fn changes_cached_flash(&self, address: u64, value: u64) -> bool;
     /// First address of the flash sector that the write erases.
@@ -159,7 +163,11 @@ macro_rules! same_on_this_part {
         }
 
         fn line(&mut self, port: usize) -> Option<&mut Line> {
-            self.inner.usart[port].chip_mut()
+            let port = &mut self.inner.usart[port];
+            let noise = *port.errors_mut();
+            let line: &mut Line = port.chip_mut()?;
+            line.align(noise);
+            Some(line)
         }
 
         fn function(&mut self, now: VirtualNanos, pin: At) -> Option<u8> {
@@ -184,6 +192,19 @@ macro_rules! same_on_this_part {
                     port.level(number, file) == Level::High
                 })
             })
+        }
+
+        fn noisy_line(&mut self, port: usize, per_million: u32) {
+            self.inner.usart[port].errors_mut().noise = rigless::chip::uart::Rate {
+                name: "line.noise_errors",
+                per_million,
+            };
+        }
+
+        fn start_from_loader(&mut self, now: VirtualNanos, always: bool) {
+            self.loader_clocks = always;
+            self.write_clocks(now, LOADER_CLOCKS);
+            self.write_clocks(now, NO_FLAGS);
         }
 
         fn stop_clock(&mut self, clock: Clock) {

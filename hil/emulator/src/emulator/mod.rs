@@ -503,6 +503,8 @@ impl World {
             BoardFault::FirstRevision => board.chip.age(),
             BoardFault::NoCrystal => board.chip.stop_clock(Clock::Crystal),
             BoardFault::NoPll => board.chip.stop_clock(Clock::Pll),
+            BoardFault::LoaderClocks(always) => board.chip.start_from_loader(stop.at, always),
+            BoardFault::ReceiverNoise(per_million) => board.receiver_noise(per_million),
             BoardFault::Hang(still) => {
                 host.hold(still);
                 self.still = still.then_some(stop.at.0);

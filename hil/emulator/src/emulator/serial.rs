@@ -18,6 +18,8 @@ pub struct Setup {
     pub two_stops: bool,
     /// Idle is low.
     pub inverted: bool,
+    /// A sample a bit, so that no noise is flagged.
+    pub one_sample: bool,
 }
 
 impl Setup {
@@ -33,26 +35,31 @@ impl Setup {
             parity: false,
             two_stops: false,
             inverted: false,
+            one_sample: false,
         }
     }
 
     /// Required settings of a board's receiver line.
     pub fn of(protocol: RcProtocol, board: Kind) -> Self {
         match protocol {
-            RcProtocol::Crsf => Self::plain(420e3),
+            RcProtocol::Crsf => Self {
+                one_sample: true,
+                ..Self::plain(420e3)
+            },
             RcProtocol::Sbus => Self {
                 rate: 100e3,
                 parity: true,
                 two_stops: true,
                 // The F4's ports cannot invert: the board does.
                 inverted: board == Kind::MatekH743,
+                one_sample: false,
             },
         }
     }
 
-    /// From `BRR`, `CR1` and `CR2` of a port clocked at `clock` Hz. The parts share the fields (RM0090 §30.6, RM0433
+    /// From `BRR` and `CR1` to `CR3` of a port clocked at `clock` Hz. The parts share the fields (RM0090 §30.6, RM0433
     /// §48.8), but the F4 lacks bit 16 of `CR2`.
-    pub fn in_registers(clock: f64, brr: u64, cr1: u64, cr2: u64) -> Self {
+    pub fn in_registers(clock: f64, [brr, cr1, cr2, cr3]: [u64; 4]) -> Self {
         let oversampled_by_8 = cr1 >> 15 & 1 == 1;
         Self {
             rate: clock * if oversampled_by_8 { 2.0 } else { 1.0 } / (brr.max(1) as f64),
@@ -60,6 +67,7 @@ impl Setup {
             parity: cr1 >> 9 & 3 == 2,
             two_stops: cr2 >> 12 & 3 == 2,
             inverted: cr2 >> 16 & 1 == 1,
+            one_sample: cr3 >> 11 & 1 == 1,
         }
     }
 
@@ -78,7 +86,8 @@ impl Display for Setup {
         let parity = if self.parity { 'E' } else { 'N' };
         let stops = 1 + u8::from(self.two_stops);
         let inverted = if self.inverted { " inverted" } else { "" };
-        write!(f, "{:.0} baud 8{parity}{stops}{inverted}", self.rate)
+        let samples = if self.one_sample { ", one sample a bit" } else { "" };
+        write!(f, "{:.0} baud 8{parity}{stops}{inverted}{samples}", self.rate)
     }
 }
 
@@ -89,18 +98,17 @@ mod tests {
     #[test]
     fn the_registers_tell_the_set_up() {
         let sbus = Setup::of(RcProtocol::Sbus, Kind::MatekH743);
-        let found = Setup::in_registers(100e6, 1000, 1 << 12 | 1 << 10, 2 << 12 | 1 << 16);
+        let found = Setup::in_registers(100e6, [1000, 1 << 12 | 1 << 10, 2 << 12 | 1 << 16, 0]);
         assert!(sbus.fits(&found), "{found}");
         assert_eq!(found.to_string(), "100000 baud 8E2 inverted");
-        assert!(!sbus.fits(&Setup::in_registers(100e6, 1000, 1 << 12 | 1 << 10, 2 << 12)));
+        assert!(!sbus.fits(&Setup::in_registers(100e6, [1000, 1 << 12 | 1 << 10, 2 << 12, 0])));
         assert!(!sbus.fits(&Setup::in_registers(
             100e6,
-            1050,
-            1 << 12 | 1 << 10,
-            2 << 12 | 1 << 16
+            [1050, 1 << 12 | 1 << 10, 2 << 12 | 1 << 16, 0]
         )));
         let crsf = Setup::of(RcProtocol::Crsf, Kind::F405);
-        assert!(crsf.fits(&Setup::in_registers(84e6, 200, 0, 0)));
+        assert!(crsf.fits(&Setup::in_registers(84e6, [200, 0, 0, 1 << 11])));
+        assert!(!crsf.fits(&Setup::in_registers(84e6, [200, 0, 0, 0])));
         assert!(!crsf.fits(&found));
     }
 }

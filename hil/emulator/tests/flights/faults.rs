@@ -160,6 +160,28 @@ fn a_silenced_arm_sensor_is_named_and_flown_without() {
     assert!(flight.passed(), "{:?}\n{}", flight.record.outcome, log(&flight));
 }
 
+/// Every third byte from the receiver, from the start.
+const NOISE: Trouble = Trouble::Board(BoardFault::ReceiverNoise(333_333));
+
+/// Without the receiver's link the pilot cannot arm.
+fn keeps_its_link(flight: Flight) {
+    let flight = sound_before(flight);
+    for lost in ["radio lost", "FAILSAFE"] {
+        assert_eq!(logged_at(&flight, 0.0, lost), None, "{}", log(&flight));
+    }
+}
+
+#[test]
+fn noise_on_the_receivers_line_does_not_cost_the_link() {
+    keeps_its_link(fly_small(&hover(AIRBORNE), &[(0.0, NOISE)]));
+}
+
+#[test]
+#[ignore = "minutes of emulated flight: .ci/campaign flies it"]
+fn noise_on_the_receivers_line_does_not_cost_the_link_of_the_h743() {
+    keeps_its_link(fly(&hover(AIRBORNE), 1.0, &[(0.0, NOISE)]));
+}
+
 #[test]
 fn a_silent_receiver_ends_in_the_failsafe() {
     let flight = with_small(Trouble::RadioSilent(true), AIRBORNE + 3.0);

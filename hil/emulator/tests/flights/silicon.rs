@@ -131,6 +131,42 @@ fn never_starts(board: &str, fault: BoardFault, message: &str, by: &str) {
 }
 
 #[test]
+fn a_start_by_the_chips_loader_begins_with_one_reset() {
+    for (board, _) in BOARDS {
+        let flight = on_the_bench(board, 1.5, Some(BoardFault::LoaderClocks(false)));
+        let [(ms, cause)] = &flight.board.resets[..] else {
+            panic!("{board}: {:?}\n{}", flight.board.resets, log(&flight))
+        };
+        assert!(*ms < 1.0 && cause == "Core", "{board}: {ms} {cause}");
+        assert!(
+            logged_at(&flight, 0.0, "start after Software").is_some(),
+            "{board}"
+        );
+        assert!(
+            logged_at(&flight, 0.0, "started in").is_some(),
+            "{board}: {}",
+            log(&flight)
+        );
+        assert!(looks(&flight).iter().all(|look| look.ok), "{board}");
+        // On the H7 a PLL that runs refuses its dividers, which would be listed here.
+        assert_eq!(flight.gaps, [], "{board}");
+    }
+}
+
+#[test]
+fn clocks_that_outlive_a_reset_are_reset_once() {
+    // The F405 stops its PLL before it sets it: it flies all the same.
+    let flight = on_the_bench("f405", 1.5, Some(BoardFault::LoaderClocks(true)));
+    assert_eq!(flight.board.resets.len(), 1, "{:?}", flight.board.resets);
+    assert!(
+        logged_at(&flight, 0.0, "started in").is_some(),
+        "{}",
+        log(&flight)
+    );
+    assert_eq!(flight.gaps, []);
+}
+
+#[test]
 fn a_crystal_that_does_not_start_is_told_and_resets_the_board() {
     let message = "the run before ended with: the 8 MHz crystal does not start";
     never_starts("f405", BoardFault::NoCrystal, message, "IWDG");

@@ -2,16 +2,33 @@
 
 use std::collections::VecDeque;
 
+use rigless::chip::uart::Errors;
 use rigless::chip::{Timeline, uart};
 use rigless::snapshot::store;
 use rigless::time::VirtualNanos;
 use serde::{Deserialize, Serialize};
+
+/// Data bits of a word whose noise is drawn: 8N1.
+const BITS: u32 = 8;
 
 /// Both directions of a line; the port times the bytes by its rate.
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub struct Line {
     pub outgoing: VecDeque<u16>,
     pub incoming: Vec<u16>,
+    /// The port's own draws of noise. Runs take no snapshots.
+    #[serde(skip)]
+    noise: Errors,
+}
+
+impl Line {
+    /// Goes on with the port's draws of noise, which it makes of words that it receives. It flips what it draws: flipped
+    /// beforehand, a word arrives right, as the better of three samples gives it.
+    pub fn align(&mut self, noise: Errors) {
+        if self.outgoing.is_empty() {
+            self.noise = noise;
+        }
+    }
 }
 
 store!(Line);
@@ -22,6 +39,7 @@ impl uart::Peer for Line {
     }
 
     fn transmit(&mut self, _: VirtualNanos) -> Option<u16> {
-        self.outgoing.pop_front()
+        let word = self.outgoing.pop_front()?;
+        Some(word ^ self.noise.next(BITS).flipped)
     }
 }

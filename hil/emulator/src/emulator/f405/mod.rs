@@ -29,7 +29,7 @@ use rigless::soc::stm32f427::peripherals::rcc::HSI_HZ;
 use rigless::soc::stm32f427::peripherals::tim::{Advanced, Channel, Counter, Tim, UPDATE_REQUEST};
 use rigless::soc::stm32f427::peripherals::{CONTROLLERS, SERIAL_PORTS, TIMERS};
 use rigless::soc::stm32f427::{Stm32f427, generated};
-use rigless::soc::{Bus, Layout};
+use rigless::soc::{Bus, Layout, Width};
 use rigless::time::VirtualNanos;
 
 use self::exti::{Exti, Syscfg, routed_to};
@@ -56,6 +56,10 @@ const CLOCK: f64 = 168e6;
 const SERIAL_CLOCK: f64 = 42e6;
 const FAST_SERIAL_CLOCK: f64 = 84e6;
 const FAST_SERIAL: [&str; 2] = ["USART1", "USART6"];
+/// Registers of running clocks (RM0090 §7.3): the PLL as after a reset, on.
+const LOADER_CLOCKS: &[(Clocks, u64)] = &[(Clocks::Cr, 1 << 24 | 0x83)];
+/// Removes the reset flags.
+const NO_FLAGS: &[(Clocks, u64)] = &[(Clocks::Csr, 1 << 24)];
 /// The servos' timer that has two channels.
 const SMALL_TIMER: &str = "TIM12";
 /// The motors' timer, and the one whose DMA request moves their frames (RM0090 table 43).
@@ -196,6 +200,8 @@ pub struct F405 {
     missing: u64,
     /// Content of the identity register.
     revision: u64,
+    /// Each reset leaves the loader's clocks running.
+    loader_clocks: bool,
 }
 
 #[derive(Debug)]
@@ -259,9 +265,19 @@ impl F405 {
             missing: 0,
             // The last one (RM0090 §38.6.1).
             revision: 0x101F,
+            loader_clocks: false,
         };
         part.mark_revision();
         Ok(part)
+    }
+
+    /// Writes clock registers as a firmware would.
+    fn write_clocks(&mut self, now: VirtualNanos, writes: &[(Clocks, u64)]) {
+        for &(register, value) in writes {
+            let address = generated::RCC.base + u64::from(register.spec().offset);
+            // Refused only where there is no such register.
+            let _ = Operate::write(self, now, address, Width::W32, value);
+        }
     }
 
     /// Puts an F405's identity into its register.
@@ -327,9 +343,8 @@ impl Chip for F405 {
             SERIAL_CLOCK
         };
         let file = self.inner.bus().registers(instance);
-        let values = [Serial::Brr, Serial::Cr1, Serial::Cr2].map(|r| file.map_or(0, |file| file.get(r)));
-        let [brr, cr1, cr2] = values;
-        Setup::in_registers(clock, brr, cr1, cr2)
+        let registers = [Serial::Brr, Serial::Cr1, Serial::Cr2, Serial::Cr3];
+        Setup::in_registers(clock, registers.map(|r| file.map_or(0, |file| file.get(r))))
     }
 
     fn set_options(&mut self, options: Options) {
@@ -416,6 +431,9 @@ impl Mcu for F405 {
         self.dma = controller();
         self.exti = Exti::default();
         Device::reset(&mut self.usb);
+        if self.loader_clocks {
+            self.write_clocks(at, LOADER_CLOCKS);
+        }
     }
 
     fn poll(&mut self, now: VirtualNanos) {

@@ -10,9 +10,9 @@ use std::num::NonZeroU64;
 use rigless::device::{Device, ErasedDevice, Level, RegisterFile, ResetCause};
 use rigless::emulator::CoreSpec;
 use rigless::machine::matekh743::MatekH743;
-use rigless::mcu::Mcu;
-use rigless::soc::Bus;
+use rigless::mcu::{Mcu, Operate};
 use rigless::soc::stm32h743::Stm32h743;
+use rigless::soc::stm32h743::generated::RCC;
 use rigless::soc::stm32h743::generated::dbgmcu::Register as Debug;
 use rigless::soc::stm32h743::generated::i2c1::Register as BusRegister;
 use rigless::soc::stm32h743::generated::rcc::Register as Clocks;
@@ -22,6 +22,7 @@ use rigless::soc::stm32h743::peripherals::i2c::I2c;
 use rigless::soc::stm32h743::peripherals::otg::Otg;
 use rigless::soc::stm32h743::peripherals::rcc::HSI_HZ;
 use rigless::soc::stm32h743::peripherals::tim::{Channel, General, TIMERS, Tim};
+use rigless::soc::{Bus, Layout, Width};
 use rigless::time::VirtualNanos;
 
 use sophie_control::params::ArmBusSpeed;
@@ -151,6 +152,16 @@ const SERIAL: [&str; 8] = [
     "USART1", "USART2", "USART3", "UART4", "UART5", "USART6", "UART7", "UART8",
 ];
 
+/// Registers of running clocks (RM0433 §8.7): PLL1 makes 200 MHz of 64 by 4 and 25.
+const LOADER_CLOCKS: &[(Clocks, u64)] = &[
+    (Clocks::Pllckselr, 4 << 4),
+    (Clocks::Pllcfgr, 1 << 16 | 3 << 2),
+    (Clocks::Pll1divr, 1 << 24 | 1 << 16 | 1 << 9 | 24),
+    (Clocks::Cr, 1 << 24 | 1),
+];
+/// Removes the reset flags.
+const NO_FLAGS: &[(Clocks, u64)] = &[(Clocks::Rsr, 1 << 16)];
+
 fn motor_timer() -> Tim<General> {
     Tim::new(TIMERS[MOTOR_TIMER])
 }
@@ -172,6 +183,8 @@ pub struct H743 {
     missing: u64,
     /// Content of the identity register.
     revision: u64,
+    /// Each reset leaves the loader's clocks running.
+    loader_clocks: bool,
 }
 
 #[derive(Debug)]
@@ -226,7 +239,17 @@ impl H743 {
             missing: 0,
             // Revision V, as the emulator's part is.
             revision: 0x2003,
+            loader_clocks: false,
         })
+    }
+
+    /// Writes clock registers as a firmware would.
+    fn write_clocks(&mut self, now: VirtualNanos, writes: &[(Clocks, u64)]) {
+        for &(register, value) in writes {
+            let address = RCC.base + u64::from(register.spec().offset);
+            // Refused only where there is no such register.
+            let _ = Operate::write(self, now, address, Width::W32, value);
+        }
     }
 
     /// Puts another crystal in, Hz.
@@ -321,8 +344,8 @@ impl Chip for H743 {
 
     fn serial_setup(&self, port: usize) -> Setup {
         let file = self.inner.bus().slots()[self.slots.serial[port]].registers();
-        let [brr, cr1, cr2] = [Serial::Brr, Serial::Cr1, Serial::Cr2].map(|r| file.get(r));
-        Setup::in_registers(SERIAL_CLOCK, brr, cr1, cr2)
+        let registers = [Serial::Brr, Serial::Cr1, Serial::Cr2, Serial::Cr3].map(|r| file.get(r));
+        Setup::in_registers(SERIAL_CLOCK, registers)
     }
 
     fn set_options(&mut self, options: Options) {
@@ -392,6 +415,9 @@ impl Mcu for H743 {
             // The emulator knows no brown-out: its flag is set beside the pin's (RM0433 §8.7.37).
             let file = self.inner.bus_mut().slot_mut(self.slots.clocks).registers_mut();
             file.set(Clocks::Rsr, file.get(Clocks::Rsr) | 1 << 21);
+        }
+        if self.loader_clocks {
+            self.write_clocks(at, LOADER_CLOCKS);
         }
     }
 
