@@ -312,7 +312,9 @@ impl PositionEstimator {
                     self.aloft.forget();
                     Track::above(at_us, height, self.learnt.as_ref())
                 });
-                self.past.push(here);
+                // Its own place: the next flow's interval may begin here.
+                let position = track.as_ref().map_or(here.position, Track::position);
+                self.past.push(Moment { position, ..here });
                 return None;
             }
         };

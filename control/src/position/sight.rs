@@ -282,10 +282,16 @@ impl Sight {
         let (least, most) = FLOW_HEIGHT;
         let fresh = flow.until_us.saturating_sub(at) <= RANGE_AGE;
         let sound = cos >= COS_MIN && flow.quality >= QUALITY_MIN && (least..=most).contains(&distance);
-        (self.level, self.base, self.other, self.agreed) = (0.0, 0.0, 0.0, 0);
+        (self.level, self.base, self.other) = (0.0, 0.0, 0.0);
+        // No step, no flank and no place of the axes before: what is not known to be wide is where the beam falls now.
+        (self.agreed, self.step, self.flank) = (0, 0.0, 0);
         self.band = None;
+        let height = distance * cos + q.rotate(self.lens).z;
+        let below = Vec3::new(0.0, 0.0, -height) + q.rotate(self.lens) + beam(q, distance, 0.0);
+        self.foot = below;
+        self.unproven = self.unproven.map(|_| below);
         self.agreements = self.agreements.map(Agreement::anew);
-        (fresh && sound).then_some(distance * cos + q.rotate(self.lens).z)
+        (fresh && sound).then_some(height)
     }
 
     /// What the height of the lens at `then` is off by a range of `distance`, m, with its variance, m²; `None` while it is not
@@ -520,4 +526,39 @@ impl Sight {
 /// From the lens of a vehicle with the attitude `q` to what its range sees `distance` m away, in axes turned by `turn` rad.
 pub fn beam(q: Quat, distance: f32, turn: f32) -> Vec3 {
     about_down(q.rotate(Vec3::new(0.0, 0.0, distance)), turn)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// In other axes the places of the ones before are none, and a flank that was half seen no longer keeps the flow from being
+    /// judged.
+    #[test]
+    fn nothing_of_the_axes_before_is_left_where_an_estimate_begins() {
+        let mut sight = Sight::new(0.3, Vec3::ZERO);
+        let at = |us: u64, y: f32| Moment {
+            at_us: us,
+            position: Vec3::new(7.0, y, -1.9),
+            q: Quat::IDENTITY,
+            ..Moment::default()
+        };
+        for (y, distance) in [(0.5, 1.9), (0.7, 0.4)] {
+            for _ in 0..5 {
+                let _ = sight.height((&at(0, y - 0.02), &at(0, y)), distance, false, 0.0);
+            }
+        }
+        assert!(sight.flank > 0 && sight.unproven.is_some() && sight.foot.x > 6.9);
+        sight.range = Some((20_000, 1.0));
+        let flow = Flow {
+            until_us: 20_000,
+            seconds: 0.02,
+            angle: [0.0; 2],
+            quality: 100,
+        };
+        assert_eq!(sight.begin(&flow, Quat::IDENTITY), Some(1.0));
+        assert_eq!((sight.flank, sight.agreed, sight.step), (0, 0, 0.0));
+        assert!(sight.foot.norm() < 1e-6, "{:?}", sight.foot);
+        assert!(sight.unproven.is_some_and(|first| first.norm() < 1e-6));
+    }
 }
