@@ -2,6 +2,7 @@
 
 use super::agreement::Agreement;
 use super::band::{Band, Depth};
+use super::frozen::Frozen;
 use super::past::Moment;
 use super::scale::{Below, RangeScale};
 use super::{about_down, seconds};
@@ -40,13 +41,8 @@ const STEPS_RATE: f32 = 2.0;
 const STEPS_MAX: f32 = 5.0;
 /// For how long the range is left out then, µs.
 const DISTRUST: u64 = 5_000_000;
-/// Equal values in a row of a sensor that stands still: ranges and flows of which none is zero.
-const FROZEN_RANGES: u32 = 25;
+/// Equal flows in a row, none of them zero, of a sensor that stands still.
 const FROZEN_FLOWS: u32 = 12;
-/// Up to here, m, equal ranges are no sign of a vehicle that stands, and so many are one of a vehicle that flies: some modules
-/// read their least for the half second in which it sinks on.
-const NEAR: f32 = 0.1;
-const FROZEN_NEAR: u32 = 50;
 /// Least cosine of a tilt at which flow and range say something: 40°.
 const COS_MIN: f32 = 0.77;
 /// Way, m, and time, µs, since what is narrow was met below, after which it is elsewhere: a pipe has ends.
@@ -182,7 +178,7 @@ pub struct Sight {
     /// What is narrow, where its edge was seen; when it was met below last, µs, and where.
     pub(super) band: Option<Band>,
     met: (u64, Vec3),
-    same_ranges: u32,
+    pub(super) frozen: Frozen,
     same_flows: u32,
     angle: [f32; 2],
     agreements: [Agreement; 2],
@@ -204,7 +200,7 @@ impl Sight {
     /// What is wrong at present.
     pub fn fault(&self) -> Option<SightFault> {
         let faults = [
-            (self.range_frozen(), SightFault::RangeFrozen),
+            (self.frozen.holds(), SightFault::RangeFrozen),
             (self.distrusted_us > self.range_us, SightFault::RangeJumps),
             (self.scale.wrong(), SightFault::RangeScaled),
             (self.same_flows >= FROZEN_FLOWS, SightFault::FlowFrozen),
@@ -229,12 +225,7 @@ impl Sight {
     }
 
     fn range_faulty(&self) -> bool {
-        self.range_frozen() || self.distrusted_us > self.range_us || self.scale.wrong()
-    }
-
-    fn range_frozen(&self) -> bool {
-        let near = self.range.is_some_and(|(_, distance)| distance <= NEAR);
-        self.same_ranges >= if near { FROZEN_NEAR } else { FROZEN_RANGES }
+        self.frozen.holds() || self.distrusted_us > self.range_us || self.scale.wrong()
     }
 
     /// The distance of a range that was not looked at before, m, and when it was measured, µs; a scaled one too. The rotors
@@ -246,14 +237,7 @@ impl Sight {
         }
         (self.range_us, self.now_us) = (range.at_us, now);
         let distance = range.distance?;
-        let same = self
-            .range
-            .is_some_and(|(_, before)| (before - distance).abs() < 1e-4);
-        self.same_ranges = if same && (flies || distance > NEAR) {
-            self.same_ranges.saturating_add(1)
-        } else {
-            0
-        };
+        self.frozen.take(distance, range.at_us, flies);
         self.range = Some((range.at_us, distance));
         let used = self.scale.wrong() || !self.range_faulty();
         used.then_some((range.at_us, distance))

@@ -479,33 +479,6 @@ fn a_range_that_stands_still_or_jumps_is_named_and_left_out() {
     assert_eq!(r.fault(), Some(SightFault::RangeJumps));
 }
 
-/// At 0.1 m over a pipe a range that stood still was none: the vehicle rose and sank beside it, onto an arm.
-#[test]
-fn near_what_is_below_a_range_that_stands_still_is_frozen_where_the_vehicle_flies() {
-    for (distance, flies, named_after) in [
-        (0.2, false, Some(25)),
-        (0.2, true, Some(25)),
-        (0.096, true, Some(50)),
-        (0.096, false, None),
-    ] {
-        let mut sight = Sight::default();
-        let named = (0..200u64).find(|i| {
-            let range = Range {
-                at_us: 1_000_000 + i * FLOW_US,
-                distance: Some(distance),
-                reach: (0.02, 8.0),
-            };
-            let view = GroundView {
-                flow: None,
-                range: Some(range),
-            };
-            sight.new_range(&view, range.at_us, flies);
-            sight.fault() == Some(SightFault::RangeFrozen)
-        });
-        assert_eq!(named, named_after, "{distance} {flies}");
-    }
-}
-
 /// Where the beam of a vehicle that hovered beside a pipe in gusts crossed its edge, s after the first time.
 #[test]
 fn an_edge_that_is_crossed_in_gusts_is_no_fault_and_a_range_that_jumps_as_often_is_one() {
