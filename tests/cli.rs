@@ -206,6 +206,7 @@ fn help_is_a_word_and_an_option_everywhere() {
         ("paper", "paper.html"),
         ("fit-arm", "tilt_deg"),
         ("timing", "--analyse"),
+        ("recording", "--truth"),
     ] {
         assert!(whole.contains(verb), "{verb}: {whole}");
         let long = shown(&temp, &[verb, "--help"]);
@@ -229,7 +230,7 @@ fn help_is_a_word_and_an_option_everywhere() {
     }
     assert_eq!(
         refused(&temp, &["help", "perch"]),
-        "sophie: no help on 'perch': allowed are fly, check, bringup, params, capture, study, paper, fit-arm, timing"
+        "sophie: no help on 'perch': allowed are fly, check, bringup, params, capture, study, paper, fit-arm, timing, recording"
     );
 }
 

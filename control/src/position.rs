@@ -13,6 +13,9 @@ mod band;
 mod fit;
 #[cfg(test)]
 mod fit_tests;
+mod frozen;
+#[cfg(test)]
+mod frozen_tests;
 mod past;
 mod scale;
 #[cfg(test)]
@@ -44,7 +47,7 @@ use crate::params::Params;
 use crate::vector::{Quat, Vec3};
 
 /// Longest step, s: after a longer silence of the inertial sensor the estimate begins anew.
-const STEP_MAX: f32 = 0.05;
+pub const STEP_MAX: f32 = 0.05;
 /// Age of the newest fix with which the estimate ends, s: the inertial sensor alone is metres off by then.
 pub const LOST_AGE: f32 = 10.0;
 /// Fixes until the estimate is given out, half a second at 50 Hz, and the velocity's deviation by then, m/s.
@@ -68,7 +71,7 @@ const KEPT_BIAS: [f32; 3] = [0.1, 0.1, 0.03];
 /// Largest that is kept, m/s²: more is what has misled the estimate.
 const SENSOR_BIAS: f32 = 0.3;
 /// Share of the weight from which on the rotors carry the vehicle.
-const FLIES: f32 = 0.5;
+pub const FLIES: f32 = 0.5;
 /// Age of the newest pose from which on flow and range are taken, s.
 const POSE_FRESH: f32 = 0.2;
 /// Flows refused in a row after which the next is taken, a second at 50 Hz; one that is wrong for good is found out by
@@ -273,6 +276,9 @@ impl PositionEstimator {
         }
         let down = felt.q.rotate(felt.accel).z + GRAVITY;
         self.sight.scale.feel(at_us, flies.then_some(down));
+        let leans = (felt.q.down_in_body().z, felt.q.rotate(self.sight.lens).z);
+        let climb = self.sight.scale.climb();
+        self.sight.frozen.feel(at_us, flies.then_some(down), leans, climb);
         // A scaled range gives no height; how it changes may say that it is right again.
         let range = match range {
             Some((at, distance)) if self.sight.scale.wrong() => {
@@ -312,7 +318,9 @@ impl PositionEstimator {
                     self.aloft.forget();
                     Track::above(at_us, height, self.learnt.as_ref())
                 });
-                self.past.push(here);
+                // Its own place: the next flow's interval may begin here.
+                let position = track.as_ref().map_or(here.position, Track::position);
+                self.past.push(Moment { position, ..here });
                 return None;
             }
         };

@@ -48,6 +48,11 @@ impl Decoder {
         }
     }
 
+    /// What was decoded last, also where it was not given out.
+    pub const fn state(&self) -> &RcState {
+        &self.state
+    }
+
     fn drop_unfinished(&mut self) {
         self.parser.reset();
         if core::mem::take(&mut self.unfinished) {

@@ -23,6 +23,14 @@ impl Decoder {
             RcProtocol::Sbus => Self::Sbus(sbus::Decoder::new()),
         }
     }
+
+    /// What was decoded last, also where it was not given out.
+    pub const fn state(&self) -> &RcState {
+        match self {
+            Self::Crsf(decoder) => decoder.state(),
+            Self::Sbus(decoder) => decoder.state(),
+        }
+    }
 }
 
 impl RcDecoder for Decoder {

@@ -288,6 +288,11 @@ impl Decoder {
         }
     }
 
+    /// What was decoded last, also where it was not given out.
+    pub const fn state(&self) -> &RcState {
+        &self.state
+    }
+
     fn garbage(&mut self) {
         self.in_a_row = 0;
         self.state.errors = self.state.errors.wrapping_add(1);

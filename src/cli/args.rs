@@ -16,7 +16,7 @@ use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand};
 
 pub use console::{BringupArgs, ParamsArgs, ParamsVerb};
-pub use data::{FitArgs, TimingArgs};
+pub use data::{FitArgs, Kind, RecordingArgs, TimingArgs};
 pub use fly::{FlyArgs, LiveArgs};
 pub use message::Message;
 pub use mission::MissionArgs;
@@ -81,6 +81,13 @@ pub enum Task {
     ///
     /// Exit status: 0 read, also when parts were cut off (said on stderr), 2 bad input or unwritable output.
     Timing(TimingArgs),
+    /// Run recorded sensors or bytes through this stack's own filter, estimators and decoders.
+    ///
+    /// FILE is text, plain or gzipped: a line for each measurement (I inertial sample, F flow, R range, L thrust), a table
+    /// whose first line names t_us, gx, gy, gz, ax, ay, az and others, or lines of a time in us and a byte
+    /// (docs/recording.md). S and all times count from its first line.
+    /// Exit status: 0 read, 2 bad input.
+    Recording(RecordingArgs),
 }
 
 /// What to check.

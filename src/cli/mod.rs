@@ -13,6 +13,7 @@ mod key;
 mod live;
 mod operate;
 mod publish;
+mod recording;
 mod study;
 mod timing;
 mod vehicles;
@@ -55,6 +56,7 @@ pub fn main() -> ExitCode {
         Task::Paper(args) => study::paper(&args),
         Task::FitArm(args) => study::fit_arm(&args),
         Task::Timing(args) => timing::run(&args).map(|()| true),
+        Task::Recording(args) => recording::run(&args).map(|()| true),
     };
     match done {
         Ok(true) => ExitCode::SUCCESS,

@@ -59,6 +59,25 @@ pub enum Below {
 /// One run of the filter: height over what is below, m, its rate, m/s, and the bias of what is felt downwards, m/s².
 type Run = [f32; 3];
 
+/// How the vehicle climbs, and how well that is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Climb {
+    /// m/s up.
+    pub rate: f32,
+    /// Of what is felt downwards, m/s².
+    pub bias: f32,
+    /// Of the rate with itself and the bias, and of the bias.
+    variances: [f32; 3],
+}
+
+impl Climb {
+    /// Variance of the way that the inertial sensor alone says, m², `t` s on.
+    pub fn way_variance(&self, t: f32) -> f32 {
+        let [rr, rb, bb] = self.variances;
+        t * t * (rr + t * (rb + ACCEL_NOISE * ACCEL_NOISE * (1.0 / 3.0) + t * 0.25 * bb))
+    }
+}
+
 /// The regression, and the filter behind it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RangeScale {
@@ -87,6 +106,16 @@ impl RangeScale {
     /// There was a range since it flies, and lately.
     pub fn begun(&self) -> bool {
         self.begun
+    }
+
+    /// How the vehicle climbs by range and inertial sensor; `None` where these do not say it.
+    pub fn climb(&self) -> Option<Climb> {
+        let ([_, seen, seen_bias], [_, felt, felt_bias]) = (self.seen, self.felt);
+        (self.anchored && !self.wrong).then_some(Climb {
+            rate: seen + felt,
+            bias: seen_bias + felt_bias,
+            variances: self.rest,
+        })
     }
 
     /// Carries on to `at_us` µs with what is felt `down`wards, m/s², gravity left out; `None` where the vehicle does not fly.

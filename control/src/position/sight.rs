@@ -2,6 +2,7 @@
 
 use super::agreement::Agreement;
 use super::band::{Band, Depth};
+use super::frozen::Frozen;
 use super::past::Moment;
 use super::scale::{Below, RangeScale};
 use super::{about_down, seconds};
@@ -40,13 +41,8 @@ const STEPS_RATE: f32 = 2.0;
 const STEPS_MAX: f32 = 5.0;
 /// For how long the range is left out then, µs.
 const DISTRUST: u64 = 5_000_000;
-/// Equal values in a row of a sensor that stands still: ranges and flows of which none is zero.
-const FROZEN_RANGES: u32 = 25;
+/// Equal flows in a row, none of them zero, of a sensor that stands still.
 const FROZEN_FLOWS: u32 = 12;
-/// Up to here, m, equal ranges are no sign of a vehicle that stands, and so many are one of a vehicle that flies: some modules
-/// read their least for the half second in which it sinks on.
-const NEAR: f32 = 0.1;
-const FROZEN_NEAR: u32 = 50;
 /// Least cosine of a tilt at which flow and range say something: 40°.
 const COS_MIN: f32 = 0.77;
 /// Way, m, and time, µs, since what is narrow was met below, after which it is elsewhere: a pipe has ends.
@@ -182,7 +178,7 @@ pub struct Sight {
     /// What is narrow, where its edge was seen; when it was met below last, µs, and where.
     pub(super) band: Option<Band>,
     met: (u64, Vec3),
-    same_ranges: u32,
+    pub(super) frozen: Frozen,
     same_flows: u32,
     angle: [f32; 2],
     agreements: [Agreement; 2],
@@ -204,7 +200,7 @@ impl Sight {
     /// What is wrong at present.
     pub fn fault(&self) -> Option<SightFault> {
         let faults = [
-            (self.range_frozen(), SightFault::RangeFrozen),
+            (self.frozen.holds(), SightFault::RangeFrozen),
             (self.distrusted_us > self.range_us, SightFault::RangeJumps),
             (self.scale.wrong(), SightFault::RangeScaled),
             (self.same_flows >= FROZEN_FLOWS, SightFault::FlowFrozen),
@@ -229,12 +225,7 @@ impl Sight {
     }
 
     fn range_faulty(&self) -> bool {
-        self.range_frozen() || self.distrusted_us > self.range_us || self.scale.wrong()
-    }
-
-    fn range_frozen(&self) -> bool {
-        let near = self.range.is_some_and(|(_, distance)| distance <= NEAR);
-        self.same_ranges >= if near { FROZEN_NEAR } else { FROZEN_RANGES }
+        self.frozen.holds() || self.distrusted_us > self.range_us || self.scale.wrong()
     }
 
     /// The distance of a range that was not looked at before, m, and when it was measured, µs; a scaled one too. The rotors
@@ -246,14 +237,7 @@ impl Sight {
         }
         (self.range_us, self.now_us) = (range.at_us, now);
         let distance = range.distance?;
-        let same = self
-            .range
-            .is_some_and(|(_, before)| (before - distance).abs() < 1e-4);
-        self.same_ranges = if same && (flies || distance > NEAR) {
-            self.same_ranges.saturating_add(1)
-        } else {
-            0
-        };
+        self.frozen.take(distance, range.at_us, flies);
         self.range = Some((range.at_us, distance));
         let used = self.scale.wrong() || !self.range_faulty();
         used.then_some((range.at_us, distance))
@@ -282,10 +266,16 @@ impl Sight {
         let (least, most) = FLOW_HEIGHT;
         let fresh = flow.until_us.saturating_sub(at) <= RANGE_AGE;
         let sound = cos >= COS_MIN && flow.quality >= QUALITY_MIN && (least..=most).contains(&distance);
-        (self.level, self.base, self.other, self.agreed) = (0.0, 0.0, 0.0, 0);
+        (self.level, self.base, self.other) = (0.0, 0.0, 0.0);
+        // No step, no flank and no place of the axes before: what is not known to be wide is where the beam falls now.
+        (self.agreed, self.step, self.flank) = (0, 0.0, 0);
         self.band = None;
+        let height = distance * cos + q.rotate(self.lens).z;
+        let below = Vec3::new(0.0, 0.0, -height) + q.rotate(self.lens) + beam(q, distance, 0.0);
+        self.foot = below;
+        self.unproven = self.unproven.map(|_| below);
         self.agreements = self.agreements.map(Agreement::anew);
-        (fresh && sound).then_some(distance * cos + q.rotate(self.lens).z)
+        (fresh && sound).then_some(height)
     }
 
     /// What the height of the lens at `then` is off by a range of `distance`, m, with its variance, m²; `None` while it is not
@@ -520,4 +510,39 @@ impl Sight {
 /// From the lens of a vehicle with the attitude `q` to what its range sees `distance` m away, in axes turned by `turn` rad.
 pub fn beam(q: Quat, distance: f32, turn: f32) -> Vec3 {
     about_down(q.rotate(Vec3::new(0.0, 0.0, distance)), turn)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// In other axes the places of the ones before are none, and a flank that was half seen no longer keeps the flow from being
+    /// judged.
+    #[test]
+    fn nothing_of_the_axes_before_is_left_where_an_estimate_begins() {
+        let mut sight = Sight::new(0.3, Vec3::ZERO);
+        let at = |us: u64, y: f32| Moment {
+            at_us: us,
+            position: Vec3::new(7.0, y, -1.9),
+            q: Quat::IDENTITY,
+            ..Moment::default()
+        };
+        for (y, distance) in [(0.5, 1.9), (0.7, 0.4)] {
+            for _ in 0..5 {
+                let _ = sight.height((&at(0, y - 0.02), &at(0, y)), distance, false, 0.0);
+            }
+        }
+        assert!(sight.flank > 0 && sight.unproven.is_some() && sight.foot.x > 6.9);
+        sight.range = Some((20_000, 1.0));
+        let flow = Flow {
+            until_us: 20_000,
+            seconds: 0.02,
+            angle: [0.0; 2],
+            quality: 100,
+        };
+        assert_eq!(sight.begin(&flow, Quat::IDENTITY), Some(1.0));
+        assert_eq!((sight.flank, sight.agreed, sight.step), (0, 0, 0.0));
+        assert!(sight.foot.norm() < 1e-6, "{:?}", sight.foot);
+        assert!(sight.unproven.is_some_and(|first| first.norm() < 1e-6));
+    }
 }

@@ -19,6 +19,8 @@ pub struct Below {
     streams: Streams,
     lens: DVec3,
     failure: (crate::scenario::FlowFault, f64, f64),
+    /// Frames a second, and the step of its ranges, m.
+    sending: (Option<f64>, Option<f64>),
     /// `None` before the first millisecond, which shows where the pipe is.
     module: Option<FlowModule>,
     line: &'static Line,
@@ -35,6 +37,7 @@ impl Below {
             streams: scenario.streams(),
             lens: s.lens(),
             failure: (s.flow_fault, s.pose_fails_at, s.pose_fails_for),
+            sending: (s.flow_rate, s.range_step),
             module: None,
             line: Box::leak(Box::new(Line::new())),
             place: DVec3::ZERO,
@@ -51,7 +54,11 @@ impl Below {
     /// Looks down, each millisecond.
     pub fn look(&mut self, plant: &Plant) {
         let (fault, at, seconds) = self.failure;
-        let new = || FlowModule::new(self.streams, *plant.pipe(), self.lens).failing(fault, at, seconds);
+        let (rate, step) = self.sending;
+        let new = || {
+            let module = FlowModule::new(self.streams, *plant.pipe(), self.lens);
+            module.sending(rate, step).failing(fault, at, seconds)
+        };
         self.module.get_or_insert_with(new).step(plant.pose());
         self.place = plant.pose().position;
     }

@@ -490,6 +490,16 @@ pub const KEYS: &[Key] = &[
     optional!("sensors.flow_x_m", LENS, sensors.flow_place[0]),
     optional!("sensors.flow_y_m", LENS, sensors.flow_place[1]),
     optional!("sensors.flow_z_m", LENS, sensors.flow_place[2]),
+    optional!(
+        "sensors.flow_rate_hz",
+        Range::new(10.0, 100.0, "Hz"),
+        sensors.flow_rate
+    ),
+    optional!(
+        "sensors.range_step_m",
+        Range::new(0.001, 0.05, "m"),
+        sensors.range_step
+    ),
     Key {
         name: "sensors.pose_fault",
         kind: Kind::Choice(POSE_FAULTS, |s, v| s.sensors.pose_fault = pose_fault(v)),

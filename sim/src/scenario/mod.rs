@@ -242,6 +242,10 @@ pub struct Sensors {
     pub flow_fault: FlowFault,
     /// Where their lens is, of the centre of mass, m, body; each `None`: where [`Sensors::lens`] has it.
     pub flow_place: [Option<f64>; 3],
+    /// Frames of flow and range a second, Hz; `None`: 50.
+    pub flow_rate: Option<f64>,
+    /// What ranges are multiples of, m; `None`: a millimetre.
+    pub range_step: Option<f64>,
     /// How poses fail then.
     pub pose_fault: PoseFault,
     /// The board carries a barometer.

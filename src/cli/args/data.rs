@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
+use sophie_control::params::{ParamInfo, Params, Renamed};
 
 use super::values::within;
 
@@ -20,6 +21,84 @@ pub struct TimingArgs {
     /// Directory for timing.html and timing.csv.
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
+}
+
+/// What a recording holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Kind {
+    /// Inertial samples, flow, range, thrust.
+    Sensors,
+    /// Bytes of an SBUS or S.BUS2 receiver.
+    Sbus,
+    /// Bytes of a CRSF receiver.
+    Crsf,
+    /// Bytes of a module of flow and range.
+    Msp,
+}
+
+/// Which recording, and how it is read.
+#[derive(Args, Debug)]
+pub struct RecordingArgs {
+    /// The recording.
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
+    /// Table of places, velocities or attitudes by motion capture, to compare with.
+    #[arg(long, value_name = "FILE")]
+    pub truth: Option<PathBuf>,
+    /// Drop flow and range before this, s from the first line, 0 to 1000000.
+    #[arg(long, value_name = "S", value_parser = from, default_value = "0", allow_negative_numbers = true)]
+    pub from: f64,
+    /// What FILE holds: sensors, sbus, crsf or msp.
+    #[arg(
+        long = "as",
+        value_name = "KIND",
+        value_enum,
+        hide_possible_values = true,
+        default_value = "sensors"
+    )]
+    pub kind: Kind,
+    /// A parameter of the vehicle, as often as wanted; a name in place of the number where it has one.
+    #[arg(long = "param", value_name = "NAME=VALUE", value_parser = parameter)]
+    pub params: Vec<(&'static ParamInfo, f32)>,
+    /// Print the result as JSON on stdout, everything else on stderr.
+    #[arg(long)]
+    pub json: bool,
+}
+
+fn from(text: &str) -> Result<f64, String> {
+    within(text, &(0.0..=1e6), " s")
+}
+
+/// A parameter and its value. Old names are converted.
+fn parameter(text: &str) -> Result<(&'static ParamInfo, f32), String> {
+    let (name, value) = text
+        .split_once('=')
+        .ok_or("allowed NAME=VALUE, such as mass=1.8")?;
+    let renamed = Renamed::find(name);
+    let row = Params::row(renamed.map_or(name, |r| r.new))
+        .ok_or_else(|| format!("no parameter '{name}', allowed are those of docs/parameters.md"))?;
+    let named = row.choice_named(value).map(|choice| choice.value);
+    let number = value.parse().ok().map(|n| renamed.map_or(n, |r| r.convert(n)));
+    let found = named.or(number).filter(|n| row.allows(*n));
+    let names: Vec<&str> = row
+        .choices
+        .iter()
+        .map(|c| c.name)
+        .filter(|n| !n.is_empty())
+        .collect();
+    let allowed = match names.as_slice() {
+        [] if row.choices.is_empty() => format!("{} to {} {}", row.min, row.max, row.unit),
+        [] => row
+            .choices
+            .iter()
+            .map(|c| c.value.to_string())
+            .collect::<Vec<_>>()
+            .join(", "),
+        names => names.join(", "),
+    };
+    found
+        .map(|n| (row, n))
+        .ok_or_else(|| format!("allowed {allowed}"))
 }
 
 /// Which data, and where the fit goes.

@@ -101,6 +101,11 @@ fn numbers_are_converted_once() {
 
 #[test]
 fn the_stack_knows_the_vehicle_unless_params_say_otherwise() {
+    let s = parse("[sensors]\nflow_rate_hz = 100\nrange_step_m = 0.01").unwrap();
+    assert_eq!(
+        (s.sensors.flow_rate, s.sensors.range_step),
+        (Some(100.0), Some(0.01))
+    );
     let s = parse("[vehicle]\ninfill = 8\ngain_k = 5\nservo = 'mg996r'").unwrap();
     assert_eq!(
         (s.params.infill, s.params.gain_k, s.params.servo_stall),
