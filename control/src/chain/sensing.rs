@@ -76,14 +76,26 @@ impl Sensing {
         }
         self.collected = 0;
         let clips = |newest: &ImuReading| newest.accel.norm_squared() >= self.clips_at;
-        self.clipped = if readings.last().is_some_and(clips) {
+        let clips = readings.last().is_some_and(clips);
+        if clips || self.clipped > 0 {
+            self.count_clipped(clips, sample);
+        }
+        sample.dt = self.clock.step(at_us);
+        true
+    }
+}
+
+impl Sensing {
+    /// A reading clips, or one did lately.
+    #[cold]
+    #[inline(never)]
+    fn count_clipped(&mut self, clips: bool, sample: &mut ImuSample) {
+        self.clipped = if clips {
             CLIP_STEPS
         } else {
             self.clipped.saturating_sub(1)
         };
         sample.clipped = self.clipped > 0;
-        sample.dt = self.clock.step(at_us);
-        true
     }
 }
 
