@@ -8,8 +8,8 @@ use sophie_report::terminal::console;
 use crate::cli::refuse;
 
 /// The subcommands, as messages name them.
-const VERBS: [&str; 9] = [
-    "fly", "check", "bringup", "params", "capture", "study", "paper", "fit-arm", "timing",
+const VERBS: [&str; 10] = [
+    "fly", "check", "bringup", "params", "capture", "study", "paper", "fit-arm", "timing", "recording",
 ];
 
 /// Something to show instead of a flight: help, version, or a refusal.
