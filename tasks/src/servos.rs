@@ -102,6 +102,8 @@ struct Tendons {
 }
 
 impl Tendons {
+    // Not inlined: it runs once, and would be part of every poll.
+    #[inline(never)]
     fn new(links: &Links) -> Self {
         let marks = links.params.servo_marks;
         let marked = [0, 1, 2, 3].map(|servo| marks.has(servo));

@@ -307,6 +307,8 @@ choices! {
 
 impl ServoMarks {
     /// True where those of `servo` (0 to 3) have been measured.
+    // Not inlined: it is asked at the start and at the console alone, and a copy of its divisions is 100 bytes.
+    #[inline(never)]
     pub fn has(self, servo: usize) -> bool {
         let mut digits = self.number() as usize;
         while digits > 0 {
