@@ -202,9 +202,11 @@ impl Settings {
     fn of(s: &Scenario) -> Self {
         let (v, w, p) = (&s.vehicle, &s.world, &s.pilot);
         let pipe = p.believes.pipe(w);
+        // A simulated vehicle's servos have their marks, which a new board's have not.
+        let usual = Scenario::default_mission().params;
         let changed = Params::TABLE.iter().filter_map(|row| {
             let value = s.params.get(row.name)?;
-            (value.to_bits() != row.default.to_bits()).then_some((row.name, value))
+            (usual.get(row.name)?.to_bits() != value.to_bits()).then_some((row.name, value))
         });
         Self {
             infill_percent: v.infill,
