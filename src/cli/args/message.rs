@@ -9,7 +9,16 @@ use crate::cli::refuse;
 
 /// The subcommands, as messages name them.
 const VERBS: [&str; 10] = [
-    "fly", "check", "bringup", "params", "capture", "study", "paper", "fit-arm", "timing", "recording",
+    "fly",
+    "check",
+    "bringup",
+    "params",
+    "capture",
+    "study",
+    "paper",
+    "fit-arm",
+    "timing",
+    "recording",
 ];
 
 /// Something to show instead of a flight: help, version, or a refusal.
