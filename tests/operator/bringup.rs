@@ -295,6 +295,7 @@ fn a_vehicle_is_brought_up_over_four_sessions() {
 
     // What the board has lost is asked again, and nothing else.
     board.type_and_leave(b"set fsr_zero_2 1\r");
+    board.type_and_leave(b"set servo_marks 134\r");
     let done = run(&temp, &["bringup", "--port", &board.name()]);
     assert_eq!(done.status, Some(1));
     assert!(
@@ -302,7 +303,7 @@ fn a_vehicle_is_brought_up_over_four_sessions() {
             .contains("fsr-2 is to be done again: fsr_zero_2 is 1 at the board, was "),
         "{done:?}"
     );
-    assert!(done.said.contains("not done: fsr-2\n"), "{done:?}");
+    assert!(done.said.contains("not done: fsr-2, servo-2\n"), "{done:?}");
 }
 
 #[test]

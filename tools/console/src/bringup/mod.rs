@@ -14,6 +14,8 @@ mod walk;
 
 use std::path::Path;
 
+use sophie_control::params::ServoMarks;
+
 use self::protocol::{Entry, Protocol, Result as Ended};
 pub use self::walk::{Reply, User};
 use self::walk::{Stop, Verdict, Walk};
@@ -181,6 +183,9 @@ pub const STEPS: [Step; 28] = [
     ),
 ];
 
+/// The parameter that each servo's step adds its digit to.
+const MARKS: &str = "servo_marks";
+
 /// The last step, which looks at the others' work.
 const LAST: &str = "final";
 
@@ -253,24 +258,43 @@ fn reopen(session: &mut Session, user: &mut dyn User, protocol: &mut Protocol) -
         return Ok(());
     }
     let rows = parameters::listed(session)?;
-    for step in &STEPS {
-        let Some(entry) = protocol
-            .entry(step.id)
-            .filter(|entry| entry.result == Ended::Passed)
-        else {
-            continue;
-        };
-        let lost = entry.parameters.iter().find_map(|(name, value)| {
-            let now = rows.iter().find(|listed| listed.name == *name)?;
-            (now.value.parse() != Ok(*value))
-                .then(|| format!("{name} is {} at the board, was {value}", now.value))
-        });
-        if let Some(lost) = lost {
+    for (index, step) in STEPS.iter().enumerate() {
+        if let Some(lost) = lost(index, protocol, &rows) {
             user.say(&format!("{} is to be done again: {lost}", step.id));
             protocol.drop_entry(step.id);
         }
     }
     Ok(())
+}
+
+/// The first parameter that the step at `index` has stored and that the board has otherwise. The last step that has stored
+/// a parameter answers for its value.
+fn lost(index: usize, protocol: &Protocol, rows: &[parameters::Listed]) -> Option<String> {
+    let (step, later) = STEPS.get(index..)?.split_first()?;
+    let stored = |step: &Step| {
+        let entry = protocol.entry(step.id)?;
+        (entry.result == Ended::Passed).then_some(&entry.parameters)
+    };
+    stored(step)?.iter().find_map(|(name, value)| {
+        let now = &rows.iter().find(|listed| listed.name == *name)?.value;
+        let has = if name == MARKS {
+            marked(step, now)
+        } else {
+            let answers = |later| stored(later).is_some_and(|all| all.contains_key(name));
+            now.parse() == Ok(*value) || later.iter().any(answers)
+        };
+        (!has).then(|| format!("{name} is {now} at the board, was {value}"))
+    })
+}
+
+/// The marks `now` have the digit of the step's servo: each step adds its own to one parameter.
+fn marked(step: &Step, now: &str) -> bool {
+    let Some((servo, now)) = step.number.checked_sub(1).zip(now.parse::<f32>().ok()) else {
+        return false;
+    };
+    ServoMarks::ALL
+        .iter()
+        .any(|marks| marks.number() == now && marks.has(servo))
 }
 
 fn steps(walk: &mut Walk<'_>, protocol: &mut Protocol) -> Result<(), Stop> {
@@ -328,5 +352,63 @@ fn one(walk: &mut Walk<'_>, protocol: &mut Protocol, step: &Step) -> Result<bool
         Ok(_) => Ok(false),
         Err(Stop::Skip) => Ok(true),
         Err(stop) => Err(stop),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Passed steps with what they stored.
+    fn done(steps: &[(&str, &str, f64)]) -> Protocol {
+        let folder = std::env::temp_dir().join(format!("sophie-lost-{}", std::process::id()));
+        // Nothing is there, and nothing is written.
+        let mut protocol = Protocol::open(&folder.join("none.toml")).unwrap();
+        for (id, name, value) in steps {
+            protocol.note(Entry {
+                id: (*id).to_owned(),
+                title: String::new(),
+                result: Ended::Passed,
+                at: String::new(),
+                figures: Vec::new(),
+                build: String::new(),
+                parameters: [((*name).to_owned(), *value)].into(),
+            });
+        }
+        protocol
+    }
+
+    /// The steps to be done again where the board has `name` at `now`.
+    fn again(protocol: &Protocol, name: &str, now: &str) -> Vec<&'static str> {
+        let rows = [parameters::Listed {
+            name: name.to_owned(),
+            value: now.to_owned(),
+            allowed: String::new(),
+            changed: true,
+        }];
+        let open = (0..STEPS.len()).filter(|index| lost(*index, protocol, &rows).is_some());
+        open.map(|index| STEPS[index].id).collect()
+    }
+
+    #[test]
+    fn a_parameter_of_several_steps_is_missed_by_the_one_that_answers_for_it() {
+        let servos = done(&[
+            ("servo-1", MARKS, 13.0),
+            ("servo-2", MARKS, 123.0),
+            ("servo-3", MARKS, 3.0),
+        ]);
+        for (now, steps) in [
+            ("123", &[] as &[&str]),
+            ("1234", &[]),
+            ("13", &["servo-2"]),
+            ("0", &["servo-1", "servo-2", "servo-3"]),
+        ] {
+            assert_eq!(again(&servos, MARKS, now), steps, "{now}");
+        }
+        let idle = "motor_pulse_idle";
+        let pulses = done(&[("setup", idle, 1150.0), ("esc", idle, 1085.0)]);
+        assert!(again(&pulses, idle, "1085").is_empty());
+        assert_eq!(again(&pulses, idle, "1150"), ["esc"]);
+        assert_eq!(again(&done(&[("setup", idle, 1150.0)]), idle, "1085"), ["setup"]);
     }
 }

@@ -204,11 +204,16 @@ impl Protocol {
     /// # Errors
     /// One line: the file cannot be written.
     pub fn put(&mut self, entry: Entry) -> std::result::Result<(), Failure> {
+        self.note(entry);
+        self.write()
+    }
+
+    /// Puts an entry in its place, in memory alone.
+    pub(super) fn note(&mut self, entry: Entry) {
         self.drop_entry(&entry.id);
         self.content.steps.push(entry);
         let place = |entry: &Entry| STEPS.iter().position(|step| step.id == entry.id);
         self.content.steps.sort_by_key(place);
-        self.write()
     }
 
     /// Takes the entry of the step `id` out, in memory alone.
