@@ -37,8 +37,6 @@ pub struct Estimator {
     rest_accel: Vec3,
     known_bias: Option<Vec3>,
     calibrated: bool,
-    /// The force of this step has clipped.
-    clipped: bool,
 }
 
 impl Estimator {
@@ -54,7 +52,6 @@ impl Estimator {
             rest_accel: Vec3::ZERO,
             known_bias: None,
             calibrated: false,
-            clipped: false,
         }
     }
 
@@ -88,47 +85,52 @@ impl Estimator {
     // Not inlined: its caller is built for size.
     #[inline(never)]
     pub fn estimate(&mut self, sample: &ImuSample, attitude: &mut Attitude) {
-        self.clipped = sample.clipped;
-        let rate = self.step(sample.gyro, sample.accel, sample.dt);
+        if !self.calibrated {
+            self.calibrate(sample, attitude);
+            return;
+        }
+        let (q, rate, gyro_bias) = self.follow(sample);
         *attitude = Attitude {
-            q: self.q,
+            q,
             rate,
             accel: sample.accel,
-            gyro_bias: self.bias,
-            calibrated: self.calibrated,
+            gyro_bias,
+            calibrated: true,
             clipped: sample.clipped,
             dt: sample.dt,
         };
     }
 
-    /// One step of `dt` s with finite body rate (rad/s) and specific force (m/s²); returns the unbiased rate.
+    /// One step with finite body rate and specific force, calibrated; returns attitude, unbiased rate and bias, rad/s.
     #[inline(always)]
-    pub fn step(&mut self, gyro: Vec3, accel: Vec3, dt: f32) -> Vec3 {
-        if !self.calibrated {
-            self.calibrate(gyro, accel, dt);
-            return Vec3::ZERO;
-        }
+    fn follow(&mut self, sample: &ImuSample) -> (Quat, Vec3, Vec3) {
+        let ImuSample {
+            gyro,
+            accel,
+            dt,
+            clipped,
+        } = *sample;
         let rate = gyro - self.bias;
         // Measured down (minus specific force) against estimated down.
         let norm2 = accel.norm_squared();
         // Not finite without force: weight and the check below handle both.
         let inv = math::inv_sqrt_normal(norm2);
         let excess = norm2 * inv * (1.0 / GRAVITY) - 1.0;
-        let weight = 1.0 - excess.abs() * (1.0 / ACCEL_FADE);
+        // What has clipped is cut off on one side, and leans: it has no weight.
+        let most = if clipped { 0.0 } else { 1.0 };
+        let weight = most - excess.abs() * (1.0 / ACCEL_FADE);
         let weight = math::clamp(weight, 0.0, 1.0);
         let error = (accel * -inv).cross(self.q.down_in_body()) * weight;
-        // What has clipped is cut off on one side, and leans.
-        let error = if error.is_finite() && !self.clipped {
-            error
-        } else {
-            Vec3::ZERO
-        };
-        self.bias = (self.bias - error * (self.ki * dt)).map(|b| math::clamp_abs(b, BIAS_MAX));
-        self.integrate(rate + error * self.kp, dt);
-        rate
+        let error = if error.is_finite() { error } else { Vec3::ZERO };
+        let bias = (self.bias - error * (self.ki * dt)).map(|b| math::clamp_abs(b, BIAS_MAX));
+        let q = self.integrated(rate + error * self.kp, dt);
+        (self.q, self.bias) = (q, bias);
+        (q, rate, bias)
     }
 
-    fn integrate(&mut self, rate: Vec3, dt: f32) {
+    /// Attitude after `dt` s of `rate`, rad/s.
+    #[inline(always)]
+    fn integrated(&self, rate: Vec3, dt: f32) -> Quat {
         let h = rate * (0.5 * dt);
         let d = self.q
             * Quat {
@@ -151,16 +153,36 @@ impl Estimator {
             y: q.y * k,
             z: q.z * k,
         };
-        self.q = if q.is_finite() { q } else { self.q };
+        if q.is_finite() { q } else { self.q }
+    }
+
+    /// One step of calibration, whole: the flight's step then keeps what it writes in registers.
+    #[cold]
+    #[inline(never)]
+    fn calibrate(&mut self, sample: &ImuSample, attitude: &mut Attitude) {
+        self.collect_rest(sample);
+        *attitude = Attitude {
+            q: self.q,
+            rate: Vec3::ZERO,
+            accel: sample.accel,
+            gyro_bias: self.bias,
+            calibrated: self.calibrated,
+            clipped: sample.clipped,
+            dt: sample.dt,
+        };
     }
 
     /// Collects rest, which motion restarts. With a known bias, not falling is enough.
-    #[cold]
-    #[inline(never)]
-    fn calibrate(&mut self, gyro: Vec3, accel: Vec3, dt: f32) {
+    fn collect_rest(&mut self, sample: &ImuSample) {
+        let ImuSample {
+            gyro,
+            accel,
+            dt,
+            clipped,
+        } = *sample;
         if let Some(bias) = self.known_bias {
             let g = accel.norm() * (1.0 / GRAVITY);
-            if self.clipped || !((1.0 - RESUME_ERROR)..=(1.0 + RESUME_ERROR)).contains(&g) {
+            if clipped || !((1.0 - RESUME_ERROR)..=(1.0 + RESUME_ERROR)).contains(&g) {
                 self.rest_time = 0.0;
                 return;
             }
@@ -174,7 +196,7 @@ impl Estimator {
         }
         let limit = |v: Vec3, l: f32| v.to_array().iter().all(|x| (-l..=l).contains(x));
         let still = limit(gyro, REST_RATE)
-            && !self.clipped
+            && !clipped
             && (self.rest_time < 0.2 || limit(gyro - self.rest_gyro, REST_DEVIATION));
         if !still {
             self.rest_time = 0.0;
@@ -212,6 +234,18 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+
+    impl Estimator {
+        fn step(&mut self, gyro: Vec3, accel: Vec3, dt: f32) {
+            let sample = ImuSample {
+                gyro,
+                accel,
+                dt,
+                clipped: false,
+            };
+            self.estimate(&sample, &mut Attitude::default());
+        }
+    }
 
     fn at_rest(roll: f32, pitch: f32) -> Vec3 {
         Quat::from_euler(roll, pitch, 0.0).rotate_inverse(Vec3::new(0.0, 0.0, -GRAVITY))

@@ -275,10 +275,7 @@ impl PositionEstimator {
             return None;
         }
         let down = felt.q.rotate(felt.accel).z + GRAVITY;
-        self.sight.scale.feel(at_us, flies.then_some(down));
-        let leans = (felt.q.down_in_body().z, felt.q.rotate(self.sight.lens).z);
-        let climb = self.sight.scale.climb();
-        self.sight.frozen.feel(at_us, flies.then_some(down), leans, climb);
+        self.sight.feel(at_us, flies.then_some(down), felt.q);
         // A scaled range gives no height; how it changes may say that it is right again.
         let range = match range {
             Some((at, distance)) if self.sight.scale.wrong() => {

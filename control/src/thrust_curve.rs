@@ -8,14 +8,14 @@ use crate::wrench::PerArm;
 /// T / T_max = (V/V0)² (q u² + (1 - q) u): thrust of the command u at the voltage V.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThrustCurve {
-    max: f32,
     quadratic: f32,
-    linear: f32,
-    half_linear: f32,
-    half_linear_squared: f32,
-    /// Command of a rotor that just turns, and its share.
+    /// For the root, of which numerator and divisor are half as large: (1 - q) / 4, and half the square of (1 - q) / 2.
+    twice_max: f32,
+    quarter_linear: f32,
+    half_linear_square: f32,
+    /// Command of a rotor that just turns, and half its share.
     least_command: f32,
-    least: f32,
+    half_least: f32,
 }
 
 /// Least voltage ratio compensated.
@@ -30,19 +30,21 @@ impl ThrustCurve {
         let half_linear = 0.5 * (1.0 - quadratic);
         let least_command = least_command(p);
         Self {
-            max: p.thrust_max,
             quadratic,
-            linear: 1.0 - quadratic,
-            half_linear,
-            half_linear_squared: half_linear * half_linear + LEAST_SQUARE,
+            twice_max: 2.0 * p.thrust_max,
+            quarter_linear: 0.5 * half_linear,
+            half_linear_square: 0.5 * (half_linear * half_linear + LEAST_SQUARE),
             least_command,
-            least: (quadratic * least_command + (1.0 - quadratic)) * least_command,
+            half_least: 0.5 * (quadratic * least_command + (1.0 - quadratic)) * least_command,
         }
     }
 
     /// Command 0..1 for `thrust` (N) at the voltage ratio V/V0; 0 for no thrust.
     pub fn command(&self, thrust: f32, ratio: f32) -> f32 {
-        let stopped = Self { least: 0.0, ..*self };
+        let stopped = Self {
+            half_least: 0.0,
+            ..*self
+        };
         let [command, ..] = stopped.commands(&[thrust; 4], ratio);
         command
     }
@@ -52,23 +54,24 @@ impl ThrustCurve {
     #[inline(always)]
     pub fn commands(&self, thrusts: &PerArm<f32>, ratio: f32) -> PerArm<f32> {
         let ratio = math::clamp(ratio, LEAST_RATIO, 1.5);
-        let per_newton = 1.0 / (self.max * ratio * ratio);
+        let half_per_newton = 1.0 / (self.twice_max * ratio * ratio);
         let [a, b, c, d] = *thrusts;
         [
-            self.share_to_command(a * per_newton),
-            self.share_to_command(b * per_newton),
-            self.share_to_command(c * per_newton),
-            self.share_to_command(d * per_newton),
+            self.share_to_command(a * half_per_newton),
+            self.share_to_command(b * half_per_newton),
+            self.share_to_command(c * half_per_newton),
+            self.share_to_command(d * half_per_newton),
         ]
     }
 
-    /// Root of q u² + (1 - q) u = share, in a form that also holds for q = 0.
+    /// Root of q u² + (1 - q) u = share of `half` the share, in a form that also holds for q = 0.
     #[inline(always)]
-    fn share_to_command(&self, share: f32) -> f32 {
-        let share = if share > self.least { share } else { self.least };
-        let square = self.half_linear_squared + self.quadratic * share;
-        let sum = self.half_linear + square * math::inv_sqrt_normal(square);
-        let command = share / sum;
+    fn share_to_command(&self, half: f32) -> f32 {
+        let least = self.half_least;
+        let half = if half > least { half } else { least };
+        let square = self.half_linear_square + self.quadratic * half;
+        let sum = self.quarter_linear + square * math::inv_sqrt_of_twice(square);
+        let command = half / sum;
         if command < 1.0 { command } else { 1.0 }
     }
 
@@ -80,7 +83,8 @@ impl ThrustCurve {
     /// Thrust (N) of `command` at the voltage ratio `ratio`.
     pub fn thrust(&self, command: f32, ratio: f32) -> f32 {
         let u = math::clamp(command, 0.0, 1.0);
-        self.max * ratio * ratio * (self.quadratic * u + self.linear) * u
+        let (max, linear) = (0.5 * self.twice_max, 4.0 * self.quarter_linear);
+        max * ratio * ratio * (self.quadratic * u + linear) * u
     }
 }
 

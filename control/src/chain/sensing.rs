@@ -10,8 +10,8 @@ use crate::vector::Vec3;
 
 /// Filter, decimation, and what calibration has found: accelerometer's bias and scale, mounting.
 ///
-/// v = M S⁻¹ (b − bias) for the specific force b in board axes. Scale and mounting commute with the filter, which
-/// treats all axes alike: they are applied once a step and not to each reading.
+/// v = M S⁻¹ (b − bias) for the specific force b in board axes. All three commute with the filter, which treats all axes
+/// alike and passes what is constant: they are applied once a step and not to each reading.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensing {
     filter: ImuFilter,
@@ -24,8 +24,9 @@ pub struct Sensing {
     per_step: u32,
     collected: u32,
     clock: StepClock,
-    /// Square of the specific force that clips, (m/s²)².
+    /// Square of the specific force that clips, (m/s²)², and that from which on it is looked at: any while steps count.
     clips_at: f32,
+    looks_at: f32,
     /// Steps for which the last reading that clipped still counts.
     clipped: u32,
 }
@@ -51,6 +52,7 @@ impl Sensing {
             collected: 0,
             clock: StepClock::default(),
             clips_at: full_scale * full_scale,
+            looks_at: full_scale * full_scale,
             clipped: 0,
         }
     }
@@ -61,24 +63,26 @@ impl Sensing {
     #[inline(never)]
     pub fn take(&mut self, at_us: u64, readings: &[ImuReading], sample: &mut ImuSample) -> bool {
         let mut newest = ImuReading::default();
-        let finite = self.filter.batch(readings, self.accel_bias, &mut newest);
+        let finite = self.filter.batch(readings, &mut newest);
         if finite == 0 {
             return false;
         }
         sample.gyro = newest.gyro;
-        sample.accel = newest.accel.scale_by(self.accel_gain);
+        sample.accel = (newest.accel - self.accel_bias).scale_by(self.accel_gain);
         if let Some(mounting) = self.mounting {
             turn(&mounting, sample);
         }
-        self.collected += finite;
-        if self.collected < self.per_step {
+        let collected = self.collected + finite;
+        if collected < self.per_step {
+            self.collected = collected;
             return false;
         }
         self.collected = 0;
-        let clips = |newest: &ImuReading| newest.accel.norm_squared() >= self.clips_at;
-        let clips = readings.last().is_some_and(clips);
-        if clips || self.clipped > 0 {
-            self.count_clipped(clips, sample);
+        if let [looked_at, ..] = readings {
+            let force = looked_at.accel.norm_squared();
+            if force >= self.looks_at {
+                self.count_clipped(force, sample);
+            }
         }
         sample.dt = self.clock.step(at_us);
         true
@@ -86,16 +90,17 @@ impl Sensing {
 }
 
 impl Sensing {
-    /// A reading clips, or one did lately.
+    /// A reading of the squared `force`, (m/s²)², clips, or one did lately.
     #[cold]
     #[inline(never)]
-    fn count_clipped(&mut self, clips: bool, sample: &mut ImuSample) {
-        self.clipped = if clips {
+    fn count_clipped(&mut self, force: f32, sample: &mut ImuSample) {
+        self.clipped = if force >= self.clips_at {
             CLIP_STEPS
         } else {
             self.clipped.saturating_sub(1)
         };
         sample.clipped = self.clipped > 0;
+        self.looks_at = if sample.clipped { 0.0 } else { self.clips_at };
     }
 }
 
@@ -156,7 +161,7 @@ mod tests {
         };
         let mut filter = ImuFilter::new(Params::DEFAULT.gyro_cutoff, 4000.0);
         let mut newest = ImuReading::default();
-        filter.batch(&[read; 4], Vec3::ZERO, &mut newest);
+        filter.batch(&[read; 4], &mut newest);
         let found = sample(&Params::DEFAULT, read);
         let bits = |v: Vec3| v.to_array().map(f32::to_bits);
         assert_eq!(bits(found.gyro), bits(newest.gyro));

@@ -11,32 +11,45 @@ const SHORTEST: f32 = 0.5e-3;
 const LONGEST: f32 = 5e-3;
 
 /// Step times from stamps.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepClock {
-    last_us: Option<u64>,
+    last_us: u64,
+}
+
+/// Stamp before the first: no stamp is within 32 bits of it, so that the first step needs no test in the others.
+const NO_STAMP: u64 = 1 << 63;
+
+impl Default for StepClock {
+    /// No step yet.
+    fn default() -> Self {
+        Self { last_us: NO_STAMP }
+    }
 }
 
 impl StepClock {
     /// Time since the last step, s, 0.5 to 5 ms, for the stamp `at_us` µs; 1 ms at first.
     #[inline(always)]
     pub fn step(&mut self, at_us: u64) -> f32 {
-        let dt = match self.last_us {
-            // 32 bits: converting 64 is a library call on these cores.
-            Some(last) => match u32::try_from(at_us.wrapping_sub(last)) {
-                Ok(gap_us) => gap_us as f32 * 1e-6,
-                Err(_) => odd_gap(last, at_us),
-            },
-            None => 1.0 / CONTROL_RATE_HZ,
+        // 32 bits: converting 64 is a library call on these cores.
+        let dt = match u32::try_from(at_us.wrapping_sub(self.last_us)) {
+            Ok(gap_us) => gap_us as f32 * 1e-6,
+            Err(_) => odd_gap(self.last_us, at_us),
         };
-        self.last_us = Some(at_us);
+        self.last_us = at_us;
         math::clamp(dt, SHORTEST, LONGEST)
     }
 }
 
-/// Step time (s) for a gap over an hour, or backwards.
+/// Step time (s) of the first step, and for a gap over an hour, or backwards.
 #[cold]
 const fn odd_gap(last_us: u64, at_us: u64) -> f32 {
-    if at_us < last_us { SHORTEST } else { LONGEST }
+    if last_us == NO_STAMP {
+        1.0 / CONTROL_RATE_HZ
+    } else if at_us < last_us {
+        SHORTEST
+    } else {
+        LONGEST
+    }
 }
 
 #[cfg(test)]

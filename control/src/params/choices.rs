@@ -349,7 +349,7 @@ mod tests {
                 assert!(choice.name.parse::<f32>().is_err(), "{}", choice.name);
             }
         }
-        assert_eq!(enumerated, 14);
+        assert_eq!(enumerated, 15);
     }
 
     #[test]

@@ -117,6 +117,12 @@ impl Frozen {
         self.before = Some(distance);
     }
 
+    /// A run of equal readings has a way, or is to have one.
+    #[inline(always)]
+    pub fn feels(&self) -> bool {
+        self.begun || self.way.is_some()
+    }
+
     /// Carries the way on to `at_us` µs with what is felt `down`wards, m/s², gravity left out, of a vehicle whose share down
     /// of its axis is `cos` and whose lens lies `lever` m below. Where it does not fly, and does not `climb` as is known, there
     /// is none.

@@ -243,6 +243,16 @@ impl Sight {
         used.then_some((range.at_us, distance))
     }
 
+    /// Takes what is felt `down`wards, m/s², gravity left out, at `at_us` µs, of a vehicle that flies. The lean of the beam is
+    /// looked at only where a run of equal ranges needs it.
+    pub fn feel(&mut self, at_us: u64, down: Option<f32>, q: Quat) {
+        self.scale.feel(at_us, down);
+        if self.frozen.feels() {
+            let leans = (q.down_in_body().z, q.rotate(self.lens).z);
+            self.frozen.feel(at_us, down, leans, self.scale.climb());
+        }
+    }
+
     /// Watches a range of `distance` m, measured with the attitude `q`, that is left out as scaled.
     pub fn watch_scaled(&mut self, q: Quat, distance: f32) {
         self.mistaken = true;
