@@ -43,7 +43,8 @@ fn a_vehicle_that_oscillates_is_told_by_its_swings() {
         "rate_p = 40",
         "attitude_p = 12\nrate_p = 25",
     ] {
-        let line = reason(&format!("{HOP}[params]\n{params}\n"));
+        // Each leaves the ground, where its feet shake it, within the pilot's patience.
+        let line = reason(&format!("seed = 2\n{HOP}[params]\n{params}\n"));
         assert!(line.contains("swings by") && line.contains("deg/s"), "{line}");
     }
 }
