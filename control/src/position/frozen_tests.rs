@@ -80,14 +80,12 @@ const MODULES: [Module; 8] = [
     },
 ];
 
+/// Height, m up, and upward acceleration, m/s², at a time, s.
+type Motion = (fn(f64) -> f64, fn(f64) -> f64);
+
 /// Flies for `seconds` s at a height, m up, of `height` and an upward acceleration, m/s², of `felt`; from `stuck` s on the module
 /// stands still. When `range frozen` was named first, s.
-fn named(
-    module: Module,
-    seconds: u64,
-    stuck: f64,
-    (height, felt): (fn(f64) -> f64, fn(f64) -> f64),
-) -> Option<f64> {
+fn named(module: Module, seconds: u64, stuck: f64, (height, felt): Motion) -> Option<f64> {
     let mut estimator = PositionEstimator::new(&Params::default());
     let mut held = None;
     for step in 200..seconds * 200 {
@@ -132,7 +130,7 @@ fn named(
 /// In the middle of a centimetre and at its edge, as still as none flies, and rising and sinking by 1 cm.
 #[test]
 fn a_sound_range_of_a_vehicle_that_stands_is_not_frozen() {
-    let flights: [(fn(f64) -> f64, fn(f64) -> f64); 3] = [
+    let flights: [Motion; 3] = [
         (|_| 1.0, |_| 0.0),
         (|_| 1.005, |_| 0.0),
         (|t| 1.0 + 0.01 * t.sin(), |t| -0.01 * t.sin()),
@@ -149,7 +147,7 @@ fn a_sound_range_of_a_vehicle_that_stands_is_not_frozen() {
 /// as long as 20.7 of its usual runs, or by the way.
 #[test]
 fn a_range_that_sticks_on_the_way_is_named_soon() {
-    let sinks: (fn(f64) -> f64, fn(f64) -> f64) = (
+    let sinks: Motion = (
         |t| {
             let (faster, after) = ((t - 20.0).clamp(0.0, 0.5), (t - 20.5).max(0.0));
             2.2 - 0.28 * (faster * faster + after) - 0.02 * (2.0 * t).sin()
