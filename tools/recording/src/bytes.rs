@@ -103,7 +103,7 @@ impl Decoder {
         };
         let params = Params {
             rc_protocol,
-            ..params
+            ..*params
         };
         Self::Rc(Box::new(rc_decoder::Decoder::from_params(&params)))
     }

@@ -82,7 +82,7 @@ fn walk(folder: &Folder, builder: impl FnOnce(Hands) -> Builder) -> Walked {
     let mut log = String::new();
     let stood = flight::stand(
         &firmware,
-        &scenario("hover.toml"),
+        &unmarked(scenario("hover.toml")),
         setup,
         Some(hands),
         |line| {

@@ -119,14 +119,14 @@ fn a_parameter_set_and_saved_at_the_console_is_in_force_after_the_restart() {
     // A full battery behind 1:11, then with the parameter's divider doubled.
     assert!((16.0..17.0).contains(&before), "{before} V");
     assert!((after / before - 2.0).abs() < 0.01, "{before} V, then {after} V");
-    // Two besides the calibration.
+    // Two besides the calibration and the servos' marks.
     assert!(
-        logged_at(&flight, 0.0, "parameters: 3 from storage").is_some(),
+        logged_at(&flight, 0.0, "parameters: 4 from storage").is_some(),
         "{}",
         log(&flight)
     );
     assert!(
-        logged_at(&flight, 0.0, "parameters: 5 from storage").is_some(),
+        logged_at(&flight, 0.0, "parameters: 6 from storage").is_some(),
         "{}",
         log(&flight)
     );

@@ -13,7 +13,7 @@ use super::*;
 
 const PAGE: &str = "docs/first-hour.md";
 /// s: until after the page's last `save`.
-const RADIO_OFF: f64 = 22.0;
+const RADIO_OFF: f64 = 28.0;
 const PROMPT: &str = "\r\n> ";
 /// Repetitions of `status`, some 25 ms each.
 const TRIES: usize = 1000;
@@ -33,7 +33,7 @@ fn the_commands_of_the_page_have_the_answers_of_the_page_and_lead_to_the_first_h
     });
     let firmware = Firmware::read(image(), boards::find("matek-h743").unwrap()).unwrap();
     // A new board: no level set, nothing stored but the bench's level calibration.
-    let mut scenario = hop();
+    let mut scenario = unmarked(hop());
     scenario.steps.insert(0, Step::RadioOff { seconds: RADIO_OFF });
     let plan = Plan::new([(0, Trouble::Board(BoardFault::FactoryOptions))]);
     let setup = Setup {

@@ -28,6 +28,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
 
+use sophie_control::params::ServoMarks;
 use sophie_emulator::bench::Setup;
 use sophie_emulator::boards;
 use sophie_emulator::elf::Firmware;
@@ -100,6 +101,12 @@ fn hop() -> Scenario {
         ],
         ..scenario("hover.toml")
     }
+}
+
+/// With a vehicle whose servos have not been calibrated.
+fn unmarked(mut scenario: Scenario) -> Scenario {
+    scenario.params.servo_marks = ServoMarks::None;
+    scenario
 }
 
 /// On the H743; `troubles` with times in s.
