@@ -1,7 +1,7 @@
 //! Files over MAVLink's FTP, read only: what a ground station needs to know of the parameters.
 //!
 //! A file's session is its number, and what is due goes to who asked: any number of readers may read at once, a request that is
-//! repeated gets its answer again, and a reader that leaves without a word leaves nothing open. [`BURSTS`] readers are sent
+//! repeated gets its answer again, and a reader that leaves without a word leaves nothing open. `BURSTS` readers are sent
 //! bursts by turns; a further one gets a burst of one piece and asks for the next, as the protocol has it.
 
 use heapless::Deque;

@@ -104,11 +104,11 @@ params! {
     /// Motor protocol: 150, 300 or 600 for DShot, 400 for pulses, at most 400 a second, 125 for OneShot125.
     /// Read by the board at start-up; the paper's controllers take 400.
     motor_protocol: MotorProtocol = MotorProtocol::Dshot300, "1";
-    /// Pulse that stops a motor, the lower end of the controllers' range; OneShot125 takes an eighth of all three.
+    /// Pulse that stops a motor; OneShot125 takes an eighth.
     motor_pulse_min = 1000.0, "us", 800.0 ..= 1500.0;
-    /// Lowest pulse at which every rotor keeps turning (`calibrate esc idle`); DShot knows none.
+    /// Lowest pulse at which every rotor turns (`calibrate esc idle`).
     motor_pulse_idle = 1070.0, "us", 800.0 ..= 2200.0;
-    /// Pulse of full drive: the upper end.
+    /// Pulse of full drive.
     motor_pulse_max = 2000.0, "us", 1200.0 ..= 2200.0;
     /// Which rotor hangs at each motor output (`rotors`): its four digits, each of 1 to 4 once, are the rotors at outputs 1
     /// to 4; 1243 where the wires of 3 and 4 are swapped.
@@ -127,8 +127,7 @@ params! {
     flow_y = 0.0, "m", -0.3 ..= 0.3;
     /// Lens of the flow module below the centre of mass.
     flow_z = 0.0, "m", -0.3 ..= 0.3;
-    /// MAVLink system whose poses, flow, range and place of the pipe are taken beside those of the vehicle's own system, 1; 0
-    /// for none.
+    /// MAVLink system whose poses, flow and range are taken beside the vehicle's own; 0 for none.
     mav_inputs_sys = 0.0, "1", 0.0 ..= 255.0;
     /// Samples per second of the vehicle's inertial sensor; a part that cannot takes its nearest.
     imu_rate: ImuRate = ImuRate::Hz4000, "Hz";
@@ -136,7 +135,7 @@ params! {
     imu_gyro_range: ImuGyroRange = ImuGyroRange::Dps2000, "deg/s";
     /// Full scale of the accelerometer.
     imu_accel_range: ImuAccelRange = ImuAccelRange::G16, "g";
-    /// Clock of the arm sensors' buses: 100 for long cables and for chips that fail at 400. Read by the board at start-up.
+    /// Clock of the arm sensors' buses. Read by the board at start-up.
     arm_bus_khz: ArmBusSpeed = ArmBusSpeed::Fast, "kHz";
     /// Frames per second of the tendon servos; analog servos want 50.
     servo_frame_rate = 50.0, "Hz", 50.0 ..= 333.0;
@@ -326,8 +325,8 @@ params! {
     servo_full_3 = 2450.0, "us", 550.0 ..= 2450.0;
     /// Pulse of servo 4 at `servo_range`.
     servo_full_4 = 2450.0, "us", 550.0 ..= 2450.0;
-    /// Servos whose release and full pulses have been measured (`calibrate servo` adds its digit): 1234 for all. The others
-    /// get no pulse, since their pulses are a guess that may lie beyond an end stop, and arming is refused.
+    // The pulses of the others are a guess that may lie beyond an end stop.
+    /// Servos whose release and full pulses are measured (`calibrate servo`): 1234 for all. Others get no pulse.
     servo_marks: ServoMarks = ServoMarks::None, "1";
     /// Slew of servo 1 (MG996R datasheet, 0.17 s for 60 degrees at 4.8 V).
     servo_slew_1 = 6.16, "rad/s", 0.5 ..= 20.0;
@@ -381,10 +380,11 @@ params! {
     battery_warning = 13.6, "V", 5.0 ..= 52.0;
     /// Battery voltage under load at which the failsafe lands.
     battery_critical = 12.6, "V", 5.0 ..= 52.0;
-    /// Servo battery's voltage over that at its pin (docs/wiring.md); 0 where it is not measured.
+    /// Servo battery's voltage over that at its pin; 0 where it is not measured.
     servo_batt_div = 0.0, "1", 0.0 ..= 60.0;
-    /// Servo battery's voltage under load at which the pilot is warned: 3.6 V a cell of 2S, a tenth to a fifth is left.
+    // 3.6 V a cell of 2S under load, where a tenth to a fifth of the charge is left, and 3.4 V, a twentieth.
+    /// Servo battery's voltage at which the pilot is warned.
     servo_batt_warn = 7.2, "V", 0.0 ..= 52.0;
-    /// Servo battery's voltage under load at which arming and perching are refused: 3.4 V a cell, about a twentieth.
+    /// Servo battery's voltage at which arming and perching are refused.
     servo_batt_low = 6.8, "V", 0.0 ..= 52.0;
 }
