@@ -69,19 +69,23 @@ impl ImuFilter {
         }
     }
 
-    /// Filters the finite readings of a batch, oldest first. Writes the newest output into `newest`; returns the finite
-    /// count.
+    /// Filters the finite readings of a batch, oldest first, less `accel_bias` (m/s²) of specific force. Writes the
+    /// newest output into `newest`; returns the finite count.
     #[inline(always)]
-    pub fn batch(&mut self, readings: &[ImuReading], newest: &mut ImuReading) -> u32 {
+    pub fn batch(&mut self, readings: &[ImuReading], accel_bias: Vec3, newest: &mut ImuReading) -> u32 {
         if !self.started {
-            self.start_at_first(readings);
+            self.start_at_first(readings, accel_bias);
         }
         // Local copies stay in registers.
         let (mut filter, mut last) = (*self, *newest);
         let mut finite = 0;
-        for reading in readings {
-            if reading.is_finite() {
-                last = filter.smooth(*reading);
+        for ImuReading { gyro, accel } in readings {
+            let unbiased = ImuReading {
+                gyro: *gyro,
+                accel: *accel - accel_bias,
+            };
+            if unbiased.is_finite() {
+                last = filter.smooth(unbiased);
                 finite += 1;
             }
         }
@@ -91,10 +95,11 @@ impl ImuFilter {
 
     #[cold]
     #[inline(never)]
-    fn start_at_first(&mut self, readings: &[ImuReading]) {
-        if let Some(first) = readings.iter().find(|reading| reading.is_finite()) {
+    fn start_at_first(&mut self, readings: &[ImuReading], accel_bias: Vec3) {
+        let finite = |r: &&ImuReading| (r.gyro + (r.accel - accel_bias)).is_finite();
+        if let Some(first) = readings.iter().find(finite) {
             self.gyro.reset(first.gyro);
-            self.accel.reset(first.accel);
+            self.accel.reset(first.accel - accel_bias);
             self.started = true;
         }
     }
@@ -114,7 +119,7 @@ mod tests {
 
     fn one(f: &mut ImuFilter, gyro: Vec3, accel: Vec3) -> Option<ImuReading> {
         let mut newest = ImuReading::default();
-        (f.batch(&[ImuReading { gyro, accel }], &mut newest) == 1).then_some(newest)
+        (f.batch(&[ImuReading { gyro, accel }], Vec3::ZERO, &mut newest) == 1).then_some(newest)
     }
 
     #[test]
@@ -132,6 +137,7 @@ mod tests {
 
     #[test]
     fn a_batch_starts_at_its_first_good_reading_and_gives_its_last() {
+        let bias = Vec3::new(0.0, 0.0, 0.2);
         let bad = ImuReading {
             gyro: Vec3::new(0.0, f32::INFINITY, 0.0),
             accel: Vec3::ZERO,
@@ -143,10 +149,10 @@ mod tests {
         let mut f = ImuFilter::new(90.0, 4000.0);
         let kept = good;
         let mut newest = kept;
-        assert!(f.batch(&[bad; 3], &mut newest) == 0 && newest == kept);
-        assert!(f.batch(&[bad, good, good, bad], &mut newest) == 2);
+        assert!(f.batch(&[bad; 3], bias, &mut newest) == 0 && newest == kept);
+        assert!(f.batch(&[bad, good, good, bad], bias, &mut newest) == 2);
         assert!((newest.gyro - good.gyro).norm() < 1e-4, "{newest:?}");
-        assert!((newest.accel - good.accel).norm() < 1e-3, "{newest:?}");
+        assert!((newest.accel - (good.accel - bias)).norm() < 1e-3, "{newest:?}");
     }
 
     /// Gain and delay (s) of the gyro's filter at `hz`, at its 1 kHz output.

@@ -10,8 +10,8 @@ use crate::vector::Vec3;
 
 /// Filter, decimation, and what calibration has found: accelerometer's bias and scale, mounting.
 ///
-/// v = M S⁻¹ (b − bias) for the specific force b in board axes. All three commute with the filter, which treats all axes
-/// alike and passes what is constant: they are applied once a step and not to each reading.
+/// v = M S⁻¹ (b − bias) for the specific force b in board axes. Scale and mounting commute with the filter, which
+/// treats all axes alike: they are applied once a step and not to each reading.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensing {
     filter: ImuFilter,
@@ -63,12 +63,12 @@ impl Sensing {
     #[inline(never)]
     pub fn take(&mut self, at_us: u64, readings: &[ImuReading], sample: &mut ImuSample) -> bool {
         let mut newest = ImuReading::default();
-        let finite = self.filter.batch(readings, &mut newest);
+        let finite = self.filter.batch(readings, self.accel_bias, &mut newest);
         if finite == 0 {
             return false;
         }
         sample.gyro = newest.gyro;
-        sample.accel = (newest.accel - self.accel_bias).scale_by(self.accel_gain);
+        sample.accel = newest.accel.scale_by(self.accel_gain);
         if let Some(mounting) = self.mounting {
             turn(&mounting, sample);
         }
@@ -161,7 +161,7 @@ mod tests {
         };
         let mut filter = ImuFilter::new(Params::DEFAULT.gyro_cutoff, 4000.0);
         let mut newest = ImuReading::default();
-        filter.batch(&[read; 4], &mut newest);
+        filter.batch(&[read; 4], Vec3::ZERO, &mut newest);
         let found = sample(&Params::DEFAULT, read);
         let bits = |v: Vec3| v.to_array().map(f32::to_bits);
         assert_eq!(bits(found.gyro), bits(newest.gyro));

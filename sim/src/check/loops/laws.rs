@@ -78,7 +78,7 @@ fn filter(params: &Params) -> Response {
     };
     let (mut newest, mut waiting) = (reading(0.0), reading(0.0));
     // Settles before the impulse.
-    filter.batch(&[waiting], &mut newest);
+    filter.batch(&[waiting], Vec3::ZERO, &mut newest);
     let mut last = 0.0;
     let answer: Vec<f64> = (0..FILTER_STEPS)
         .map(|step| {
@@ -87,7 +87,7 @@ fn filter(params: &Params) -> Response {
                 let share = k as f32 / per_step as f32;
                 let sample = reading(last + (now - last) * share);
                 let late = std::mem::replace(&mut waiting, sample);
-                filter.batch(&[late], &mut newest);
+                filter.batch(&[late], Vec3::ZERO, &mut newest);
             }
             last = now;
             f64::from(newest.gyro.x / RATE)
