@@ -226,5 +226,6 @@ fn so_it_is_on_the_small_board() {
         troubles.push((REPAIRED, Trouble::Board(BoardFault::ClockHeld(bus, 0))));
     }
     let flight = fly_small(&hover(REPAIRED + 0.5), &troubles);
-    in_time(&flight, 60.0, 5.0);
+    // The largest is 50.2 us; the mean has fallen to 44.8 (docs/timing.md).
+    in_time(&flight, 60.0, 6.0);
 }
