@@ -2,7 +2,7 @@
 
 mod common;
 
-use sophie_control::rc::ArmChoice::{self, All, Front, Rear};
+use sophie_control::pilot::rc::ArmChoice::{self, All, Front, Rear};
 use sophie_sim::flight::fly;
 use sophie_sim::record::Silent;
 use sophie_sim::scenario::Scenario;

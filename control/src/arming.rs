@@ -3,14 +3,14 @@
 mod gesture;
 
 pub use self::gesture::{GESTURE_TIME, Gesture, GestureWatch};
-use crate::math::cos;
-use crate::motor_pulses::MotorPulses;
+use crate::allocation::motor_pulses::MotorPulses;
+use crate::allocation::wrench::PerArm;
+use crate::maths::scalar::cos;
 use crate::params::Params;
-use crate::rc::Sticks;
-use crate::wrench::PerArm;
+use crate::pilot::rc::Sticks;
 
 /// Largest tilt at which the rotors may start, rad (25°).
-pub const TILT_MAX: f32 = crate::math::deg(25.0);
+pub const TILT_MAX: f32 = crate::maths::scalar::deg(25.0);
 
 /// Declares the checks by priority: name, text for the pilot's display, what clears it.
 macro_rules! arming_checks {
@@ -244,7 +244,7 @@ impl Checks {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::deg;
+    use crate::maths::scalar::deg;
 
     fn good() -> Checks {
         Checks {

@@ -4,10 +4,10 @@
 //! last one ages, is stale after 500 ms, and the vehicle lands a second later. Thrusts are compensated for the last voltage
 //! meanwhile. A current that is no measurement costs itself alone.
 
-use crate::filter::LowPass;
-use crate::math;
+use crate::contact::contact_force::Held;
+use crate::maths::filter::LowPass;
+use crate::maths::scalar;
 use crate::params::Params;
-use crate::support::Held;
 
 /// Cut-off of the voltage, rad/s (2 Hz): between a manoeuvre's sag and the discharge.
 const VOLTAGE_CUTOFF: f32 = 12.6;
@@ -65,9 +65,9 @@ impl Monitor {
         current: Option<f32>,
         dt: f32,
     ) -> Option<Battery> {
-        let dt = math::clamp(dt, 0.0, 1.0);
+        let dt = scalar::clamp(dt, 0.0, 1.0);
         let current = self.step_current(current.filter(|i| (-SANE.1..SANE.1).contains(i)), dt);
-        self.unread = math::clamp(self.unread + dt, 0.0, 1.0);
+        self.unread = scalar::clamp(self.unread + dt, 0.0, 1.0);
         let voltage = voltage.filter(|v| (0.0..SANE.0).contains(v))?;
         let voltage =
             self.voltage
@@ -78,7 +78,7 @@ impl Monitor {
             voltage,
             current,
             used: (self.uncounted < UNCOUNTED_MAX).then_some(self.used + self.fraction),
-            ratio: math::clamp(voltage / p.battery_nominal, RATIO_BOUNDS.0, RATIO_BOUNDS.1),
+            ratio: scalar::clamp(voltage / p.battery_nominal, RATIO_BOUNDS.0, RATIO_BOUNDS.1),
         })
     }
 
@@ -86,7 +86,7 @@ impl Monitor {
     fn step_current(&mut self, current: Option<f32>, dt: f32) -> Option<f32> {
         let Some(current) = current else {
             self.current = None;
-            self.uncounted = math::clamp(self.uncounted + dt, 0.0, UNCOUNTED_MAX);
+            self.uncounted = scalar::clamp(self.uncounted + dt, 0.0, UNCOUNTED_MAX);
             return None;
         };
         let filter = self.current.get_or_insert(LowPass::at(current));
@@ -99,7 +99,7 @@ impl Monitor {
     fn add_charge(&mut self, charge: f32) {
         self.fraction += charge;
         if self.fraction.abs() > 1.0 {
-            self.used = math::clamp(self.used + self.fraction, 0.0, 1e7);
+            self.used = scalar::clamp(self.used + self.fraction, 0.0, 1e7);
             self.fraction = 0.0;
         }
     }
@@ -146,7 +146,7 @@ pub struct ServoMonitor {
 impl ServoMonitor {
     /// Adds `voltage` V, `dt` s after the last. `None` without a plausible voltage, as [`Monitor::step`].
     pub fn step(&mut self, p: &Params, voltage: Option<f32>, dt: f32) -> Option<ServoBattery> {
-        self.unread = math::clamp(self.unread + dt, 0.0, 1.0);
+        self.unread = scalar::clamp(self.unread + dt, 0.0, 1.0);
         let voltage = voltage.filter(|v| (0.0..SANE.0).contains(v))?;
         // What is connected at power-up has no closing behind it.
         let held = if self.voltage.is_none() {

@@ -3,10 +3,12 @@
 //! Nothing here is kept or applied: the console shows the result and `save` stores it, MAVLink stores it as a parameter
 //! that was set.
 
-use crate::math::{GRAVITY, clamp, deg, sin, sqrt};
-use crate::mounting::{Direction, Mounting};
+pub mod flow;
+
+use crate::attitude::mounting::{Direction, Mounting};
+use crate::maths::scalar::{GRAVITY, clamp, deg, sin, sqrt};
+use crate::maths::vector::Vec3;
 use crate::params::Params;
-use crate::vector::Vec3;
 
 /// Least samples of a mean.
 pub const SAMPLES_MIN: u16 = 100;
@@ -452,7 +454,7 @@ mod tests {
             let scale = Vec3::new(1.0, 1.0, 1.0) + error;
             let mut means = Vec::new();
             for (i, side) in Face::ALL.into_iter().enumerate() {
-                let lean = crate::vector::Quat::from_euler(lean.x, lean.y * f32::from(i as u8 % 2), 0.0);
+                let lean = crate::maths::vector::Quat::from_euler(lean.x, lean.y * f32::from(i as u8 % 2), 0.0);
                 let turned = lean.rotate(side.force());
                 let reads = turned.scale_by(scale) + bias - taken;
                 means.push(face(&samples(reads, 0.2), side).unwrap());

@@ -10,6 +10,7 @@ mod lying_sensor_tests;
 pub(crate) mod messages;
 pub(crate) mod mixing;
 mod sensing;
+pub mod setpoint;
 mod step_clock;
 
 pub use control::{Command, Control, RESTING_ROLL_GAIN};
@@ -18,11 +19,11 @@ pub use mixing::{ArmReading, Mixing, Surroundings};
 pub use sensing::Sensing;
 pub use step_clock::{CONTROL_RATE_HZ, StepClock};
 
-use crate::attitude::Target;
-use crate::estimator::Estimator;
-use crate::mixer::{Allocation, Flexible};
+use crate::allocation::mixer::{Allocation, Flexible};
+use crate::attitude::attitude_loop::Target;
+use crate::attitude::estimator::Estimator;
+use crate::attitude::rate_loop::Feedback;
 use crate::params::Params;
-use crate::rate::Feedback;
 
 /// Messages of the last step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

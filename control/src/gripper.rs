@@ -19,15 +19,21 @@
 //! | lag | force less tension |
 //! | touch | pressure above the sensor's threshold |
 //! | hold position | the servo stays, whatever the force, until the tension is known after a restart |
-//! | proven | every closing arm holds, all were within the tolerance at once for the dwell time, and [fit](crate::grip_fit) |
+//! | proven | every closing arm holds, all were within the tolerance at once for the dwell time, and [fit](crate::gripper::grip_geometry) |
 //! | released | every arm is free: light, tendon slack, servo back at its release position |
 
 mod arm;
 mod bend_watch;
 mod ceiling_watch;
 mod config;
+pub mod contact_pressure;
+pub mod grip;
+pub mod grip_fault;
+pub mod grip_geometry;
 mod input;
 mod pressure_loop;
+pub mod retained_grip;
+pub mod tendon;
 #[cfg(test)]
 mod tests;
 
@@ -35,11 +41,11 @@ pub use self::arm::ArmGripper;
 pub use self::bend_watch::RESPONSE as RESPONSE_RANGE;
 pub use self::config::{Config, TIGHTENINGS, force_per_thrust};
 pub use self::input::{ArmInput, Pressure};
-use crate::grip::{ArmGrip, ArmState};
-use crate::grip_fault::GripFault;
-use crate::grip_fit::{Laid, Misfit, lies_across, misfit};
-use crate::math;
-use crate::wrench::PerArm;
+use crate::allocation::wrench::PerArm;
+use crate::gripper::grip::{ArmGrip, ArmState};
+use crate::gripper::grip_fault::GripFault;
+use crate::gripper::grip_geometry::{Laid, Misfit, lies_across, misfit};
+use crate::maths::scalar;
 
 /// Pressure of a touch, Pa: above the sensor's threshold of 0.1 N (69 Pa on 1444 mm²).
 const TOUCH_PRESSURE: f32 = 100.0;
@@ -119,7 +125,7 @@ impl Gripper {
         }
         // A proven grip is doubted by arm only: a push moves the pressures without loosening it.
         self.together = if within {
-            math::clamp(self.together + dt, 0.0, 10.0)
+            scalar::clamp(self.together + dt, 0.0, 10.0)
         } else {
             0.0
         };

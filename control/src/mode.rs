@@ -4,63 +4,35 @@
 //! table of transitions by priority, shown in `docs/modes.md`, with conditions in `guards` and entry functions in
 //! `entries`.
 
-mod armed;
 mod behaviour;
-mod bench;
-mod by_itself;
-mod calibrating;
-mod clamping;
-mod contact;
 mod context;
-mod crown;
-mod dangers;
-mod demand;
-mod descent;
-mod disarmed;
-mod entries;
-mod escaping;
-mod failsafe;
-mod fall;
-mod flight;
-mod guards;
-mod hold;
-mod holding;
-mod landed;
-mod lean;
+mod inputs;
 mod logic;
-mod nearing;
-mod perched;
-mod power_up_grip;
-mod probe;
 mod reason;
-mod releasing;
-mod remote;
-mod rise;
-mod slip;
-mod spot;
+mod shared;
+mod states;
+mod table;
 #[cfg(test)]
 mod tests;
-mod transitions;
 
 use self::behaviour::Behaviour;
 use self::context::Step;
-pub use self::escaping::{AWAY_LEAN as ESCAPE_LEAN, LIFT_SHARE as ESCAPE_LIFT};
 pub use self::logic::ModeLogic;
 pub use self::reason::Reason;
-pub use self::releasing::release_thrust;
+pub use self::states::escaping::{AWAY_LEAN as ESCAPE_LEAN, LIFT_SHARE as ESCAPE_LIFT};
+use crate::allocation::wrench::PerArm;
+use crate::approach::pipe_target::PipeTarget;
 use crate::arming::{ArmingInhibit, ArmingInhibits};
 use crate::battery::ServoSupply;
-use crate::bench::{BenchAnswer, BenchRequest};
-use crate::grip::GripState;
-use crate::grip_memory::GripMemory;
-use crate::math::{self, GRAVITY, deg};
-use crate::position;
-use crate::rc::Sticks;
-use crate::remote::{RemoteAnswer, RemoteRequest};
-use crate::setpoint::{ClampCommand, Setpoint};
-use crate::target::PipeTarget;
-use crate::vector::{Quat, Vec3};
-use crate::wrench::PerArm;
+use crate::chain::setpoint::{ClampCommand, Setpoint};
+use crate::gripper::grip::GripState;
+use crate::gripper::retained_grip::GripMemory;
+use crate::maths::scalar::{self, GRAVITY, deg};
+use crate::maths::vector::{Quat, Vec3};
+use crate::navigation::position_estimator;
+use crate::pilot::bench_orders::{BenchAnswer, BenchRequest};
+use crate::pilot::rc::Sticks;
+use crate::pilot::remote::{RemoteAnswer, RemoteRequest};
 
 /// Declares the modes in mission order: name, file, number in records, name on displays.
 macro_rules! modes {
@@ -81,7 +53,7 @@ macro_rules! modes {
 
         /// A mode with its fields.
         #[derive(Clone, Copy, Debug, PartialEq)]
-        enum State { $($name($file::$name),)+ }
+        enum State { $($name(states::$file::$name),)+ }
 
         impl State {
             fn mode(&self) -> Mode {
@@ -100,7 +72,7 @@ macro_rules! modes {
         /// Entry function: previous state, this step, reason.
         #[derive(Clone, Copy, Debug)]
         #[expect(dead_code, reason = "no transition leads to the mode of the start")]
-        enum Entry { $($name(fn(&State, &mut Step<'_>, Option<Reason>) -> $file::$name),)+ }
+        enum Entry { $($name(fn(&State, &mut Step<'_>, Option<Reason>) -> states::$file::$name),)+ }
 
         impl Entry {
             fn enter(self, from: &State, step: &mut Step<'_>, why: Option<Reason>) -> State {
@@ -126,9 +98,9 @@ modes! {
     /// Free flight under the pilot's sticks.
     Flight in flight = 3, "FLIGHT";
     /// Free flight that holds the position; the sticks ask for velocities.
-    Hold in holding = 11, "HOLD";
+    Hold in hold = 11, "HOLD";
     /// Free flight onto the pipe, or off it, by itself.
-    Approach in nearing = 12, "APPROACH";
+    Approach in approach = 12, "APPROACH";
     /// Resting on the pipe with the rotors still helping; attitude held, yaw given up.
     Contact in contact = 4, "CONTACT";
     /// Tendons closing the chosen arms under the pressure loop; rotors spool down once the grip is proven.
@@ -181,7 +153,7 @@ impl Motion {
     pub(crate) fn leans_unseen(&self) -> bool {
         let force = self.accel.norm();
         let along = -self.accel.dot(self.q.down_in_body());
-        RESTING_FORCE.contains(&(force / GRAVITY)) && along < force * math::cos(UNSEEN_LEAN)
+        RESTING_FORCE.contains(&(force / GRAVITY)) && along < force * scalar::cos(UNSEEN_LEAN)
     }
 }
 
@@ -215,7 +187,7 @@ pub struct Inputs {
     /// Order of a remote link.
     pub remote: Option<RemoteRequest>,
     /// Where the vehicle is; its own age says since when that is only by the inertial sensor.
-    pub position: Option<position::Estimate>,
+    pub position: Option<position_estimator::Estimate>,
     /// Where the pipe is, in the axes of the poses.
     pub target: Option<PipeTarget>,
 }
@@ -250,7 +222,7 @@ impl Inputs {
             motion: self.motion.filter(sane),
             tilts: self.tilts.map(|tilt| tilt.filter(|t| t.is_finite())),
             battery: self.battery.filter(|v| v.is_finite()),
-            position: self.position.filter(position::Estimate::is_finite),
+            position: self.position.filter(position_estimator::Estimate::is_finite),
             target: self.target.filter(PipeTarget::is_finite),
             ..self
         }

@@ -13,7 +13,7 @@ pub use self::choices::{
 pub use self::names::{NAME_MAX, RENAMED, Renamed, check_names};
 pub use self::table::Params;
 use self::table::ROWS;
-use crate::vector::Vec3;
+use crate::maths::vector::Vec3;
 
 /// One row of the parameter table.
 #[derive(Clone, Copy, Debug)]

@@ -13,11 +13,11 @@ mod tests;
 use self::gains::GAINS;
 use self::height::Height;
 use self::lag::Lag;
-use crate::math::{self, GRAVITY};
+use crate::chain::setpoint::Setpoint;
+use crate::maths::scalar::{self, GRAVITY};
+use crate::maths::vector::{Quat, Vec3};
+use crate::navigation::position_estimator::{Estimate, about_down};
 use crate::params::Params;
-use crate::position::{Estimate, about_down};
-use crate::setpoint::Setpoint;
-use crate::vector::{Quat, Vec3};
 
 /// Fastest wish, level and vertical, m/s.
 pub const SPEED_MAX: f32 = 1.5;
@@ -74,7 +74,7 @@ struct Course {
 
 impl Course {
     fn step(&mut self, wished: Vec3, dt: f32) {
-        let slew = |from: f32, to: f32| math::slew(from, to, SPEED_SLEW * dt);
+        let slew = |from: f32, to: f32| scalar::slew(from, to, SPEED_SLEW * dt);
         let before = self.wished;
         self.wished = Vec3::new(
             slew(before.x, wished.x),
@@ -122,7 +122,7 @@ impl PositionHold {
         let full = 4.0 * p.thrust_max;
         Self {
             mass: p.mass,
-            thrust: (0.4 * weight, math::clamp(1.6 * weight, weight, 0.95 * full)),
+            thrust: (0.4 * weight, scalar::clamp(1.6 * weight, weight, 0.95 * full)),
             lag: Lag::at(p, tilt(felt.q)),
             height: Height::default(),
             anchor: e.position,
@@ -194,13 +194,13 @@ impl PositionHold {
     fn leash(&mut self, position: Vec3) {
         let off = self.anchor - position;
         let level = Vec3::new(off.x, off.y, 0.0);
-        let over = math::clamp(LEASH * math::inv_sqrt(level.norm_squared()), 0.0, 1.0);
+        let over = scalar::clamp(LEASH * scalar::inv_sqrt(level.norm_squared()), 0.0, 1.0);
         let level = if level.norm_squared() > LEASH * LEASH {
             level * over
         } else {
             level
         };
-        let down = math::clamp_abs(off.z, height::LEASH);
+        let down = scalar::clamp_abs(off.z, height::LEASH);
         self.anchor = position + level + Vec3::new(0.0, 0.0, down);
     }
 
@@ -253,15 +253,15 @@ impl PositionHold {
 
     fn setpoint(&self, u: [f32; 2], up: f32, q: Quat, yaw_rate: f32) -> Setpoint {
         let [forward, right] = u.map(|u| u * (1.0 / GRAVITY));
-        let across = math::inv_sqrt(1.0 + right * right);
-        let cos = math::clamp(q.down_in_body().z, 0.5, 1.0);
+        let across = scalar::inv_sqrt(1.0 + right * right);
+        let cos = scalar::clamp(q.down_in_body().z, 0.5, 1.0);
         let (least, most) = self.thrust;
         let thrust = self.mass * (GRAVITY + up) / cos;
         Setpoint::Angle {
             roll: arctangent(right),
             pitch: -arctangent(forward * across),
             yaw_rate,
-            thrust: self.height.settled() * math::clamp(thrust, least, most),
+            thrust: self.height.settled() * scalar::clamp(thrust, least, most),
         }
     }
 }
@@ -275,7 +275,7 @@ fn arctangent(x: f32) -> f32 {
 /// Acceleration of the present tilt, forward and right, m/s².
 fn tilt(q: Quat) -> [f32; 2] {
     let down = q.down_in_body();
-    let per = GRAVITY / math::clamp(down.z, 0.5, 1.0);
+    let per = GRAVITY / scalar::clamp(down.z, 0.5, 1.0);
     [per * down.x, per * down.y]
 }
 
@@ -289,7 +289,7 @@ fn limited(u: [f32; 2]) -> [f32; 2] {
     let [x, y] = u;
     let square = x * x + y * y;
     if square > ACCELERATION_MAX * ACCELERATION_MAX {
-        u.map(|u| u * ACCELERATION_MAX * math::inv_sqrt(square))
+        u.map(|u| u * ACCELERATION_MAX * scalar::inv_sqrt(square))
     } else {
         u
     }

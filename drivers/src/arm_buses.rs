@@ -8,8 +8,8 @@
 //! | 4 rear-right | 3 | right | 0x29 (COM3 high) |
 
 use embedded_hal_async::i2c::I2c;
-use sophie_control::vector::Vec3;
-use sophie_control::wrench::PerArm;
+use sophie_control::allocation::wrench::PerArm;
+use sophie_control::maths::vector::Vec3;
 use sophie_tasks::ports::{ArmImus, PortError};
 
 use crate::bno055::{Address, Bno055, Calibration, Config};

@@ -4,7 +4,7 @@
 //! a board without the part costs one refused address a second.
 
 use embassy_time::{Duration, Instant};
-use sophie_control::air_pressure::AirPressure;
+use sophie_control::navigation::air_pressure::AirPressure;
 use sophie_tasks::ports::{Barometer as Port, PortError};
 
 use crate::fault::{Fault, report};

@@ -6,7 +6,7 @@
 
 use embassy_time::{Duration, Instant, with_timeout};
 use embedded_hal_async::i2c::I2c;
-use sophie_control::vector::Vec3;
+use sophie_control::maths::vector::Vec3;
 use sophie_tasks::ports::PortError;
 
 use crate::fault::{Fault, report};

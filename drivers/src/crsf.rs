@@ -10,7 +10,7 @@
 //! sends them only to a vehicle that has agreed to CRSF 3, which this one never does.
 
 use embassy_time::{Duration, Instant};
-use sophie_control::rc::Sticks;
+use sophie_control::pilot::rc::Sticks;
 use sophie_tasks::links::RcState;
 use sophie_tasks::ports::RcDecoder;
 use uf_crsf::{CrsfParser, Packet};

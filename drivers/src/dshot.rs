@@ -6,8 +6,8 @@
 //! | 4 | telemetry request |
 //! | 3..0 | exclusive or of the three nibbles above |
 
-use sophie_control::math;
-use sophie_control::wrench::PerArm;
+use sophie_control::allocation::wrench::PerArm;
+use sophie_control::maths::scalar;
 
 /// Lowest throttle; lower values are commands.
 pub const THROTTLE_MIN: u16 = 48;
@@ -40,7 +40,7 @@ impl Frame {
         if command > 0.0 {
             let span = f32::from(THROTTLE_MAX - THROTTLE_MIN);
             Self::new(
-                THROTTLE_MIN + (math::clamp(command, 0.0, 1.0) * span + 0.5) as u16,
+                THROTTLE_MIN + (scalar::clamp(command, 0.0, 1.0) * span + 0.5) as u16,
                 false,
             )
         } else {

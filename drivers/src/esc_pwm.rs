@@ -1,6 +1,6 @@
 //! Pulses for motor controllers: standard PWM and OneShot125, between the ends that the parameters have.
 
-use sophie_control::motor_pulses::MotorPulses;
+use sophie_control::allocation::motor_pulses::MotorPulses;
 use sophie_control::params::Params;
 
 use crate::pwm_timing::PwmTiming;

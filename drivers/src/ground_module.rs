@@ -2,7 +2,7 @@
 //! and 3901-L0X do: counts into angles along the vehicle's axes, with the time of measurement.
 
 use embassy_time::{Duration, Instant};
-use sophie_control::ground::{Flow, GroundView, Range};
+use sophie_control::navigation::flow_range_sample::{Flow, GroundView, Range};
 use sophie_control::params::{FlowMounting, Params};
 use sophie_tasks::ports::GroundDecoder;
 

@@ -1,6 +1,6 @@
 //! Orientation of a sensor on the vehicle: a signed permutation of axes.
 
-use sophie_control::vector::Vec3;
+use sophie_control::maths::vector::Vec3;
 
 /// A signed sensor axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

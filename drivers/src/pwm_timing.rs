@@ -1,6 +1,6 @@
 //! Timer values of pulse trains: microseconds to counts.
 
-use sophie_control::math;
+use sophie_control::maths::scalar;
 
 /// Prescaler, period and counts per µs of a frame rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,7 +55,7 @@ impl PwmTiming {
     /// Compare value of a pulse of `us` µs, shorter than the frame; 0 (no pulse) for 0, negative numbers and NaN.
     pub fn compare(&self, us: f32) -> u32 {
         let longest = self.period.saturating_sub(Self::REST);
-        let counts = math::clamp(us * self.counts_per_us + 0.5, 0.0, longest as f32);
+        let counts = scalar::clamp(us * self.counts_per_us + 0.5, 0.0, longest as f32);
         counts as u32
     }
 }

@@ -22,7 +22,7 @@
 //! Frames with a lost transmitter or a repetition publish no sticks: the link turns stale and the failsafe acts.
 
 use embassy_time::{Duration, Instant};
-use sophie_control::rc::{CHANNELS, ChannelError, Sticks};
+use sophie_control::pilot::rc::{CHANNELS, ChannelError, Sticks};
 use sophie_tasks::links::RcState;
 use sophie_tasks::ports::RcDecoder;
 

@@ -1,6 +1,6 @@
 //! Servo pulses: microseconds to counts.
 
-use sophie_control::math;
+use sophie_control::maths::scalar;
 
 use crate::pwm_timing::PwmTiming;
 
@@ -23,7 +23,7 @@ pub fn timing(clock_hz: u32, frame_us: u32) -> Option<PwmTiming> {
 pub fn compare(timing: &PwmTiming, us: f32) -> u32 {
     let [shortest, longest] = LIMITS_US;
     if us > 0.0 {
-        timing.compare(math::clamp(us, shortest, longest))
+        timing.compare(scalar::clamp(us, shortest, longest))
     } else {
         0
     }

@@ -12,8 +12,8 @@ use embassy_futures::select::{Either, select};
 use embassy_time::{Duration, Instant, Timer};
 use embedded_hal_async::spi::SpiDevice;
 use heapless::Vec;
-use sophie_control::math;
-use sophie_control::vector::Vec3;
+use sophie_control::maths::scalar;
+use sophie_control::maths::vector::Vec3;
 use sophie_tasks::ports::{Imu, ImuReading, PortError};
 
 use crate::data_ready::DataReady;
@@ -299,8 +299,8 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
     fn reading(&mut self) -> ImuReading {
         let raw = self.raw;
         self.temperature = C::celsius(raw.temperature);
-        let gyro_scale = math::deg(self.chip.gyro_range() / 32768.0);
-        let accel_scale = self.chip.accel_range() * (math::GRAVITY / 32768.0);
+        let gyro_scale = scalar::deg(self.chip.gyro_range() / 32768.0);
+        let accel_scale = self.chip.accel_range() * (scalar::GRAVITY / 32768.0);
         ImuReading {
             gyro: self.mounting.to_body(scaled(raw.gyro, gyro_scale)),
             accel: self.mounting.to_body(scaled(raw.accel, accel_scale)),

@@ -8,7 +8,7 @@ use std::rc::Rc;
 
 use embassy_time::{Duration, Instant, Timer};
 use fake::{dps310, ms5611, run};
-use sophie_control::air_pressure::AirPressure;
+use sophie_control::navigation::air_pressure::AirPressure;
 use sophie_drivers::barometer::{Barometer, Chip};
 use sophie_drivers::dps310::{Coefficients, Dps310};
 use sophie_drivers::fault::Fault;

@@ -6,7 +6,7 @@ mod fake;
 use embassy_time::{Duration, Instant, with_timeout};
 use fake::run;
 use fake::spi::{Bus, DataReady, Failure, Kind, Part};
-use sophie_control::math::GRAVITY;
+use sophie_control::maths::scalar::GRAVITY;
 use sophie_control::params::Params;
 use sophie_drivers::fault::{Fault, Sensor};
 use sophie_drivers::icm20689::{Config, GyroFilter, Icm20689};

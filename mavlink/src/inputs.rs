@@ -18,10 +18,10 @@ use crate::dialect::{
 };
 use crate::frame::SYSTEM;
 use crate::requests::Peer;
-use sophie_control::ground::{Flow, GroundView, Range};
+use sophie_control::approach::pipe_target::PipeTarget;
+use sophie_control::maths::vector::{Quat, Vec3};
+use sophie_control::navigation::flow_range_sample::{Flow, GroundView, Range};
 use sophie_control::params::{FlowPort, Params};
-use sophie_control::target::PipeTarget;
-use sophie_control::vector::{Quat, Vec3};
 
 /// Squared length of a quaternion may be off by this much: senders round, and do not always normalise.
 const QUATERNION_TOLERANCE: f32 = 0.02;

@@ -3,13 +3,13 @@
 //! Body axes are FRD, the world is NED and quaternions have w first here as there: only units change. What is not known
 //! has the standard's own value for it.
 
+use sophie_control::allocation::wrench::PerArm;
 use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
 use sophie_control::battery::ServoSupply;
-use sophie_control::grip::ArmState;
-use sophie_control::math::GRAVITY;
+use sophie_control::gripper::grip::ArmState;
+use sophie_control::maths::scalar::GRAVITY;
 use sophie_control::mode::Mode;
-use sophie_control::rc::{ArmChoice, StickMode, Sticks};
-use sophie_control::wrench::PerArm;
+use sophie_control::pilot::rc::{ArmChoice, StickMode, Sticks};
 
 use crate::dialect::*;
 use crate::vehicle::Vehicle;
@@ -447,7 +447,7 @@ pub fn extended_sys_state(vehicle: &Vehicle) -> EXTENDED_SYS_STATE_DATA {
 /// Arms and grip.
 pub fn arms(vehicle: &Vehicle, time_boot_ms: u32) -> SOPHIE_ARMS_DATA {
     let unknown = [f32::NAN; 4];
-    let of = |f: fn(&sophie_control::grip::ArmGrip) -> f32| -> PerArm<f32> {
+    let of = |f: fn(&sophie_control::gripper::grip::ArmGrip) -> f32| -> PerArm<f32> {
         vehicle.grip.map_or(unknown, |grip| grip.arms.map(|arm| f(&arm)))
     };
     let flags = vehicle.grip.map_or(SophieGripFlags::empty(), |grip| {

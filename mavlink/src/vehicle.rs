@@ -1,17 +1,17 @@
 //! What the server says of the vehicle: one picture of it, in the units and axes of the flight stack.
 
+use sophie_control::allocation::motor_pulses::MotorPulses;
+use sophie_control::allocation::wrench::PerArm;
 use sophie_control::arming::ArmingInhibits;
 use sophie_control::battery::{Battery, ServoBattery};
-use sophie_control::bench::BenchView;
 use sophie_control::calibration::AccelFit;
 use sophie_control::chain::Attitude;
-use sophie_control::grip::GripState;
+use sophie_control::gripper::grip::GripState;
 use sophie_control::mode::{Mode, Reason};
-use sophie_control::motor_pulses::MotorPulses;
 use sophie_control::params::Params;
-use sophie_control::rc::Sticks;
-use sophie_control::remote::RemoteAnswer;
-use sophie_control::wrench::PerArm;
+use sophie_control::pilot::bench_orders::BenchView;
+use sophie_control::pilot::rc::Sticks;
+use sophie_control::pilot::remote::RemoteAnswer;
 
 /// The commander's view.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -1,6 +1,6 @@
 //! Eq. 1 and Table I: tilt over thrust, and the K that Table III implies.
 
-use sophie_control::deflection::ArmModel;
+use sophie_control::allocation::arm_deflection::ArmModel;
 use sophie_control::params::Params;
 
 use super::model::{Axis, Chart, Class, Comparison, Look, Section, Series, Table, num};

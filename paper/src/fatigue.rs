@@ -1,8 +1,8 @@
 //! Section V-C: an arm loses stiffness, in flight and as measured on board.
 
 use crate::study::rig::{Flown, Moment, Wish, fly};
+use sophie_control::allocation::wrench::Configuration;
 use sophie_control::params::Params;
-use sophie_control::wrench::Configuration;
 use sophie_sim::mixers::Variant;
 
 use super::flights::{error, in_gusts, lost_when, or_lost, vehicle};
@@ -149,7 +149,7 @@ struct OnBoard {
 }
 
 fn on_board(flights: &Flights, infill: f64) -> Vec<OnBoard> {
-    let model = sophie_control::deflection::ArmModel::from_params(&Params {
+    let model = sophie_control::allocation::arm_deflection::ArmModel::from_params(&Params {
         infill: infill as f32,
         ..Params::default()
     });

@@ -323,7 +323,7 @@ mod tests {
         let f = fit(&points, [2.4387, -0.1997, -0.162, 0.0151]).unwrap();
         let text = parameters(&points, &f, None, "bench.csv").unwrap();
         let s = Scenario::parse(&text, "arm.toml", &Default::default()).unwrap();
-        let model = sophie_control::deflection::ArmModel::from_params(&s.params);
+        let model = sophie_control::allocation::arm_deflection::ArmModel::from_params(&s.params);
         for t in [0.5f32, 3.0, 6.0] {
             let truth = -9.0 + 4.0 * t - 0.2 * t * t;
             assert!((model.angle(t).to_degrees() - truth).abs() < 0.01, "{t}");

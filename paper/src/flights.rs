@@ -1,7 +1,7 @@
 //! Shared by the flown sections.
 
 use crate::study::rig::{Flown, Moment, rms};
-use sophie_control::wrench::Configuration;
+use sophie_control::allocation::wrench::Configuration;
 use sophie_sim::mixers::Variant;
 use sophie_sim::plant::tendon::assume_bending;
 use sophie_sim::scenario::{ArmBending, Scenario};

@@ -202,10 +202,10 @@ mod tests {
         );
         let t = &p.table_1;
         for (printed, flown) in [
-            (t.a1, sophie_control::deflection::A1),
-            (t.a2, sophie_control::deflection::A2),
-            (t.b1, sophie_control::deflection::B1),
-            (t.b2, sophie_control::deflection::B2),
+            (t.a1, sophie_control::allocation::arm_deflection::A1),
+            (t.a2, sophie_control::allocation::arm_deflection::A2),
+            (t.b1, sophie_control::allocation::arm_deflection::B1),
+            (t.b2, sophie_control::allocation::arm_deflection::B2),
         ] {
             assert!((printed - f64::from(flown)).abs() < 1e-6);
         }

@@ -4,8 +4,8 @@ use crate::study::allocation::Studied;
 use crate::study::perturbation::Trial;
 use crate::study::rig::{Flown, Wish, fly};
 use glam::DVec3;
+use sophie_control::allocation::wrench::{Configuration, FORE, SIDE, YAW};
 use sophie_control::params::Params;
-use sophie_control::wrench::{Configuration, FORE, SIDE, YAW};
 use sophie_sim::mixers::Variant;
 use sophie_sim::plant::GRAVITY;
 

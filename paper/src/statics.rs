@@ -1,6 +1,6 @@
 //! Closed forms of yaw, pitch and roll with arms that follow their thrust, in `f64`.
 
-use sophie_control::deflection::ArmModel;
+use sophie_control::allocation::arm_deflection::ArmModel;
 use sophie_control::params::Params;
 use sophie_sim::plant::contact::HINGE_Z;
 

@@ -4,7 +4,7 @@ use std::f32::consts::TAU;
 
 use crate::study::rig::{Flown, Moment, Wish, fly};
 use glam::DVec3;
-use sophie_control::wrench::Configuration;
+use sophie_control::allocation::wrench::Configuration;
 use sophie_sim::mixers::Variant;
 use sophie_sim::plant::GRAVITY;
 

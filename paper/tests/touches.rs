@@ -1,8 +1,8 @@
 //! 1000 random touches of the pipe, half of them cancelled: none ends on the ground.
 
-use sophie_control::grip_fault::GripFault;
+use sophie_control::gripper::grip_fault::GripFault;
 use sophie_control::mode::{Mode, Reason};
-use sophie_control::rc::ArmChoice;
+use sophie_control::pilot::rc::ArmChoice;
 use sophie_paper::study::touch::{End, STAY, Touch, Touched, fly, fly_as};
 use sophie_sim::parallel;
 use sophie_sim::scenario::Scenario;

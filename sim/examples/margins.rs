@@ -6,8 +6,8 @@
 
 use std::f64::consts::TAU;
 
+use sophie_control::allocation::wrench::Configuration::{self, A, B};
 use sophie_control::params::Params;
-use sophie_control::wrench::Configuration::{self, A, B};
 use sophie_sim::check::loops::{
     Hovering, Laws, Margins, Place, Response, margins, margins_of, resting_margins, slide,
 };

@@ -3,8 +3,8 @@
 
 #![allow(clippy::print_stdout, reason = "the table is what it is for")]
 
+use sophie_control::allocation::wrench::Configuration::{self, A, B};
 use sophie_control::mode::Mode;
-use sophie_control::wrench::Configuration::{self, A, B};
 use sophie_sim::flight::fly;
 use sophie_sim::flight_level::{Rig, level, vehicle};
 use sophie_sim::mixers::Variant::{self, Flexible, Frozen, Paper, Rigid};

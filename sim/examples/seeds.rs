@@ -6,7 +6,7 @@
 #![allow(clippy::print_stdout, reason = "the table is what it is for")]
 
 use sophie_control::mode::Mode;
-use sophie_control::rc::ArmChoice;
+use sophie_control::pilot::rc::ArmChoice;
 use sophie_sim::flight::fly;
 use sophie_sim::parallel;
 use sophie_sim::record::{FlightRecord, Silent};

@@ -1,6 +1,6 @@
 //! Setpoint of the attitude loop as angles.
 
-use sophie_control::attitude::Target;
+use sophie_control::attitude::attitude_loop::Target;
 
 /// Target roll (±π), pitch (±π/2), and heading less the present one, rad.
 #[must_use]
@@ -11,7 +11,7 @@ pub fn angles(target: Target) -> [f64; 3] {
 
 #[cfg(test)]
 mod tests {
-    use sophie_control::vector::Quat;
+    use sophie_control::maths::vector::Quat;
 
     use super::*;
 

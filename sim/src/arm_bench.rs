@@ -6,11 +6,11 @@ use std::collections::VecDeque;
 use glam::{DQuat, DVec3};
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
-use sophie_control::fsr::{Fsr, FsrScale};
-use sophie_control::grip::{ArmGrip, ArmState};
+use sophie_control::gripper::contact_pressure::{Fsr, FsrScale};
+use sophie_control::gripper::grip::{ArmGrip, ArmState};
+use sophie_control::gripper::tendon::{Drive, Reel, TendonDrive};
 use sophie_control::gripper::{ArmGripper, ArmInput, Config, Pressure};
 use sophie_control::params::Params;
-use sophie_control::tendon::{Drive, Reel, TendonDrive};
 
 use crate::plant::arm::ArmSpec;
 use crate::plant::beam::rest::pipe_under;

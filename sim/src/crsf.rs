@@ -1,7 +1,7 @@
 //! The transmitter's side of CRSF: channel frames out, telemetry in.
 
 use sophie_control::mode::Mode;
-use sophie_control::rc::{CHANNELS, Sticks};
+use sophie_control::pilot::rc::{CHANNELS, Sticks};
 use sophie_tasks::telemetry::parse_mode_text;
 use uf_crsf::packets::{PacketAddress, RcChannelsPacked};
 use uf_crsf::{CrsfParser, Packet, write_packet_to_buffer};

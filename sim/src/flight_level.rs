@@ -9,9 +9,9 @@ use crate::plant::contact::Pose;
 use crate::scenario::Scenario;
 use crate::sensors::imu::Misfit;
 use embassy_time::Instant;
-use sophie_control::mixer::Allocation;
+use sophie_control::allocation::mixer::Allocation;
+use sophie_control::allocation::wrench::Configuration;
 use sophie_control::params::{MotorMap, Params};
-use sophie_control::wrench::Configuration;
 use sophie_tasks::links::{Links, Setpoint};
 
 /// Unjudged take-off, s.

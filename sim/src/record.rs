@@ -1,7 +1,7 @@
 //! Record of a flight for table, report and log file.
 
+use sophie_control::allocation::wrench::PerArm;
 use sophie_control::mode::Mode;
-use sophie_control::wrench::PerArm;
 
 use crate::scenario::Scenario;
 

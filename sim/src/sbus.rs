@@ -1,6 +1,6 @@
 //! An SBUS receiver: channels from the air to frames on its line, and what telemetry sensors send behind them.
 
-use sophie_control::rc::CHANNELS;
+use sophie_control::pilot::rc::CHANNELS;
 use sophie_drivers::sbus::{FRAME, Frame};
 
 /// Slots for sensors behind each frame.

@@ -3,10 +3,10 @@
 mod vehicle;
 
 use embassy_time::Instant;
-use sophie_control::mixer::Flexible;
+use sophie_control::allocation::mixer::Flexible;
+use sophie_control::allocation::wrench::Configuration;
 use sophie_control::mode::{Mode, Reason};
-use sophie_control::rc::Sticks;
-use sophie_control::wrench::Configuration;
+use sophie_control::pilot::rc::Sticks;
 use sophie_fakes::{Answer, FakeImu, FakeMotors, links};
 use sophie_sim::clock::VirtualTime;
 use sophie_tasks::links::Setpoint;

@@ -1,6 +1,6 @@
 //! The flight level on the soft vehicle, by allocation.
 
-use sophie_control::wrench::Configuration::{A, B};
+use sophie_control::allocation::wrench::Configuration::{A, B};
 use sophie_sim::flight_level::{Maneuver, Rig, level, vehicle};
 use sophie_sim::mixers::Variant::{Flexible, Frozen, Paper, Rigid};
 use sophie_sim::scenario::Scenario;
@@ -98,8 +98,8 @@ fn mismatched_arms_are_learnt_by_their_sensors() {
 
 #[test]
 fn rate_and_direct_setpoints_fly_and_hand_back_without_a_kick() {
-    use sophie_control::vector::Vec3;
-    use sophie_control::wrench::Wrench;
+    use sophie_control::allocation::wrench::Wrench;
+    use sophie_control::maths::vector::Vec3;
     use sophie_tasks::links::Setpoint;
 
     const WEIGHT: f32 = 17.7;

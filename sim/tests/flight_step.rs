@@ -1,12 +1,12 @@
 //! A mission flown by the tasks, replayed from its inputs in a [`FlightChain`], gives the same bits.
 
 use embassy_time::Instant;
+use sophie_control::allocation::mixer::Flexible;
+use sophie_control::allocation::wrench::PerArm;
+use sophie_control::chain::setpoint::Setpoint;
 use sophie_control::chain::{
     ArmReading, Attitude, Command, Demand, FlightChain, ImuReading, MixOutput, Surroundings,
 };
-use sophie_control::mixer::Flexible;
-use sophie_control::setpoint::Setpoint;
-use sophie_control::wrench::PerArm;
 use sophie_sim::flight::aircraft::{Aircraft, Belief, Reset, Said};
 use sophie_sim::flight::fly_with;
 use sophie_sim::flight::stack::Stack;

@@ -1,13 +1,13 @@
 //! Tasks analog, clamp and servos on four simple arms with faults: reactions, and no force beyond the limit.
 
 use embassy_time::Instant;
-use sophie_control::deflection::ArmModel;
-use sophie_control::grip::{ArmState, GripState};
-use sophie_control::grip_fault::GripFault;
+use sophie_control::allocation::arm_deflection::ArmModel;
+use sophie_control::allocation::wrench::PerArm;
+use sophie_control::gripper::grip::{ArmState, GripState};
+use sophie_control::gripper::grip_fault::GripFault;
+use sophie_control::gripper::tendon::{ForceLimit, REFERENCE_TILT, Reel};
 use sophie_control::params::Params;
-use sophie_control::rc::ArmChoice;
-use sophie_control::tendon::{ForceLimit, REFERENCE_TILT, Reel};
-use sophie_control::wrench::PerArm;
+use sophie_control::pilot::rc::ArmChoice;
 use sophie_fakes::{Answer, FakeAnalog, FakeServos, links, links_with};
 use sophie_sim::clock::VirtualTime;
 use sophie_tasks::links::{ArmAngles, ClampCommand, Links, TendonForce, TendonForces, TendonOrder};

@@ -4,7 +4,7 @@ mod vehicle;
 
 use sophie_control::arming::ArmingInhibit;
 use sophie_control::mode::{Mode, Reason};
-use sophie_control::rc::Sticks;
+use sophie_control::pilot::rc::Sticks;
 use sophie_fakes::Answer;
 use sophie_tasks::ports::PortError;
 use vehicle::Vehicle;

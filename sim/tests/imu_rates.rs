@@ -1,7 +1,7 @@
 //! The closed flight level at each rate and range of the inertial sensor.
 
-use sophie_control::mixer::Flexible;
-use sophie_control::wrench::Configuration;
+use sophie_control::allocation::mixer::Flexible;
+use sophie_control::allocation::wrench::Configuration;
 use sophie_sim::flight_level::{Maneuver, Rig, vehicle};
 use sophie_sim::mixers::Variant;
 use sophie_tasks::deadline::TaskId;

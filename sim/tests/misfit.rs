@@ -4,11 +4,11 @@ use std::cell::RefCell;
 use std::rc::Rc;
 
 use embassy_time::Timer;
+use sophie_control::allocation::wrench::Configuration;
+use sophie_control::attitude::mounting::Mounting;
 use sophie_control::calibration::Face;
-use sophie_control::mounting::Mounting;
+use sophie_control::maths::vector::Vec3;
 use sophie_control::params::{ImuMounting, Params};
-use sophie_control::vector::Vec3;
-use sophie_control::wrench::Configuration;
 use sophie_drivers::param_store::ParamStore;
 use sophie_fakes::{FakeChip, FakeImu, FakeLine, Flash};
 use sophie_sim::clock::VirtualTime;

@@ -1,7 +1,7 @@
 //! Motors wired in another order than the rotors: flown by the map that says so, and without it.
 
+use sophie_control::allocation::wrench::Configuration;
 use sophie_control::params::{MotorMap, Params};
-use sophie_control::wrench::Configuration;
 use sophie_sim::flight_level::{Errors, Rig, level, vehicle};
 use sophie_sim::mixers::Variant;
 

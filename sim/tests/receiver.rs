@@ -3,7 +3,7 @@
 use embassy_time::Instant;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-use sophie_control::rc::{RAW_CENTRE, Sticks};
+use sophie_control::pilot::rc::{RAW_CENTRE, Sticks};
 use sophie_drivers::crsf::Decoder;
 use sophie_fakes::{Answer, BrokenLine, FakeLine, links};
 use sophie_sim::board::{Board, Port};

@@ -1,9 +1,9 @@
 //! Arms half to twice as soft as the stack assumes close on the bench and in flight: the watch on unfelt contact trips on
 //! every open pressure sensor and on no sound one.
 
-use sophie_control::grip::ArmState;
-use sophie_control::grip_fault::GripFault;
-use sophie_control::rc::ArmChoice;
+use sophie_control::gripper::grip::ArmState;
+use sophie_control::gripper::grip_fault::GripFault;
+use sophie_control::pilot::rc::ArmChoice;
 use sophie_sim::arm_bench::{BenchArm, Closing, try_grip};
 use sophie_sim::flight::fly;
 use sophie_sim::parallel;

@@ -4,16 +4,16 @@ use std::cell::Cell;
 use std::rc::Rc;
 
 use embassy_time::Instant;
+use sophie_control::allocation::mixer::Flexible;
+use sophie_control::allocation::wrench::Configuration;
 use sophie_control::arming::ArmingInhibit;
-use sophie_control::grip_fault::GripFault;
-use sophie_control::grip_memory::GripMemory;
-use sophie_control::mixer::Flexible;
+use sophie_control::gripper::grip_fault::GripFault;
+use sophie_control::gripper::retained_grip::GripMemory;
+use sophie_control::gripper::tendon::Reel;
+use sophie_control::maths::vector::Vec3;
 use sophie_control::mode::{Mode, Reason};
 use sophie_control::params::{Params, ServoMarks};
-use sophie_control::rc::{ArmChoice, Sticks};
-use sophie_control::tendon::Reel;
-use sophie_control::vector::Vec3;
-use sophie_control::wrench::Configuration;
+use sophie_control::pilot::rc::{ArmChoice, Sticks};
 use sophie_fakes::{
     FakeAnalog, FakeArms, FakeImu, FakeMemory, FakeMotors, FakeServos, FakeWatchdog, VOLTS_PER_COUNT,
 };

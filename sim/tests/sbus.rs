@@ -6,7 +6,7 @@ use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use sophie_control::mode::{Mode, Reason};
 use sophie_control::params::{Params, RcProtocol};
-use sophie_control::rc::Sticks;
+use sophie_control::pilot::rc::Sticks;
 use sophie_drivers::rc_decoder::Decoder;
 use sophie_drivers::sbus::Frame;
 use sophie_fakes::FakeLine;

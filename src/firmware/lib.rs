@@ -17,7 +17,7 @@ mod timing;
 mod trace;
 
 use embassy_executor::Spawner;
-use sophie_control::grip_memory::GripMemory;
+use sophie_control::gripper::retained_grip::GripMemory;
 use sophie_control::params::Params;
 use sophie_tasks::links::Links;
 use sophie_tasks::parameters;

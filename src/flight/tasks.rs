@@ -1,9 +1,9 @@
 //! The wrappers. Each is spawned once, by the firmware.
 
 use sophie_boards::retained::Memory;
+use sophie_control::allocation::mixer::Flexible;
+use sophie_control::allocation::wrench::Configuration;
 use sophie_control::arming::ArmingInhibit;
-use sophie_control::mixer::Flexible;
-use sophie_control::wrench::Configuration;
 use sophie_drivers::ground_module::GroundModule;
 use sophie_drivers::rc_decoder::Decoder;
 use sophie_tasks::links::Links;

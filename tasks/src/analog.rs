@@ -9,7 +9,7 @@ use embassy_futures::select::{Either, select};
 use embassy_time::{Duration, Instant, Timer};
 use sophie_control::arming::ArmingInhibit;
 use sophie_control::battery::{Monitor, ServoMonitor, reading};
-use sophie_control::fsr::{Fsr, FsrScale};
+use sophie_control::gripper::contact_pressure::{Fsr, FsrScale};
 
 use crate::deadline::{FixedRate, TaskId};
 use crate::links::{Contact, Links};

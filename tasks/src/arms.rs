@@ -6,12 +6,12 @@
 //! tilt carries the time of its own request.
 
 use embassy_time::{Duration, Instant, with_timeout};
+use sophie_control::allocation::wrench::{PerArm, SIDE};
 use sophie_control::arming::ArmingInhibit;
 use sophie_control::calibration::ArmFit;
-use sophie_control::math;
+use sophie_control::maths::scalar;
+use sophie_control::maths::vector::{Quat, Vec3};
 use sophie_control::params::Params;
-use sophie_control::vector::{Quat, Vec3};
-use sophie_control::wrench::{PerArm, SIDE};
 
 use crate::deadline::{FixedRate, TaskId};
 use crate::links::{ArmAngles, Links, Stamped};
@@ -100,13 +100,13 @@ fn arm_tilt(q: Quat, gravity: Vec3, side: f32) -> Option<f32> {
         return None;
     }
     // The arm's view of (y, z) is the body's turned back by the turn about x.
-    let turn = math::atan2(gravity.y, gravity.z) - math::atan2(body.y, body.z);
-    Some(math::wrap_pi(turn) * side)
+    let turn = scalar::atan2(gravity.y, gravity.z) - scalar::atan2(body.y, body.z);
+    Some(scalar::wrap_pi(turn) * side)
 }
 
 #[cfg(test)]
 mod tests {
-    use sophie_control::math::{GRAVITY, deg};
+    use sophie_control::maths::scalar::{GRAVITY, deg};
 
     use super::*;
 

@@ -15,9 +15,9 @@
 
 use crate::retained_state::RetainedState;
 use embassy_time::Instant;
-use sophie_control::grip_memory::GripMemory;
+use sophie_control::allocation::wrench::PerArm;
+use sophie_control::gripper::retained_grip::GripMemory;
 use sophie_control::gripper::{ArmInput, Config, Gripper, Pressure};
-use sophie_control::wrench::PerArm;
 
 use crate::deadline::{FixedRate, TaskId};
 use crate::links::{

@@ -3,8 +3,8 @@
 //! The [`DEADLINE`] counts from data-ready. Without a fresh setpoint the rotors stop.
 
 use embassy_time::{Duration, Instant};
+use sophie_control::attitude::rate_loop::Feedback;
 use sophie_control::chain::{Command, Control};
-use sophie_control::rate::Feedback;
 
 use crate::deadline::{TaskId, note_run};
 use crate::links::{Links, MixOutput, Setpoint};

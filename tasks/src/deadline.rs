@@ -131,7 +131,7 @@ impl<'a> FixedRate<'a> {
         let dt = previous.map_or(period_s, |p| {
             started.saturating_duration_since(p.started).as_micros() as f32 * 1e-6
         });
-        let dt = sophie_control::math::clamp(dt, 0.5 * period_s, 4.0 * period_s);
+        let dt = sophie_control::maths::scalar::clamp(dt, 0.5 * period_s, 4.0 * period_s);
         let tick = Tick {
             released,
             started,

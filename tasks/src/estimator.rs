@@ -1,9 +1,9 @@
 //! Attitude estimation, one step for each inertial sample (1 kHz). The [`DEADLINE`] counts from its data-ready.
 
 use embassy_time::{Duration, Instant};
+use sophie_control::attitude::estimator::Estimator;
+use sophie_control::attitude::mounting::Mounting;
 use sophie_control::chain::Attitude;
-use sophie_control::estimator::Estimator;
-use sophie_control::mounting::Mounting;
 
 use crate::deadline::{TaskId, note_run};
 use crate::links::Links;

@@ -2,7 +2,7 @@
 
 use embassy_time::{Duration, Instant};
 use sophie_control::mode::Mode;
-use sophie_control::position::SightLimit;
+use sophie_control::navigation::flow_range::SightLimit;
 
 use crate::links::Links;
 

@@ -1,8 +1,8 @@
 //! Allocation at the arms' present tilt, one step for each demand (1 kHz). The [`DEADLINE`] counts from data-ready.
 
 use embassy_time::{Duration, Instant};
+use sophie_control::allocation::mixer::Allocation;
 use sophie_control::chain::{ArmReading, MixOutput, Mixing, Surroundings};
-use sophie_control::mixer::Allocation;
 use sophie_control::params::Params;
 
 use crate::deadline::{TaskId, note_run};

@@ -8,7 +8,7 @@ use sophie_control::params::{ParamInfo, Params, Renamed};
 use crate::image_id;
 use crate::links::Links;
 use crate::ports::{Loaded, Storage};
-use sophie_control::decimal::{self, Decimal};
+use sophie_control::maths::decimal::{self, Decimal};
 
 /// Parameters in force and the result of reading them. Called once, before [`Links::new`].
 pub async fn load(storage: &mut impl Storage) -> (Params, Loaded) {

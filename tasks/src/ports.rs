@@ -2,13 +2,13 @@
 
 use embassy_time::Instant;
 use heapless::{String, Vec};
-use sophie_control::air_pressure::AirPressure;
+use sophie_control::allocation::wrench::PerArm;
 use sophie_control::arming::ArmingInhibit;
 pub use sophie_control::chain::ImuReading;
-use sophie_control::ground::GroundView;
+use sophie_control::maths::vector::Vec3;
+use sophie_control::navigation::air_pressure::AirPressure;
+use sophie_control::navigation::flow_range_sample::GroundView;
 use sophie_control::params::Params;
-use sophie_control::vector::Vec3;
-use sophie_control::wrench::PerArm;
 use sophie_mavlink::signing::{Record, Stored};
 
 use crate::links::RcState;

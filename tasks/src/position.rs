@@ -5,8 +5,8 @@
 //! either there is none, and nothing is sent.
 
 use sophie_control::chain;
-use sophie_control::position::{Fix, Inertial, PositionEstimator};
-use sophie_control::vector::{Quat, Vec3};
+use sophie_control::maths::vector::{Quat, Vec3};
+use sophie_control::navigation::position_estimator::{Fix, Inertial, PositionEstimator};
 
 use crate::deadline::{FixedRate, TaskId};
 use crate::links::{ExternalPose, Links};

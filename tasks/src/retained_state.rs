@@ -4,13 +4,13 @@
 //! turns, with sequence number and checksum: a reset during a write leaves the other whole. After power-on the noise
 //! fails the checksum.
 
-use sophie_control::grip_fault::GripFault;
-use sophie_control::grip_memory::GripMemory;
+use sophie_control::allocation::wrench::PerArm;
 use sophie_control::gripper::RESPONSE_RANGE;
-use sophie_control::math;
-use sophie_control::rc::ArmChoice;
-use sophie_control::vector::Vec3;
-use sophie_control::wrench::PerArm;
+use sophie_control::gripper::grip_fault::GripFault;
+use sophie_control::gripper::retained_grip::GripMemory;
+use sophie_control::maths::scalar;
+use sophie_control::maths::vector::Vec3;
+use sophie_control::pilot::rc::ArmChoice;
 
 /// Words of one copy.
 pub const WORDS: usize = 17;
@@ -166,15 +166,15 @@ impl RetainedState {
     /// Servo angles and forces limited to what validation accepts.
     pub fn bounded(self) -> Self {
         Self {
-            angle: self.angle.map(|a| math::clamp(a, 0.0, ANGLE_MAX)),
-            force: self.force.map(|f| math::clamp(f, 0.0, FORCE_MAX)),
+            angle: self.angle.map(|a| scalar::clamp(a, 0.0, ANGLE_MAX)),
+            force: self.force.map(|f| scalar::clamp(f, 0.0, FORCE_MAX)),
             response: self
                 .response
                 .map(|r| response_of(response_code(r) as u8).flatten()),
             gyro_bias: self
                 .gyro_bias
                 .filter(|b| b.is_finite())
-                .map(|b| b.map(|x| math::clamp_abs(x, BIAS_MAX))),
+                .map(|b| b.map(|x| scalar::clamp_abs(x, BIAS_MAX))),
             ..self
         }
     }

@@ -4,9 +4,9 @@
 //! message changes nothing.
 
 use crate::retained_state::RetainedState;
+use sophie_control::allocation::wrench::PerArm;
+use sophie_control::attitude::mounting::Mounting;
 use sophie_control::gripper::force_per_thrust;
-use sophie_control::mounting::Mounting;
-use sophie_control::wrench::PerArm;
 
 use crate::links::{Links, TendonOrder};
 use crate::ports::Retain;

@@ -10,10 +10,10 @@
 //! The task ends the chain from contact pressure to pulse and measures it (`ChainWatch`).
 
 use embassy_time::{Duration, Instant};
+use sophie_control::allocation::wrench::PerArm;
 use sophie_control::arming::ArmingInhibit;
-use sophie_control::grip_memory::GripMemory;
-use sophie_control::tendon::{Drive, Reel, TendonDrive};
-use sophie_control::wrench::PerArm;
+use sophie_control::gripper::retained_grip::GripMemory;
+use sophie_control::gripper::tendon::{Drive, Reel, TendonDrive};
 
 use crate::deadline::{FixedRate, TaskId};
 use crate::links::{Links, Newest, Stamped, TendonForce, TendonOrder};

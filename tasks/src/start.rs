@@ -71,8 +71,8 @@ impl Start {
 
 #[cfg(test)]
 mod tests {
-    use sophie_control::grip_memory::GripMemory;
-    use sophie_control::rc::ArmChoice;
+    use sophie_control::gripper::retained_grip::GripMemory;
+    use sophie_control::pilot::rc::ArmChoice;
 
     use super::*;
     use crate::retained_state::WORDS;

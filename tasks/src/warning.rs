@@ -2,7 +2,10 @@
 
 use sophie_control::arming::ArmingInhibit;
 use sophie_control::battery::ServoSupply;
-use sophie_control::position::{Fault, PoseFault, PressureFault, SightFault, SightLimit};
+use sophie_control::navigation::baro_height::PressureFault;
+use sophie_control::navigation::external_pose::PoseFault;
+use sophie_control::navigation::flow_range::{SightFault, SightLimit};
+use sophie_control::navigation::position_estimator::Fault;
 
 use crate::start::StartCause;
 

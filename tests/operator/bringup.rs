@@ -8,9 +8,9 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use sophie_control::calibration::Face;
+use sophie_control::maths::vector::Vec3;
 use sophie_control::params::{MotorMap, Params};
-use sophie_control::rc::{ArmChoice, StickMode, Sticks};
-use sophie_control::vector::Vec3;
+use sophie_control::pilot::rc::{ArmChoice, StickMode, Sticks};
 use sophie_sim::live::Key;
 
 use super::board::{Board, Hands};

@@ -4,7 +4,7 @@ use std::fs;
 use std::time::{Duration, Instant};
 
 use sophie_control::params::Params;
-use sophie_control::rc::Sticks;
+use sophie_control::pilot::rc::Sticks;
 
 use super::board::{Board, Hands};
 use super::command::{Temp, refused};

@@ -11,7 +11,7 @@ use embassy_stm32::timer::low_level::{self, OutputCompareMode};
 use embassy_stm32::timer::{Channel, GeneralInstance4Channel, TimerChannel, TimerPin, UpDma};
 use embassy_stm32::{Peri, rcc};
 use embassy_time::{Duration, Instant, Timer};
-use sophie_control::wrench::PerArm;
+use sophie_control::allocation::wrench::PerArm;
 use sophie_drivers::dshot::{self, BitTiming, Frame, fill_burst};
 use sophie_drivers::esc_protocol::EscProtocol;
 use sophie_drivers::esc_pwm::EscPulse;

@@ -1,6 +1,6 @@
 //! Stick gestures that arm and disarm.
 
-use crate::rc::Sticks;
+use crate::pilot::rc::Sticks;
 
 /// Time that the gesture must be held, s.
 pub const GESTURE_TIME: f32 = 1.0;

@@ -5,13 +5,13 @@ mod tests;
 
 use super::messages::{Attitude, Demand};
 use super::step_clock::CONTROL_RATE_HZ;
-use crate::attitude::{AttitudeLoop, AttitudeSetpoint, Target};
-use crate::math;
+use crate::allocation::wrench::Wrench;
+use crate::attitude::attitude_loop::{AttitudeLoop, AttitudeSetpoint, Target};
+use crate::attitude::rate_loop::{Feedback, RateLoop};
+use crate::chain::setpoint::Setpoint;
+use crate::maths::scalar;
+use crate::maths::vector::Vec3;
 use crate::params::Params;
-use crate::rate::{Feedback, RateLoop};
-use crate::setpoint::Setpoint;
-use crate::vector::Vec3;
-use crate::wrench::Wrench;
 
 /// Largest share of a rotor's thrust for roll and for pitch on the pipe.
 const RESTING_SHARES: [f32; 2] = [0.6, 0.4];
@@ -181,8 +181,8 @@ impl Control {
         let (roll_max, pitch_max) = (roll * thrust * sideways, pitch * thrust * ahead);
         Wrench {
             thrust,
-            roll: math::clamp_abs(RESTING_ROLL_GAIN * moment.x, roll_max),
-            pitch: math::clamp_abs(moment.y, pitch_max),
+            roll: scalar::clamp_abs(RESTING_ROLL_GAIN * moment.x, roll_max),
+            pitch: scalar::clamp_abs(moment.y, pitch_max),
             yaw: 0.0,
         }
     }

@@ -6,11 +6,11 @@ use std::println;
 
 use super::messages::{Attitude, ImuReading, ImuSample};
 use super::sensing::Sensing;
-use crate::estimator::Estimator;
-use crate::math::{GRAVITY, deg};
+use crate::attitude::estimator::Estimator;
+use crate::maths::scalar::{GRAVITY, deg};
+use crate::maths::vector::{Quat, Vec3};
 use crate::mode::Motion;
 use crate::params::Params;
-use crate::vector::{Quat, Vec3};
 
 /// Readings each second, and full scales, m/s² and rad/s.
 const RATE: f64 = 4000.0;

@@ -1,11 +1,11 @@
 //! Messages between the stages of the flight step.
 
-use crate::bench::Spin;
-use crate::desaturation::Given;
-use crate::math::cos;
-use crate::rate::Feedback;
-use crate::vector::{Quat, Vec3};
-use crate::wrench::{PerArm, Wrench};
+use crate::allocation::desaturation::Given;
+use crate::allocation::wrench::{PerArm, Wrench};
+use crate::attitude::rate_loop::Feedback;
+use crate::maths::scalar::cos;
+use crate::maths::vector::{Quat, Vec3};
+use crate::pilot::bench_orders::Spin;
 
 /// One sample of the vehicle's inertial sensor in board axes: the vehicle's, unless `imu_mounting` turns them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

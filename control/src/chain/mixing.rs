@@ -5,12 +5,12 @@ mod tests;
 
 use super::messages::{Demand, MixOutput};
 use super::step_clock::StepClock;
-use crate::bench::Spin;
-use crate::mixer::{Allocation, Conditions, Flexible};
+use crate::allocation::arm_tilt::TiltModel;
+use crate::allocation::mixer::{Allocation, Conditions, Flexible};
+use crate::allocation::thrust_curve::ThrustCurve;
+use crate::allocation::wrench::PerArm;
 use crate::params::Params;
-use crate::thrust_curve::ThrustCurve;
-use crate::tilt::TiltModel;
-use crate::wrench::PerArm;
+use crate::pilot::bench_orders::Spin;
 
 /// Measurement of the arms' sensors.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -2,11 +2,11 @@
 
 use super::messages::{ImuReading, ImuSample};
 use super::step_clock::{CONTROL_RATE_HZ, StepClock};
-use crate::imu_filter::ImuFilter;
-use crate::math::{self, GRAVITY};
-use crate::mounting::Mounting;
+use crate::attitude::imu_filter::ImuFilter;
+use crate::attitude::mounting::Mounting;
+use crate::maths::scalar::{self, GRAVITY};
+use crate::maths::vector::Vec3;
 use crate::params::Params;
-use crate::vector::Vec3;
 
 /// Filter, decimation, and what calibration has found: accelerometer's bias and scale, mounting.
 ///
@@ -48,7 +48,7 @@ impl Sensing {
             accel_bias: Vec3::new(p.accel_bias_x, p.accel_bias_y, p.accel_bias_z),
             accel_gain: Vec3::new(p.accel_scale_x, p.accel_scale_y, p.accel_scale_z).map(|scale| 1.0 / scale),
             mounting: (mounting != Mounting::AS_BUILT).then_some(mounting),
-            per_step: (math::clamp(rate_hz / CONTROL_RATE_HZ, 1.0, 64.0) + 0.5) as u32,
+            per_step: (scalar::clamp(rate_hz / CONTROL_RATE_HZ, 1.0, 64.0) + 0.5) as u32,
             collected: 0,
             clock: StepClock::default(),
             clips_at: full_scale * full_scale,

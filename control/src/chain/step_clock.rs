@@ -1,6 +1,6 @@
 //! Time from step to step.
 
-use crate::math;
+use crate::maths::scalar;
 
 /// Rate of the step, Hz.
 pub const CONTROL_RATE_HZ: f32 = 1000.0;
@@ -36,7 +36,7 @@ impl StepClock {
             Err(_) => odd_gap(self.last_us, at_us),
         };
         self.last_us = at_us;
-        math::clamp(dt, SHORTEST, LONGEST)
+        scalar::clamp(dt, SHORTEST, LONGEST)
     }
 }
 

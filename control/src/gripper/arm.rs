@@ -5,9 +5,9 @@ use super::ceiling_watch::{CeilingSample, CeilingWatch};
 use super::input::{Contact, InputFilters, Measured};
 use super::pressure_loop::PressureLoop;
 use super::{ArmInput, Config, FORCE_MIN, Pressure};
-use crate::grip::{ArmGrip, ArmState, FreeProof, HoldProof};
-use crate::grip_fault::GripFault;
-use crate::math;
+use crate::gripper::grip::{ArmGrip, ArmState, FreeProof, HoldProof};
+use crate::gripper::grip_fault::GripFault;
+use crate::maths::scalar;
 
 /// Largest force rate of a touching arm, N/s.
 const FORCE_RATE_MAX: f32 = 300.0;
@@ -72,7 +72,7 @@ impl ArmGripper {
     pub fn resume(force: f32, fault: Option<GripFault>, response: Option<f32>) -> Self {
         Self {
             phase: Phase::Resume(0.0),
-            force: math::clamp(force, 0.0, 1e4),
+            force: scalar::clamp(force, 0.0, 1e4),
             fault: fault.filter(|f| f.is_latched()),
             response: Response::resumed(response),
             ..Self::default()
@@ -81,15 +81,15 @@ impl ArmGripper {
 
     /// One step of `dt` s. The force stays within 0 and the limit for any input.
     pub fn step(&mut self, cfg: &Config, input: &ArmInput, dt: f32) -> ArmGrip {
-        let dt = math::clamp(dt, 1e-4, 0.1);
-        self.response_age = math::clamp(self.response_age + dt, 0.0, 1e6);
+        let dt = scalar::clamp(dt, 1e-4, 0.1);
+        self.response_age = scalar::clamp(self.response_age + dt, 0.0, 1e6);
         let measured = self.filters.step(input, dt);
         if input.close {
             self.close(cfg, &measured, dt);
         } else {
             self.release(cfg, dt);
         }
-        self.force = math::clamp(self.force, 0.0, cfg.limit);
+        self.force = scalar::clamp(self.force, 0.0, cfg.limit);
         let free = self
             .free
             .step(&cfg.demand, measured.pressure, measured.tension, dt);
@@ -154,7 +154,7 @@ impl ArmGripper {
         self.ceiling_watch = CeilingWatch::default();
         self.at_limit = 0.0;
         self.tilt_missing = 0.0;
-        self.force = math::slew(self.force, 0.0, cfg.release_rate * dt);
+        self.force = scalar::slew(self.force, 0.0, cfg.release_rate * dt);
     }
 
     fn close(&mut self, cfg: &Config, measured: &Measured, dt: f32) {
@@ -166,7 +166,7 @@ impl ArmGripper {
         self.tilt_missing = if measured.tilt.is_some() {
             0.0
         } else {
-            math::clamp(self.tilt_missing + dt, 0.0, 10.0)
+            scalar::clamp(self.tilt_missing + dt, 0.0, 10.0)
         };
         self.fault = self.input_fault(cfg, measured);
         self.last_pressure = measured.sensed.known();
@@ -188,7 +188,7 @@ impl ArmGripper {
         let stuck = matches!(self.phase, Phase::Grip(_)) && self.force - contact.tension > LAG_STUCK;
         let limited = self.force >= cfg.demand.force || stuck;
         self.at_limit = if limited {
-            math::clamp(self.at_limit + dt, 0.0, 10.0)
+            scalar::clamp(self.at_limit + dt, 0.0, 10.0)
         } else {
             0.0
         };
@@ -248,7 +248,7 @@ impl ArmGripper {
             self.phase = Phase::Resume(seen);
             return;
         }
-        self.force = math::clamp(contact.tension, FORCE_MIN, cfg.limit);
+        self.force = scalar::clamp(contact.tension, FORCE_MIN, cfg.limit);
         self.phase = if contact.touches() {
             Phase::Grip(PressureLoop::new(contact, self.force, 0.0))
         } else {
@@ -273,20 +273,20 @@ impl ArmGripper {
                     FORCE_RATE_MAX
                 };
                 let wanted = pressure_loop.step(cfg, contact, lag, dt);
-                self.force = math::clamp(wanted, self.force - FORCE_RATE_MAX * dt, self.force + rise * dt);
-                self.force = math::clamp(self.force, FORCE_MIN, cfg.limit);
+                self.force = scalar::clamp(wanted, self.force - FORCE_RATE_MAX * dt, self.force + rise * dt);
+                self.force = scalar::clamp(self.force, FORCE_MIN, cfg.limit);
                 if contact.touches() {
                     pressure_loop.note_force(self.force, dt);
                 }
                 self.phase = Phase::Grip(pressure_loop);
             }
             _ if contact.touches() => {
-                let transient = math::clamp(lag, 0.0, cfg.limit);
+                let transient = scalar::clamp(lag, 0.0, cfg.limit);
                 self.phase = Phase::Grip(PressureLoop::new(contact, self.force, transient));
             }
             _ => {
                 let rise = cfg.approach_rate / self.response.value() * dt;
-                self.force = math::clamp(self.force + rise, FORCE_MIN, cfg.limit);
+                self.force = scalar::clamp(self.force + rise, FORCE_MIN, cfg.limit);
             }
         }
     }
@@ -322,7 +322,9 @@ impl ArmGripper {
         if let Some(before) = watch.step(cfg, sample, &mut self.response, free, dt) {
             self.fault = Some(GripFault::Unfelt);
             self.force = match self.phase {
-                Phase::Grip(pressure_loop) => math::clamp(pressure_loop.mean_force(), FORCE_MIN, self.force),
+                Phase::Grip(pressure_loop) => {
+                    scalar::clamp(pressure_loop.mean_force(), FORCE_MIN, self.force)
+                }
                 _ => before,
             };
         }

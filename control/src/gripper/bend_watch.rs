@@ -8,8 +8,8 @@
 //! Load is the tendon's force less what the rotor's thrust takes from it.
 
 use super::Config;
-use crate::filter::LowPass;
-use crate::math;
+use crate::maths::filter::LowPass;
+use crate::maths::scalar;
 
 /// Bending over which an arm is judged, rad, by its tilt or by its load.
 const WINDOW: f32 = 0.15;
@@ -65,7 +65,7 @@ impl Response {
     /// Takes the largest: an arm that bends down gets softer, contact makes it stiffer.
     fn learn(&mut self, measured: f32) {
         let (least, most) = RESPONSE;
-        let measured = math::clamp(measured, least, most);
+        let measured = scalar::clamp(measured, least, most);
         if self.0.is_none_or(|known| measured > known) {
             self.0 = Some(measured);
         }

@@ -4,7 +4,7 @@
 //! Only a rise too slow to reach the grip pressure within the limit counts: an arm that could have held is not stopped.
 
 use super::Config;
-use crate::filter::LowPass;
+use crate::maths::filter::LowPass;
 
 /// Tension rise over which the pressure must rise, N: from touch to grip on a skin of 70 Pa/N, and more than a swinging
 /// arm feels.

@@ -1,10 +1,10 @@
 //! Configuration of the gripper.
 
-use crate::deflection::ArmModel;
-use crate::grip::GripDemand;
-use crate::math;
+use crate::allocation::arm_deflection::ArmModel;
+use crate::gripper::grip::GripDemand;
+use crate::gripper::tendon::ForceLimit;
+use crate::maths::scalar;
 use crate::params::Params;
-use crate::tendon::ForceLimit;
 
 /// Tendon force that a newton of the rotor's thrust relieves on the pipe, N/N.
 pub fn force_per_thrust(p: &Params) -> f32 {
@@ -45,22 +45,22 @@ impl Config {
     /// From the parameters.
     pub fn from_params(p: &Params) -> Self {
         // A newton of tendon bends a free arm as much as this thrust; below level thrust the arm is linear.
-        let thrust_per_force = math::clamp(p.tendon_bend * p.tendon_lever / p.arm_d, 1e-3, 10.0);
-        let compliance = math::clamp(ArmModel::from_params(p).slope(0.0), 1e-3, 10.0);
+        let thrust_per_force = scalar::clamp(p.tendon_bend * p.tendon_lever / p.arm_d, 1e-3, 10.0);
+        let compliance = scalar::clamp(ArmModel::from_params(p).slope(0.0), 1e-3, 10.0);
         let bend_per_force = compliance * thrust_per_force;
         let limit = ForceLimit::from_params(p).asked;
         Self {
             p: p.clamp_p,
             i: p.clamp_i,
             d: p.clamp_d,
-            approach_rate: math::clamp(p.clamp_approach / bend_per_force, 0.0, 1e3),
+            approach_rate: scalar::clamp(p.clamp_approach / bend_per_force, 0.0, 1e3),
             release_rate: p.clamp_release,
             limit,
             per_thrust: force_per_thrust(p),
             thrust_per_force,
             bend_per_force,
             demand: GripDemand::from_params(p, limit),
-            pipe_bend: math::clamp(2.0 * p.arm_d / p.pipe_diameter, 0.01, 10.0),
+            pipe_bend: scalar::clamp(2.0 * p.arm_d / p.pipe_diameter, 0.01, 10.0),
         }
     }
 
@@ -73,7 +73,7 @@ impl Config {
     /// For an arm that lets go of `force` while the tightest lets go of `most`, N.
     pub(super) fn releasing(mut self, force: f32, most: f32) -> Self {
         if most > 0.0 {
-            self.release_rate *= math::clamp(force / most, 0.0, 1.0);
+            self.release_rate *= scalar::clamp(force / most, 0.0, 1.0);
         }
         self
     }

@@ -1,7 +1,7 @@
 //! Input of one arm, filtered and validated.
 
-use crate::filter::LowPass;
-use crate::math;
+use crate::maths::filter::LowPass;
+use crate::maths::scalar;
 
 /// Cut-off of the measured pressure, rad/s (13 Hz).
 const PRESSURE_CUTOFF: f32 = 80.0;
@@ -24,7 +24,7 @@ impl Pressure {
     /// A finite pressure, limited so that filters cannot overflow.
     pub(super) fn known(self) -> Option<f32> {
         match self {
-            Self::Known(p) if p.is_finite() => Some(math::clamp(p, 0.0, 1e6)),
+            Self::Known(p) if p.is_finite() => Some(scalar::clamp(p, 0.0, 1e6)),
             _ => None,
         }
     }
@@ -74,7 +74,7 @@ impl InputFilters {
             filter.step(p, PRESSURE_CUTOFF, dt)
         });
         let thrust = input.thrust.is_finite().then(|| {
-            let thrust = math::clamp(input.thrust, 0.0, 1e3);
+            let thrust = scalar::clamp(input.thrust, 0.0, 1e3);
             let filter = self.thrust.get_or_insert(LowPass::at(thrust));
             filter.step(thrust, THRUST_CUTOFF, dt)
         });
@@ -83,8 +83,8 @@ impl InputFilters {
             sensed: input.pressure,
             pressure,
             thrust,
-            tension: tension.map(|t| math::clamp(t, 0.0, 1e4)),
-            tilt: input.tilt.filter(|t| t.abs() <= math::PI),
+            tension: tension.map(|t| scalar::clamp(t, 0.0, 1e4)),
+            tilt: input.tilt.filter(|t| t.abs() <= scalar::PI),
         }
     }
 

@@ -2,9 +2,9 @@
 
 use super::input::Contact;
 use super::{Config, FORCE_MIN};
-use crate::filter::{CascadedLowPass, LowPass};
-use crate::math;
-use crate::tendon::TILT_CUTOFF;
+use crate::gripper::tendon::TILT_CUTOFF;
+use crate::maths::filter::{CascadedLowPass, LowPass};
+use crate::maths::scalar;
 
 /// Time constant of the reference's approach to the target, s.
 const REFERENCE_TAU: f32 = 0.25;
@@ -76,7 +76,7 @@ impl PressureLoop {
         let down = force <= FORCE_MIN || lag < -LAG_MAX;
         if !(up && error > 0.0 || down && error < 0.0) {
             // The feed-forward alone may exceed the limit; the integral then works against it.
-            self.integral = math::clamp_abs(self.integral + cfg.i * error * dt, 2.0 * cfg.limit);
+            self.integral = scalar::clamp_abs(self.integral + cfg.i * error * dt, 2.0 * cfg.limit);
         }
         self.integral + quick
     }

@@ -1,10 +1,10 @@
 //! Interface of a state: transitions, rotors, tendons, display.
 
 use super::context::{Context, Step};
-use super::demand::HAND_OVER_TIME;
+use super::shared::collective::HAND_OVER_TIME;
 use super::{ClampCommand, Inputs, Mode, Reason, Setpoint};
 use crate::arming::ArmingInhibits;
-use crate::grip_memory::GripMemory;
+use crate::gripper::retained_grip::GripMemory;
 
 /// One state with its fields.
 pub trait Behaviour {

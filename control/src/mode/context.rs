@@ -1,25 +1,25 @@
 //! What outlives a state: parameters, the pilot's switches, evidence of support and lean, dangers, the collective.
 
-use super::bench::Bench;
-use super::by_itself::ByItself;
-use super::crown::Crown;
-use super::dangers::Dangers;
-use super::demand::Collective;
-use super::fall::Fall;
-use super::hold::held;
-use super::lean::Lean;
-use super::power_up_grip::PowerUpGripCheck;
-use super::probe::Probe;
-use super::remote::Remote;
-use super::rise::Rise;
-use super::{ClampCommand, Inputs, Reason, remote};
+use super::inputs::auto_perch::ByItself;
+use super::inputs::bench::Bench;
+use super::inputs::dangers::Dangers;
+use super::inputs::remote::{self, Remote};
+use super::shared::collective::Collective;
+use super::shared::ground_probe::Probe;
+use super::shared::on_pipe::held;
+use super::shared::power_up_grip::PowerUpGripCheck;
+use super::{ClampCommand, Inputs, Reason};
 use crate::arming::{ArmingInhibit, ArmingInhibits, Checks, Gesture, GestureWatch};
-use crate::grip_memory::GripMemory;
-use crate::math::clamp;
+use crate::contact::contact_force::{Felt, Held, Support};
+use crate::contact::crown_offset::Crown;
+use crate::contact::fall::Fall;
+use crate::contact::lean::Lean;
+use crate::gripper::retained_grip::GripMemory;
+use crate::maths::scalar::clamp;
+use crate::navigation::vertical_fallback::Rise;
 use crate::params::Params;
-use crate::rc::Sticks;
-use crate::remote::RemoteOrder;
-use crate::support::{Felt, Held, Support};
+use crate::pilot::rc::Sticks;
+use crate::pilot::remote::RemoteOrder;
 
 /// Time constant of learning gravity at rest, s, and bounds, m/s²: a part's bias of some 40 mg.
 const GRAVITY_TIME: f32 = 0.5;
@@ -127,7 +127,7 @@ impl Context {
             remote: Remote::default(),
             by_itself: ByItself::default(),
             note: (None, 0.0),
-            gravity: crate::math::GRAVITY,
+            gravity: crate::maths::scalar::GRAVITY,
         }
     }
 

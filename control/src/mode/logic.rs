@@ -1,15 +1,16 @@
 //! The state machine, stepped at 100 Hz.
 
-use super::bench::Table;
-use super::calibrating::Calibrating;
 use super::context::{Context, Step};
-use super::transitions::Transition;
-use super::{Inputs, Mode, Outputs, State, remote};
+use super::inputs::bench::Table;
+use super::inputs::remote;
+use super::states::calibrating::Calibrating;
+use super::table::transitions::Transition;
+use super::{Inputs, Mode, Outputs, State};
 use crate::arming::ArmingInhibits;
-use crate::grip_memory::GripMemory;
-use crate::math::clamp;
+use crate::gripper::retained_grip::GripMemory;
+use crate::maths::scalar::clamp;
 use crate::params::Params;
-use crate::remote::{RemoteOrder, RemoteRefusal, RemoteRequest};
+use crate::pilot::remote::{RemoteOrder, RemoteRefusal, RemoteRequest};
 
 /// Longest step accepted, s: a stall of the commander must not end a timer.
 const STEP_MAX: f32 = 0.05;
@@ -42,7 +43,7 @@ impl ModeLogic {
 
     #[cfg(test)]
     pub(super) fn forget_rise(&mut self) {
-        self.context.rise = super::rise::Rise::default();
+        self.context.rise = crate::navigation::vertical_fallback::Rise::default();
     }
 
     /// One step, `dt` s after the last.

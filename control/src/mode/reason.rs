@@ -1,7 +1,7 @@
 //! Reasons for being in a mode, staying in it or having left the last one, each with its text.
 
 use crate::arming::ArmingInhibit;
-use crate::grip_fault::GripFault;
+use crate::gripper::grip_fault::GripFault;
 
 /// Declares the reasons that carry nothing, with the text of each.
 macro_rules! reasons {

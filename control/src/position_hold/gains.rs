@@ -214,11 +214,11 @@ mod tests {
     #[test]
     fn what_the_arms_push_in_a_roll_matters_little() {
         let p = Params::DEFAULT;
-        let hover = p.mass * crate::math::GRAVITY / 4.0;
-        let arm = crate::deflection::ArmModel::from_params(&p);
-        let lean = |thrust: f32| f64::from(thrust * crate::math::sin(arm.angle(thrust)));
+        let hover = p.mass * crate::maths::scalar::GRAVITY / 4.0;
+        let arm = crate::allocation::arm_deflection::ArmModel::from_params(&p);
+        let lean = |thrust: f32| f64::from(thrust * crate::maths::scalar::sin(arm.angle(thrust)));
         let per_thrust = (lean(hover + 0.1) - lean(hover - 0.1)) / 0.2;
-        let g = f64::from(crate::math::GRAVITY);
+        let g = f64::from(crate::maths::scalar::GRAVITY);
         let arms = f64::from(p.inertia_roll) * per_thrust / (f64::from(p.arm_d * p.mass) * g);
         assert!((arms - 2.3e-3).abs() < 1e-4, "{arms}");
         for times in [1.0, 20.0] {

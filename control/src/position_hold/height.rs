@@ -1,7 +1,7 @@
 //! Height: error to climb rate to thrust, the disturbance fed forward.
 
 use super::CLIMB_MAX;
-use crate::math;
+use crate::maths::scalar;
 
 /// Height error to climb rate, 1/s; climb error to acceleration, 1/s, and to its trim, 1/s².
 const HEIGHT_GAIN: f32 = 1.5;
@@ -55,14 +55,14 @@ impl Default for Height {
 impl Height {
     /// Acceleration to give upwards beyond gravity, m/s², in a step of `dt` s.
     pub fn step(&mut self, s: &State, dt: f32) -> f32 {
-        let wished = math::clamp_abs(s.wished + HEIGHT_GAIN * s.error, CLIMB_MAX);
+        let wished = scalar::clamp_abs(s.wished + HEIGHT_GAIN * s.error, CLIMB_MAX);
         let short = s.velocity - wished;
         let rate = if s.landing { -SETTLE_RATE } else { LIFT_RATE };
-        self.settled = math::clamp(self.settled + rate * dt, 0.0, 1.0);
+        self.settled = scalar::clamp(self.settled + rate * dt, 0.0, 1.0);
         if !s.landing {
-            self.trim = math::clamp_abs(self.trim + TRIM_GAIN * short * dt, TRIM_MAX);
+            self.trim = scalar::clamp_abs(self.trim + TRIM_GAIN * short * dt, TRIM_MAX);
         }
-        CLIMB_GAIN * short + self.trim + math::clamp_abs(s.disturbance, DISTURBANCE_MAX) - s.gained
+        CLIMB_GAIN * short + self.trim + scalar::clamp_abs(s.disturbance, DISTURBANCE_MAX) - s.gained
     }
 
     /// Share of the thrust to give, 0..1.

@@ -1,7 +1,7 @@
 //! What lies between the setpoint and the tilt and no sensor shows: the setpoint's filter, and the motors.
 
-use crate::filter::LowPass;
-use crate::math;
+use crate::maths::filter::LowPass;
+use crate::maths::scalar;
 use crate::params::Params;
 
 /// Steps of the filter in one step of the law: it runs at 1 kHz.
@@ -50,7 +50,7 @@ impl Lag {
                 *second += (*first - *second) * gain;
             }
             let asked = self.rate_p * (self.attitude_p * (*second - a) - rate);
-            *turning = math::clamp_abs(*turning + (asked - *turning) * follow, TURNING_MAX);
+            *turning = scalar::clamp_abs(*turning + (asked - *turning) * follow, TURNING_MAX);
         }
     }
 }

@@ -46,7 +46,7 @@ impl World {
 
     fn felt(&self) -> Felt {
         let [[f, fr, _], [r, rr, _]] = self.tilt;
-        let q = Quat::from_euler(math::asin(r / GRAVITY), -math::asin(f / GRAVITY), self.yaw);
+        let q = Quat::from_euler(scalar::asin(r / GRAVITY), -scalar::asin(f / GRAVITY), self.yaw);
         Felt {
             q,
             rate: Vec3::new(rr / GRAVITY, -fr / GRAVITY, 0.0),

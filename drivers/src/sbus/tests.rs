@@ -5,7 +5,7 @@ extern crate std;
 use std::vec::Vec;
 
 use proptest::prelude::*;
-use sophie_control::rc::StickMode;
+use sophie_control::pilot::rc::StickMode;
 
 use super::*;
 

@@ -2,15 +2,15 @@
 
 use std::collections::{BTreeMap, VecDeque};
 
-use sophie_control::fsr::FsrScale;
-use sophie_control::grip::{ArmGrip, ArmState, GripState};
+use sophie_control::allocation::motor_map::at_rotors;
+use sophie_control::allocation::thrust_curve::ThrustCurve;
+use sophie_control::allocation::wrench::PerArm;
+use sophie_control::gripper::contact_pressure::FsrScale;
+use sophie_control::gripper::grip::{ArmGrip, ArmState, GripState};
+use sophie_control::gripper::tendon::Reel;
 use sophie_control::mode::Mode;
-use sophie_control::motor_map::at_rotors;
 use sophie_control::params::{FlowPort, Params, RcProtocol};
-use sophie_control::rc::Sticks;
-use sophie_control::tendon::Reel;
-use sophie_control::thrust_curve::ThrustCurve;
-use sophie_control::wrench::PerArm;
+use sophie_control::pilot::rc::Sticks;
 use sophie_drivers::sbus;
 use sophie_sim::crsf::Telemetry;
 use sophie_sim::flight::aircraft::{Aircraft, Belief, Reset, Said};

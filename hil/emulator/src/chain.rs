@@ -192,7 +192,11 @@ mod tests {
     fn functions() -> Functions {
         Functions {
             all: vec![
-                (0x100, 0x180, "sophie_control::rate::step".to_owned()),
+                (
+                    0x100,
+                    0x180,
+                    "sophie_control::attitude::rate_loop::step".to_owned(),
+                ),
                 (0x180, 0x200, "memcpy".to_owned()),
                 (0x400, 0x402, "EXTI2".to_owned()),
             ],
@@ -203,7 +207,7 @@ mod tests {
     fn an_address_belongs_to_the_function_before_it() {
         let functions = functions();
         let names = [0x100, 0x17E, 0x180, 0x1FE, 0x400].map(|at| functions.name(functions.at(at)));
-        assert_eq!(names[..2], ["sophie_control::rate::step"; 2]);
+        assert_eq!(names[..2], ["sophie_control::attitude::rate_loop::step"; 2]);
         assert_eq!(names[2..], ["memcpy", "memcpy", "EXTI2"]);
         assert_eq!(functions.begin_of("EXTI2"), Some(0x400));
         assert_eq!(functions.halfwords().count(), 0x40 + 0x40 + 1);

@@ -1,6 +1,6 @@
 //! Checks that the image can fly a scenario: some settings are built in.
 
-use sophie_control::wrench::Configuration;
+use sophie_control::allocation::wrench::Configuration;
 use sophie_sim::mixers::Variant;
 use sophie_sim::scenario::{Faults, PositionSensor, Scenario, Step, keys};
 use sophie_tasks::start::StartCause;

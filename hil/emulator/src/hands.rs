@@ -4,11 +4,11 @@
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use glam::{DQuat, DVec3};
+use sophie_control::allocation::motor_map::at_rotors;
+use sophie_control::allocation::wrench::PerArm;
 use sophie_control::calibration::Face;
-use sophie_control::motor_map::at_rotors;
 use sophie_control::params::MotorMap;
-use sophie_control::rc::Sticks;
-use sophie_control::wrench::PerArm;
+use sophie_control::pilot::rc::Sticks;
 use sophie_sim::crsf;
 use sophie_sim::plant::Plant;
 
@@ -178,7 +178,7 @@ impl InHands {
 
 #[cfg(test)]
 mod tests {
-    use sophie_control::vector::Vec3;
+    use sophie_control::maths::vector::Vec3;
 
     use super::*;
 

@@ -1,7 +1,7 @@
 //! Voltages and samples on the wires, with the simulated board's sensor errors.
 
-use sophie_control::vector::Vec3;
-use sophie_control::wrench::PerArm;
+use sophie_control::allocation::wrench::PerArm;
+use sophie_control::maths::vector::Vec3;
 use sophie_sim::plant::{Plant, STEP};
 use sophie_sim::scenario::Scenario;
 use sophie_sim::sensors::analog::{AMPS_PER_COUNT, BatteryInputs, VOLTS_PER_COUNT};

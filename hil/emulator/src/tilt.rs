@@ -1,8 +1,8 @@
 //! Measured arm tilt against the mixer's static model.
 
+use sophie_control::allocation::arm_tilt::TiltModel;
+use sophie_control::allocation::wrench::{PerArm, SIDE};
 use sophie_control::params::Params;
-use sophie_control::tilt::TiltModel;
-use sophie_control::wrench::{PerArm, SIDE};
 
 /// Difference of measurement and model over all arms.
 #[derive(Clone, Copy, Debug, Default)]

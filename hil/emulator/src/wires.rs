@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use sophie_control::wrench::PerArm;
+use sophie_control::allocation::wrench::PerArm;
 
 use crate::chain::Counted;
 use crate::esc::EscStats;

@@ -1,6 +1,6 @@
 //! An attitude that another computer wishes.
 
-use sophie_control::vector::Quat;
+use sophie_control::maths::vector::Quat;
 
 use super::{Refusal, rotation};
 use crate::dialect::SET_ATTITUDE_TARGET_DATA;

@@ -1,6 +1,6 @@
 //! Optical flow and range that another computer, or a module over MAVLink, measures below the vehicle.
 
-use sophie_control::ground::{Flow, Range};
+use sophie_control::navigation::flow_range_sample::{Flow, Range};
 
 use super::Refusal;
 use crate::dialect::{DISTANCE_SENSOR_DATA, OPTICAL_FLOW_RAD_DATA};

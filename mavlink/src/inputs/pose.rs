@@ -1,6 +1,6 @@
 //! Where the vehicle is, as others see it: cameras aboard or around it.
 
-use sophie_control::vector::{Quat, Vec3};
+use sophie_control::maths::vector::{Quat, Vec3};
 
 pub use super::clock::TimeSource;
 use super::{Refusal, bounded, rotation};

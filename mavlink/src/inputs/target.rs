@@ -1,6 +1,6 @@
 //! Where another computer sees the pipe.
 
-use sophie_control::target::PipeTarget;
+use sophie_control::approach::pipe_target::PipeTarget;
 
 use super::pose::{LOCAL_NED, POSITION_MAX};
 use super::{Refusal, bounded, rotation};

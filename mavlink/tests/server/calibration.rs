@@ -1,8 +1,8 @@
 //! Calibration by command: what is found is the console's, and what is put is stored.
 
 use sophie_control::calibration::Face;
+use sophie_control::maths::vector::Vec3;
 use sophie_control::mode::Mode;
-use sophie_control::vector::Vec3;
 use sophie_mavlink::Order;
 use sophie_mavlink::dialect::*;
 

@@ -1,9 +1,9 @@
 //! Poses and attitudes from outside: axes, bounds, times.
 
 use mavlink_core::MessageData;
-use sophie_control::ground::GroundView;
-use sophie_control::target::PipeTarget;
-use sophie_control::vector::{Quat, Vec3};
+use sophie_control::approach::pipe_target::PipeTarget;
+use sophie_control::maths::vector::{Quat, Vec3};
+use sophie_control::navigation::flow_range_sample::GroundView;
 use sophie_mavlink::dialect::*;
 use sophie_mavlink::inputs::Counts;
 use sophie_mavlink::inputs::attitude::OffboardAttitude;

@@ -2,15 +2,15 @@
 
 use std::f32::consts::{FRAC_1_SQRT_2, FRAC_PI_2, FRAC_PI_6};
 
+use sophie_control::allocation::motor_pulses::MotorPulses;
 use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
 use sophie_control::battery::{Battery, ServoBattery, ServoSupply};
-use sophie_control::grip::{ArmGrip, ArmState, GripState};
-use sophie_control::math::deg;
+use sophie_control::gripper::grip::{ArmGrip, ArmState, GripState};
+use sophie_control::maths::scalar::deg;
+use sophie_control::maths::vector::{Quat, Vec3};
 use sophie_control::mode::{Mode, Reason};
-use sophie_control::motor_pulses::MotorPulses;
 use sophie_control::params::{MotorProtocol, Params};
-use sophie_control::rc::{ArmChoice, StickMode, Sticks};
-use sophie_control::vector::{Quat, Vec3};
+use sophie_control::pilot::rc::{ArmChoice, StickMode, Sticks};
 use sophie_mavlink::Vehicle;
 use sophie_mavlink::messages::*;
 

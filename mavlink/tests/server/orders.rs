@@ -1,12 +1,12 @@
 //! Orders to the commander, with the mode logic itself behind the server.
 
-use sophie_control::bench::{BenchRequest, BenchView, PULSE_MAX_US, SPIN_TIME};
-use sophie_control::grip::GripState;
+use sophie_control::chain::setpoint::Setpoint;
+use sophie_control::gripper::grip::GripState;
 use sophie_control::mode::{Inputs, Mode, ModeLogic, Motion, Outputs};
 use sophie_control::params::Params;
-use sophie_control::rc::Sticks;
-use sophie_control::remote::RemoteRequest;
-use sophie_control::setpoint::Setpoint;
+use sophie_control::pilot::bench_orders::{BenchRequest, BenchView, PULSE_MAX_US, SPIN_TIME};
+use sophie_control::pilot::rc::Sticks;
+use sophie_control::pilot::remote::RemoteRequest;
 use sophie_mavlink::dialect::*;
 use sophie_mavlink::{Answers, Condition, Requests};
 
@@ -38,7 +38,7 @@ impl Craft {
         let inputs = Inputs {
             sticks: Some(Sticks::default()),
             motion: Some(Motion {
-                accel: sophie_control::vector::Vec3::new(0.0, 0.0, -9.80665),
+                accel: sophie_control::maths::vector::Vec3::new(0.0, 0.0, -9.80665),
                 calibrated: true,
                 ..Motion::default()
             }),
@@ -309,12 +309,15 @@ fn a_servo_takes_a_pulse_and_gives_it_back() {
     let mut craft = Craft::new();
     craft.accepted(SERVO, &[6.0, 1500.0]);
     assert!(
-        matches!(craft.out.tendons, sophie_control::setpoint::ClampCommand::Place(p) if p.servo == 1),
+        matches!(craft.out.tendons, sophie_control::chain::setpoint::ClampCommand::Place(p) if p.servo == 1),
         "{:?}",
         craft.out.tendons
     );
     craft.accepted(SERVO, &[6.0, 0.0]);
-    assert_eq!(craft.out.tendons, sophie_control::setpoint::ClampCommand::Release);
+    assert_eq!(
+        craft.out.tendons,
+        sophie_control::chain::setpoint::ClampCommand::Release
+    );
     craft.refused(SERVO, &[5.0, PULSE_MAX_US + 1.0], DENIED, "refused: out of range");
     for output in [1.0, 4.0, 9.0, f32::NAN] {
         craft.refused(

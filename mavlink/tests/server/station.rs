@@ -2,9 +2,9 @@
 
 use mavlink_core::{MAVLinkV2MessageRaw, MavHeader, MavlinkVersion, MessageData};
 use sophie_control::chain::Attitude;
+use sophie_control::maths::vector::{Quat, Vec3};
 use sophie_control::mode::Mode;
 use sophie_control::params::Params;
-use sophie_control::vector::{Quat, Vec3};
 use sophie_mavlink::dialect::{COMMAND_ACK_DATA, COMMAND_LONG_DATA, MavCmd, STATUSTEXT_DATA};
 use sophie_mavlink::inputs::Inputs;
 use sophie_mavlink::signing::Stored;
@@ -28,7 +28,7 @@ pub fn vehicle(mode: Mode) -> Vehicle {
             calibrated: true,
             ..Attitude::default()
         }),
-        sticks: Some(sophie_control::rc::Sticks::default()),
+        sticks: Some(sophie_control::pilot::rc::Sticks::default()),
         battery: Some(sophie_control::battery::Battery {
             voltage: 15.2,
             ..Default::default()

@@ -2,8 +2,8 @@
 
 use crate::study::allocation::Studied;
 use crate::study::rig::{Flown, fly};
+use sophie_control::allocation::wrench::Configuration;
 use sophie_control::params::Params;
-use sophie_control::wrench::Configuration;
 use sophie_sim::mixers::Variant;
 use sophie_sim::parallel;
 

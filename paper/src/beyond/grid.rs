@@ -2,7 +2,7 @@
 
 use crate::study::allocation::Studied;
 use crate::study::rig::{Flown, fly};
-use sophie_control::wrench::Configuration;
+use sophie_control::allocation::wrench::Configuration;
 use sophie_sim::mixers::Variant;
 use sophie_sim::parallel;
 

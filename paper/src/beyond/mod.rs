@@ -7,8 +7,8 @@ mod soft;
 
 use crate::study::rig::Wish;
 use glam::DVec3;
+use sophie_control::allocation::wrench::Configuration;
 use sophie_control::params::Params;
-use sophie_control::wrench::Configuration;
 use sophie_sim::scenario::Scenario;
 
 use super::model::Section;

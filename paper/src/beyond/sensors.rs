@@ -1,7 +1,7 @@
 //! Effect of the arms' own sensors.
 
 use crate::study::rig::fly;
-use sophie_control::wrench::Configuration;
+use sophie_control::allocation::wrench::Configuration;
 use sophie_sim::mixers::Variant;
 use sophie_sim::parallel;
 

@@ -1,9 +1,9 @@
 //! How soft the airframe can be.
 
 use crate::study::rig::{Flown, fly};
+use sophie_control::allocation::wrench::Configuration;
+use sophie_control::gripper::tendon::REFERENCE_TILT;
 use sophie_control::params::Params;
-use sophie_control::tendon::REFERENCE_TILT;
-use sophie_control::wrench::Configuration;
 use sophie_sim::mixers::Variant;
 use sophie_sim::parallel;
 

@@ -1,6 +1,6 @@
 //! Closings of one arm on the bench, over infill and diameter.
 
-use sophie_control::grip::ArmState;
+use sophie_control::gripper::grip::ArmState;
 use sophie_control::params::Params;
 use sophie_report::units::kgcm;
 use sophie_sim::arm_bench::{Closed, Closing, close};

@@ -1,11 +1,10 @@
 //! Two and four arms, in whole missions.
 
-use sophie_control::rc::ArmChoice;
+use sophie_control::pilot::rc::ArmChoice;
 use sophie_report::units::kgcm;
-use sophie_sim::flight;
-use sophie_sim::parallel;
 use sophie_sim::record::{Grip, Silent};
 use sophie_sim::scenario::Scenario;
+use sophie_sim::{flight, parallel};
 
 use super::super::model::{Section, Table, num};
 

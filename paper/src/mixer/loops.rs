@@ -2,11 +2,11 @@
 
 use std::f64::consts::TAU;
 
-use sophie_control::deflection::ArmModel;
-use sophie_control::effectiveness::{Effectiveness, Geometry, Inverse, Load};
-use sophie_control::mixer::{Allocation, Conditions};
+use sophie_control::allocation::arm_deflection::ArmModel;
+use sophie_control::allocation::effectiveness::{Effectiveness, Geometry, Inverse, Load};
+use sophie_control::allocation::mixer::{Allocation, Conditions};
+use sophie_control::allocation::wrench::{Configuration, Wrench, YAW};
 use sophie_control::params::Params;
-use sophie_control::wrench::{Configuration, Wrench, YAW};
 use sophie_sim::mixers::{Mixer, Variant};
 use sophie_sim::parallel;
 use sophie_sim::plant::GRAVITY;

@@ -1,7 +1,7 @@
 //! The printed mixer matrix, its corrections and their ranks.
 
+use sophie_control::allocation::wrench::{FORE, SIDE, YAW};
 use sophie_control::params::Params;
-use sophie_control::wrench::{FORE, SIDE, YAW};
 
 use super::super::model::{Class, Comparison, Section, Table, num};
 use super::super::printed::Printed;

@@ -1,11 +1,11 @@
 //! Allocations for study that no scenario selects.
 
-use sophie_control::deflection::{Algorithm1, ArmModel};
-use sophie_control::desaturation::Patterns;
-use sophie_control::effectiveness::{Effectiveness, Geometry, Inverse, Load};
-use sophie_control::mixer::{Split, moment_patterns};
+use sophie_control::allocation::arm_deflection::{Algorithm1, ArmModel};
+use sophie_control::allocation::desaturation::Patterns;
+use sophie_control::allocation::effectiveness::{Effectiveness, Geometry, Inverse, Load};
+use sophie_control::allocation::mixer::{Split, moment_patterns};
+use sophie_control::allocation::wrench::{Configuration, PerArm, Wrench, YAW};
 use sophie_control::params::Params;
-use sophie_control::wrench::{Configuration, PerArm, Wrench, YAW};
 use sophie_sim::mixers::{Law, Situation, WithLimits};
 
 /// An allocation for study.

@@ -1,7 +1,7 @@
 //! The plant's moments after a small change of thrust with settled arms, from its parts alone.
 
 use glam::{DQuat, DVec3};
-use sophie_control::wrench::PerArm;
+use sophie_control::allocation::wrench::PerArm;
 
 use sophie_sim::plant::arm::{Arm, ArmSpec};
 use sophie_sim::plant::body::{Body, BodySpec, Load};

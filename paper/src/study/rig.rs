@@ -1,7 +1,7 @@
 //! Experiments on the flight level alone: take-off, `wish`, the truth every millisecond.
 
 use glam::DVec3;
-use sophie_control::wrench::PerArm;
+use sophie_control::allocation::wrench::PerArm;
 use sophie_sim::aim;
 use sophie_sim::flight_level::{HeightHold, Rig};
 use sophie_sim::mixers::Mixer;

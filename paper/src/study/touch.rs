@@ -7,7 +7,7 @@ use std::collections::VecDeque;
 
 use glam::{DQuat, DVec3};
 use sophie_control::mode::{Mode, Reason};
-use sophie_control::rc::Sticks;
+use sophie_control::pilot::rc::Sticks;
 
 use sophie_sim::crsf::{FRAME_HZ, rc_frame};
 use sophie_sim::flight::aircraft::Aircraft;

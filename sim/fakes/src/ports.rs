@@ -7,11 +7,11 @@ use std::rc::Rc;
 use embassy_sync::signal::Signal;
 use embassy_time::{Duration, Instant, Timer};
 use heapless::Vec as Few;
-use sophie_control::air_pressure::AirPressure;
-use sophie_control::math::GRAVITY;
+use sophie_control::allocation::wrench::PerArm;
+use sophie_control::maths::scalar::GRAVITY;
+use sophie_control::maths::vector::Vec3;
+use sophie_control::navigation::air_pressure::AirPressure;
 use sophie_control::params::{Params, ServoMarks};
-use sophie_control::vector::Vec3;
-use sophie_control::wrench::PerArm;
 use sophie_tasks::links::{Links, Raw};
 use sophie_tasks::ports::{
     Analog, AnalogFrame, ArmImus, Barometer, IMU_BATCH, Imu, ImuReading, Motors, PortError, Retain,

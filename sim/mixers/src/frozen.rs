@@ -1,12 +1,12 @@
 //! The whole effectiveness inverted at the arms' present tilt.
 
-use sophie_control::desaturation::Patterns;
-use sophie_control::effectiveness::{Effectiveness, Geometry, Inverse, Load};
-use sophie_control::filter::LowPass;
-use sophie_control::mixer::{Split, moment_patterns, stiff};
-use sophie_control::motor_pulses::least_thrust;
+use sophie_control::allocation::desaturation::Patterns;
+use sophie_control::allocation::effectiveness::{Effectiveness, Geometry, Inverse, Load};
+use sophie_control::allocation::mixer::{Split, moment_patterns, stiff};
+use sophie_control::allocation::motor_pulses::least_thrust;
+use sophie_control::allocation::wrench::{Configuration, PerArm, Wrench};
+use sophie_control::maths::filter::LowPass;
 use sophie_control::params::Params;
-use sophie_control::wrench::{Configuration, PerArm, Wrench};
 
 use crate::law::{Law, Situation};
 

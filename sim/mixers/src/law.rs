@@ -1,9 +1,9 @@
 //! Interface of an allocation law, and the limits around it.
 
-use sophie_control::mixer::{Allocation, Conditions, Limits, Mix, Split};
+use sophie_control::allocation::arm_tilt::TiltModel;
+use sophie_control::allocation::mixer::{Allocation, Conditions, Limits, Mix, Split};
+use sophie_control::allocation::wrench::{PerArm, Wrench};
 use sophie_control::params::Params;
-use sophie_control::tilt::TiltModel;
-use sophie_control::wrench::{PerArm, Wrench};
 
 /// Inputs of a law.
 #[derive(Clone, Copy, Debug)]

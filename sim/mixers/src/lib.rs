@@ -13,10 +13,10 @@ pub use law::{Law, Situation, WithLimits};
 pub use printed::Printed;
 pub use rigid::Rigid;
 
-use sophie_control::mixer::{Allocation, Conditions, Flexible, Mix};
+use sophie_control::allocation::arm_tilt::TiltModel;
+use sophie_control::allocation::mixer::{Allocation, Conditions, Flexible, Mix};
+use sophie_control::allocation::wrench::{Configuration, PerArm, Wrench};
 use sophie_control::params::Params;
-use sophie_control::tilt::TiltModel;
-use sophie_control::wrench::{Configuration, PerArm, Wrench};
 
 /// The allocation in use.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

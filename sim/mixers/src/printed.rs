@@ -1,11 +1,11 @@
 //! Algorithm 1 with the printed matrix, its singular yaw row corrected.
 
-use sophie_control::deflection::{Algorithm1, ArmModel};
-use sophie_control::effectiveness::Geometry;
-use sophie_control::mixer::{Split, stiff};
-use sophie_control::motor_pulses::least_thrust;
+use sophie_control::allocation::arm_deflection::{Algorithm1, ArmModel};
+use sophie_control::allocation::effectiveness::Geometry;
+use sophie_control::allocation::mixer::{Split, stiff};
+use sophie_control::allocation::motor_pulses::least_thrust;
+use sophie_control::allocation::wrench::{Configuration, PerArm, Wrench};
 use sophie_control::params::Params;
-use sophie_control::wrench::{Configuration, PerArm, Wrench};
 
 use crate::law::{Law, Situation};
 

@@ -1,9 +1,9 @@
 //! The allocation of a rigid frame.
 
-use sophie_control::effectiveness::Geometry;
-use sophie_control::mixer::{Split, stiff};
+use sophie_control::allocation::effectiveness::Geometry;
+use sophie_control::allocation::mixer::{Split, stiff};
+use sophie_control::allocation::wrench::{Configuration, Wrench};
 use sophie_control::params::Params;
-use sophie_control::wrench::{Configuration, Wrench};
 
 use crate::law::{Law, Situation};
 

@@ -3,10 +3,10 @@
 extern crate std;
 
 use proptest::prelude::*;
-use sophie_control::deflection::ArmModel;
-use sophie_control::desaturation::Given;
-use sophie_control::effectiveness::Geometry;
-use sophie_control::wrench::YAW;
+use sophie_control::allocation::arm_deflection::ArmModel;
+use sophie_control::allocation::desaturation::Given;
+use sophie_control::allocation::effectiveness::Geometry;
+use sophie_control::allocation::wrench::YAW;
 
 use super::*;
 

@@ -1,7 +1,7 @@
 //! Check rows of the grip: the gripper that flies closes each arm on the pipe.
 
-use sophie_control::grip::ArmState;
 use sophie_control::gripper::Config;
+use sophie_control::gripper::grip::ArmState;
 
 use super::row::{Limit, Row};
 use crate::arm_bench::{BenchArm, Tried, try_grip};

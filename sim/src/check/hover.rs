@@ -1,7 +1,7 @@
 //! The vehicle in hover and at full thrust.
 
-use sophie_control::effectiveness::{Effectiveness, Geometry};
-use sophie_control::wrench::PerArm;
+use sophie_control::allocation::effectiveness::{Effectiveness, Geometry};
+use sophie_control::allocation::wrench::PerArm;
 
 use crate::plant::arm::ArmSpec;
 use crate::plant::beam::BeamSpec;
@@ -118,7 +118,7 @@ impl Built {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sophie_control::wrench::Configuration;
+    use sophie_control::allocation::wrench::Configuration;
 
     #[test]
     fn stiff_arms_have_the_stiff_frame_s_lift_and_yaw() {

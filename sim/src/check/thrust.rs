@@ -1,7 +1,8 @@
 //! Check rows of rotor thrust.
 
-use sophie_control::mode::{ESCAPE_LEAN, ESCAPE_LIFT, release_thrust};
-use sophie_control::support::RESTING_FORCE;
+use sophie_control::contact::contact_force::RESTING_FORCE;
+use sophie_control::mode::{ESCAPE_LEAN, ESCAPE_LIFT};
+use sophie_control::pilot::release_throttle::release_thrust;
 
 use super::hover::Built;
 use super::row::{Limit, Row};

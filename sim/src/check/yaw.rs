@@ -1,8 +1,8 @@
 //! Check rows of yaw, which bending arms change.
 
-use sophie_control::mixer::{Allocation, Conditions, YAW_FLOOR};
-use sophie_control::motor_pulses::least_thrust;
-use sophie_control::wrench::{PerArm, Wrench, YAW};
+use sophie_control::allocation::mixer::{Allocation, Conditions, YAW_FLOOR};
+use sophie_control::allocation::motor_pulses::least_thrust;
+use sophie_control::allocation::wrench::{PerArm, Wrench, YAW};
 use sophie_mixers::Mixer;
 
 use super::hover::Built;
@@ -133,7 +133,7 @@ fn authority(scenario: &Scenario, built: &Built) -> Row {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sophie_control::wrench::Configuration;
+    use sophie_control::allocation::wrench::Configuration;
     use sophie_mixers::Variant;
 
     fn given_by(variant: Variant, configuration: Configuration, gain_k: f64) -> f64 {

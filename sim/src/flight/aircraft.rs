@@ -1,7 +1,7 @@
 //! Interface of a flight to what is flown: the tasks in virtual time, or a board with the flashed image.
 
+use sophie_control::allocation::wrench::PerArm;
 use sophie_control::mode::Mode;
-use sophie_control::wrench::PerArm;
 use sophie_tasks::links::GripState;
 use sophie_tasks::start::StartCause;
 

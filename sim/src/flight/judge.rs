@@ -1,9 +1,9 @@
 //! Judges a flight by the plant's true state.
 
 use glam::DVec3;
+use sophie_control::allocation::wrench::PerArm;
+use sophie_control::gripper::tendon::ForceLimit;
 use sophie_control::mode::Mode;
-use sophie_control::tendon::ForceLimit;
-use sophie_control::wrench::PerArm;
 
 use super::Snapshot;
 use super::aircraft::Aircraft;

@@ -1,8 +1,8 @@
 //! Records samples, phases, events and grips, with a digest of them.
 
 use glam::DVec3;
+use sophie_control::allocation::wrench::PerArm;
 use sophie_control::mode::Mode;
-use sophie_control::wrench::PerArm;
 
 use super::Snapshot;
 use super::aircraft::{Aircraft, Said};

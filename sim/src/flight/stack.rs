@@ -3,12 +3,12 @@
 use glam::DVec3;
 use rand::Rng;
 use rand_pcg::Pcg64Mcg;
-use sophie_control::ground::Flow;
-use sophie_control::math;
+use sophie_control::allocation::wrench::{Configuration, PerArm};
+use sophie_control::maths::scalar;
+use sophie_control::maths::vector::Vec3;
 use sophie_control::mode::Reason;
+use sophie_control::navigation::flow_range_sample::Flow;
 use sophie_control::params::{FlowPort, Params};
-use sophie_control::vector::Vec3;
-use sophie_control::wrench::{Configuration, PerArm};
 use sophie_drivers::rc_decoder::Decoder;
 use sophie_mixers::{Mixer, Variant};
 use sophie_tasks::deadline::TaskId;
@@ -250,7 +250,7 @@ impl Aircraft for Stack {
         // The wanted heading arrives relative to the present one.
         let target = links.target.latest().map(|v| {
             let [roll, pitch, ahead] = aim::angles(v.value);
-            let heading = math::wrap_pi(estimate.2 + ahead as f32);
+            let heading = scalar::wrap_pi(estimate.2 + ahead as f32);
             [roll, pitch, f64::from(heading)]
         });
         // Held pressures do not count as measured; held forces are what the servos still hold.

@@ -1,8 +1,8 @@
 //! By how much a flight failed: what the samples say of the quantity that ended it, behind the reason.
 
 use core::f64::consts::PI;
+use sophie_control::gripper::tendon::ForceLimit;
 use sophie_control::mode::{Mode, Reason};
-use sophie_control::tendon::ForceLimit;
 
 use crate::check::{Check, needed};
 use crate::plant::GRAVITY;

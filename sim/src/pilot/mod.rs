@@ -26,7 +26,7 @@ use std::collections::VecDeque;
 
 use glam::DVec3;
 use sophie_control::mode::Mode;
-use sophie_control::rc::CHANNELS;
+use sophie_control::pilot::rc::CHANNELS;
 
 pub use self::guidance::{CLIMB_MAX, DESCENT_MAX};
 use self::mission::{Mission, Progress, View};

@@ -2,7 +2,7 @@
 
 use core::f64::consts::PI;
 
-use sophie_control::rc::{ArmChoice, StickMode, Sticks};
+use sophie_control::pilot::rc::{ArmChoice, StickMode, Sticks};
 
 /// Wanted stick positions.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

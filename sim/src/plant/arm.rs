@@ -5,7 +5,7 @@
 //! is 5 Hz in hover at ρ 6.9 %, K 7.75.
 
 use glam::DVec3;
-use sophie_control::wrench::{FORE, SIDE};
+use sophie_control::allocation::wrench::{FORE, SIDE};
 
 use super::GRAVITY;
 use super::body::{ArmPoint, Load};
@@ -296,8 +296,8 @@ mod tests {
 
     #[test]
     fn the_flight_stack_and_the_plant_agree_on_the_nominal_arm() {
-        let model = sophie_control::deflection::ArmModel::new(6.9, 7.75, 4.15);
-        let stronger = sophie_control::deflection::ArmModel::new(6.9, 7.75, 5.0);
+        let model = sophie_control::allocation::arm_deflection::ArmModel::new(6.9, 7.75, 4.15);
+        let stronger = sophie_control::allocation::arm_deflection::ArmModel::new(6.9, 7.75, 5.0);
         for i in 0..70 {
             let t = 0.1 * f64::from(i);
             for (spec, model) in [(spec(), model), (spec().level_at(5.0), stronger)] {

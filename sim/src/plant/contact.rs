@@ -6,7 +6,7 @@
 //! ms.
 
 use glam::{DQuat, DVec2, DVec3};
-use sophie_control::wrench::{FORE, SIDE};
+use sophie_control::allocation::wrench::{FORE, SIDE};
 
 /// Belly pads below the centre of mass, m, body z (assumed).
 pub const BELLY_Z: f64 = 0.04;

@@ -20,7 +20,7 @@ pub mod servo_power;
 pub mod tendon;
 
 use glam::{DQuat, DVec3};
-use sophie_control::wrench::PerArm;
+use sophie_control::allocation::wrench::PerArm;
 
 use self::arm::{ArmPrint, ArmSpec, TIP};
 use self::battery::Battery;

@@ -1,7 +1,7 @@
 //! How near a propeller comes to the pipe.
 
 use glam::DVec3;
-use sophie_control::wrench::PerArm;
+use sophie_control::allocation::wrench::PerArm;
 
 use super::contact::{ARM_LENGTH, ArmSkin, Pipe, Pose};
 

@@ -1,6 +1,6 @@
 //! Motor, speed controller and propeller.
 
-use sophie_control::wrench::YAW;
+use sophie_control::allocation::wrench::YAW;
 
 use glam::DVec3;
 

@@ -5,8 +5,8 @@
 
 use std::f64::consts::PI;
 
+use sophie_control::gripper::tendon::{REFERENCE_TILT, Reel};
 use sophie_control::params::Params;
-use sophie_control::tendon::{REFERENCE_TILT, Reel};
 
 use super::beam::TENDON_LEVER;
 use crate::scenario::{ArmBending, ServoProfile};

@@ -2,9 +2,9 @@
 
 use std::sync::OnceLock;
 
+use sophie_control::allocation::wrench::Configuration;
 use sophie_control::params::Params;
-use sophie_control::rc::ArmChoice;
-use sophie_control::wrench::Configuration;
+use sophie_control::pilot::rc::ArmChoice;
 use sophie_mixers::Variant;
 
 use super::{

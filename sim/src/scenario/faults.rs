@@ -1,6 +1,6 @@
 //! Parts of the vehicle that fail or are off, unknown to its stack and its pilot.
 
-use sophie_control::wrench::PerArm;
+use sophie_control::allocation::wrench::PerArm;
 
 use crate::plant::tendon::TendonBreak;
 use crate::sensors::arm_imu::TiltBreak;

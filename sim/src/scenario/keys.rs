@@ -2,12 +2,11 @@
 
 use core::f64::consts::PI;
 
-use sophie_control::rc::ArmChoice;
-use sophie_control::wrench::{Configuration, PerArm};
+use sophie_control::allocation::wrench::{Configuration, PerArm};
+use sophie_control::pilot::rc::ArmChoice;
 use sophie_mixers::Variant;
 
-use super::faults;
-use super::{Assist, BarometerFault, FlowFault, PoseFault, PositionSensor, Scenario, ServoProfile};
+use super::{Assist, BarometerFault, FlowFault, PoseFault, PositionSensor, Scenario, ServoProfile, faults};
 use crate::sbus;
 
 /// One key.

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use sophie_control::rc::ArmChoice;
-use sophie_control::wrench::Configuration;
+use sophie_control::allocation::wrench::Configuration;
+use sophie_control::pilot::rc::ArmChoice;
 use sophie_mixers::Variant;
 
 use super::error::{Place, ScenarioError, one_line};

@@ -24,9 +24,9 @@ pub use load::Overrides;
 pub use steps::{STEPS, StepKind, StepNumber};
 
 use glam::DVec3;
+use sophie_control::allocation::wrench::{Configuration, PerArm};
 use sophie_control::params::Params;
-use sophie_control::rc::ArmChoice;
-use sophie_control::wrench::{Configuration, PerArm};
+use sophie_control::pilot::rc::ArmChoice;
 use sophie_tasks::start::StartCause;
 
 use crate::plant::body::BodySpec;

@@ -5,8 +5,8 @@ use std::collections::VecDeque;
 use glam::{DQuat, DVec3};
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
-use sophie_control::vector::Vec3;
-use sophie_control::wrench::SIDE;
+use sophie_control::allocation::wrench::SIDE;
+use sophie_control::maths::vector::Vec3;
 
 use crate::scenario::Faults;
 use crate::streams::Streams;

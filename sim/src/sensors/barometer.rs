@@ -10,8 +10,8 @@ use std::collections::VecDeque;
 
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
-use sophie_control::air_pressure::AirPressure;
-use sophie_control::math::GRAVITY;
+use sophie_control::maths::scalar::GRAVITY;
+use sophie_control::navigation::air_pressure::AirPressure;
 
 use crate::scenario::{BarometerFault, Scenario};
 use crate::streams::Streams;

@@ -299,10 +299,10 @@ fn gap(rng: &mut Pcg64Mcg, ms: u64) -> (u64, u64) {
 #[cfg(test)]
 mod tests {
     use embassy_time::Instant;
-    use sophie_control::ground::GroundView;
+    use sophie_control::calibration::flow::{FlowFit, FlowTurns, Round, flow_fit};
+    use sophie_control::maths::vector::Quat;
+    use sophie_control::navigation::flow_range_sample::GroundView;
     use sophie_control::params::{FlowMounting, Params};
-    use sophie_control::position::{FlowFit, FlowTurns, Round, flow_fit};
-    use sophie_control::vector::Quat;
     use sophie_drivers::ground_module::GroundModule;
     use sophie_drivers::msp::Parser;
     use sophie_tasks::ports::GroundDecoder;

@@ -5,9 +5,9 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
-use sophie_control::mounting::Mounting;
+use sophie_control::attitude::mounting::Mounting;
+use sophie_control::maths::vector::Vec3;
 use sophie_control::params::Params;
-use sophie_control::vector::Vec3;
 use sophie_tasks::ports::ImuReading;
 
 use crate::streams::Streams;

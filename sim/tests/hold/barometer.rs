@@ -1,7 +1,7 @@
 //! The height of last resort: range or poses end, and the pressure of the air goes on.
 
 use sophie_control::mode::{Mode, Reason};
-use sophie_control::position::PressureFault;
+use sophie_control::navigation::baro_height::PressureFault;
 use sophie_sim::flight::fly;
 use sophie_sim::record::{FlightRecord, Sample, Silent};
 use sophie_sim::scenario::{BarometerFault, PositionSensor, Scenario, Step};

@@ -1,7 +1,7 @@
 //! Perching by itself, and leaving again.
 
-use sophie_control::position::PoseFault as Called;
-use sophie_control::rc::ArmChoice;
+use sophie_control::navigation::external_pose::PoseFault as Called;
+use sophie_control::pilot::rc::ArmChoice;
 use sophie_sim::scenario::PoseFault;
 
 use super::*;

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use sophie_control::mode::Reason;
-use sophie_control::position::SightFault;
+use sophie_control::navigation::flow_range::SightFault;
 use sophie_sim::flight::fly;
 use sophie_sim::record::{FlightRecord, Sample, Silent};
 use sophie_sim::scenario::{FlowFault, PositionSensor, Scenario, Step};

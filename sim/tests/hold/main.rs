@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 use sophie_control::mode::{Mode, Reason};
-use sophie_control::position::PoseFault;
+use sophie_control::navigation::external_pose::PoseFault;
 use sophie_sim::flight::fly;
 use sophie_sim::record::{FlightRecord, Sample, Silent};
 use sophie_sim::scenario::{Assist, PositionSensor, Scenario, Step};

@@ -5,7 +5,8 @@ mod draw;
 use draw::Draw;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-use sophie_control::position::{PoseFault as Called, SightFault};
+use sophie_control::navigation::external_pose::PoseFault as Called;
+use sophie_control::navigation::flow_range::SightFault;
 use sophie_sim::scenario::{FlowFault, PoseFault};
 
 use super::by_itself::mission;

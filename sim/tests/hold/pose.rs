@@ -1,7 +1,7 @@
 //! Sources of poses that fail, in the middle of a hold.
 
 use sophie_control::mode::{Mode, Reason};
-use sophie_control::position::PoseFault as Called;
+use sophie_control::navigation::external_pose::PoseFault as Called;
 use sophie_sim::flight::fly;
 use sophie_sim::record::{FlightRecord, Sample, Silent};
 use sophie_sim::scenario::{PoseFault, PositionSensor, Scenario, Step};

@@ -3,11 +3,11 @@
 #![allow(dead_code, reason = "each test file uses what it needs")]
 
 use embassy_time::Instant;
-use sophie_control::mixer::Flexible;
+use sophie_control::allocation::mixer::Flexible;
+use sophie_control::allocation::wrench::Configuration;
 use sophie_control::mode::{Mode, Reason};
 use sophie_control::params::Params;
-use sophie_control::rc::Sticks;
-use sophie_control::wrench::Configuration;
+use sophie_control::pilot::rc::Sticks;
 use sophie_sim::clock::VirtualTime;
 use sophie_tasks::links::{Links, RcState};
 use sophie_tasks::ports::AnalogFrame;

@@ -3,11 +3,10 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use sophie_control::rc::ArmChoice;
-use sophie_control::wrench::Configuration;
+use sophie_control::allocation::wrench::Configuration;
+use sophie_control::pilot::rc::ArmChoice;
 use sophie_sim::mixers::Variant;
-use sophie_sim::scenario::keys;
-use sophie_sim::scenario::{Assist, Overrides, PositionSensor, Scenario};
+use sophie_sim::scenario::{Assist, Overrides, PositionSensor, Scenario, keys};
 
 use super::values::{number, seed, word};
 

@@ -1,5 +1,5 @@
-use sophie_control::rc::ArmChoice;
-use sophie_control::wrench::Configuration;
+use sophie_control::allocation::wrench::Configuration;
+use sophie_control::pilot::rc::ArmChoice;
 use sophie_sim::mixers::Variant;
 
 use super::*;

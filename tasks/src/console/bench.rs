@@ -6,18 +6,18 @@
 use core::fmt;
 
 use embassy_time::{Duration, Instant};
-use sophie_control::bench::{
+use sophie_control::allocation::motor_pulses::least_command;
+use sophie_control::gripper::tendon::Reel;
+use sophie_control::maths::scalar::{deg, to_deg};
+use sophie_control::pilot::bench_orders::{
     BenchOrder, BenchRefusal, BenchRequest, BenchState, PULSE_MAX_US, PULSE_MIN_US, Place, SPIN_DRIVE,
     SPIN_DRIVE_MAX, SPIN_DRIVE_MIN, SPIN_TIME, Spin,
 };
-use sophie_control::math::{deg, to_deg};
-use sophie_control::motor_pulses::least_command;
-use sophie_control::tendon::Reel;
 
 use super::Console;
 use crate::deadline::{FixedRate, TaskId};
 use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
-use sophie_control::decimal::{self, Decimal};
+use sophie_control::maths::decimal::{self, Decimal};
 
 /// Time that the commander has to answer: fifty of its periods.
 const COMMANDER: Duration = Duration::from_millis(500);

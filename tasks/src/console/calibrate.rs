@@ -5,22 +5,22 @@
 use core::fmt;
 
 use embassy_time::{Duration, Timer};
-use sophie_control::bench::{BenchOrder, Place, SPIN_DRIVE, SPIN_DRIVE_MAX, Spin};
+use sophie_control::allocation::motor_pulses::{MotorPulses, by_pulses};
+use sophie_control::attitude::mounting::{Direction, Mounting};
+use sophie_control::calibration::flow::{FlowFit, FlowTurns, Round, flow_fit};
 use sophie_control::calibration::{self, AccelFit, BIAS, Face, FsrFit, SCALES, Samples, Unfit, thousandths};
-use sophie_control::math::{clamp, to_deg};
-use sophie_control::motor_pulses::{MotorPulses, by_pulses};
-use sophie_control::mounting::{Direction, Mounting};
+use sophie_control::gripper::tendon::{Reel, SPAN_MIN_US};
+use sophie_control::maths::scalar::{clamp, to_deg};
+use sophie_control::maths::vector::Vec3;
 use sophie_control::params::Params;
-use sophie_control::position::{FlowFit, FlowTurns, Round, flow_fit};
-use sophie_control::tendon::{Reel, SPAN_MIN_US};
-use sophie_control::vector::Vec3;
+use sophie_control::pilot::bench_orders::{BenchOrder, Place, SPIN_DRIVE, SPIN_DRIVE_MAX, Spin};
 
 use super::Console;
 use super::bench::End;
 use crate::arms::fits;
 use crate::links::Links;
 use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
-use sophie_control::decimal::{self, Decimal};
+use sophie_control::maths::decimal::{self, Decimal};
 
 /// Samples of one rest, and the time between two: 2 s, in which a breath of wind is over.
 const SAMPLES: u16 = 200;

@@ -6,7 +6,7 @@ use super::Console;
 use super::nearest::nearest;
 use crate::parameters::{Allowed, Shown, Unit, parse_value};
 use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
-use sophie_control::decimal::Decimal;
+use sophie_control::maths::decimal::Decimal;
 
 impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, C> {
     pub(super) async fn list(&mut self, part: &str) {

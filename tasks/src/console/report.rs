@@ -6,7 +6,7 @@ use sophie_control::mode::{Mode, Reason};
 use super::Console;
 use crate::deadline::TaskId;
 use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
-use sophie_control::decimal::Decimal;
+use sophie_control::maths::decimal::Decimal;
 
 impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, C> {
     pub(super) async fn status(&mut self) {

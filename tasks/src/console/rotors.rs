@@ -2,14 +2,14 @@
 //! wires goes into `motor_map`.
 
 use embassy_time::Duration;
-use sophie_control::bench::{BenchOrder, SPIN_DRIVE, SPIN_TIME, Spin};
+use sophie_control::allocation::wrench::PerArm;
 use sophie_control::params::{MotorMap, Params};
-use sophie_control::wrench::PerArm;
+use sophie_control::pilot::bench_orders::{BenchOrder, SPIN_DRIVE, SPIN_TIME, Spin};
 
 use super::Console;
 use super::bench::End;
 use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
-use sophie_control::decimal::Decimal;
+use sophie_control::maths::decimal::Decimal;
 
 /// Time that the builder has for an answer.
 pub(super) const ANSWER: Duration = Duration::from_secs(60);

@@ -4,13 +4,13 @@ use core::fmt;
 
 use embassy_time::{Duration, Timer};
 use sophie_control::arming::ArmingInhibit;
-use sophie_control::fsr::FsrFault;
-use sophie_control::math::to_deg;
+use sophie_control::gripper::contact_pressure::FsrFault;
+use sophie_control::maths::scalar::to_deg;
 
 use super::Console;
 use crate::deadline::{Level, TaskId};
 use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
-use sophie_control::decimal::Decimal;
+use sophie_control::maths::decimal::Decimal;
 
 /// Time over which rates are counted.
 const TIME: Duration = Duration::from_secs(1);

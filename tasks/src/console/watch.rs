@@ -4,15 +4,15 @@ use core::fmt::Write;
 
 use embassy_time::{Duration, Timer};
 use heapless::{String, Vec};
-use sophie_control::math::to_deg;
-use sophie_control::rc::{ArmChoice, StickMode};
-use sophie_control::vector::{Quat, Vec3};
-use sophie_control::wrench::PerArm;
+use sophie_control::allocation::wrench::PerArm;
+use sophie_control::maths::scalar::to_deg;
+use sophie_control::maths::vector::{Quat, Vec3};
+use sophie_control::pilot::rc::{ArmChoice, StickMode};
 
 use super::Console;
 use crate::links::{ExternalPose, Links};
 use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
-use sophie_control::decimal::Decimal;
+use sophie_control::maths::decimal::Decimal;
 
 /// Time between two lines: 80 characters take 7 ms at 115,200 baud, and eyes follow no more.
 const PERIOD: Duration = Duration::from_millis(200);

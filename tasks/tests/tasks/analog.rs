@@ -2,7 +2,7 @@
 
 use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
 use sophie_control::battery::ServoSupply;
-use sophie_control::fsr::FsrFault;
+use sophie_control::gripper::contact_pressure::FsrFault;
 use sophie_control::params::Params;
 use sophie_tasks::analog;
 use sophie_tasks::links::Contact;

@@ -4,11 +4,11 @@ use std::cell::Cell;
 use std::rc::Rc;
 
 use embassy_time::Instant;
-use sophie_control::bench::{BenchOrder, BenchRequest, PLACE_TIME, Spin};
-use sophie_control::mixer::Flexible;
+use sophie_control::allocation::mixer::Flexible;
+use sophie_control::allocation::wrench::{Configuration, PerArm};
 use sophie_control::params::{Params, ServoMarks};
-use sophie_control::rc::Sticks;
-use sophie_control::wrench::{Configuration, PerArm};
+use sophie_control::pilot::bench_orders::{BenchOrder, BenchRequest, PLACE_TIME, Spin};
+use sophie_control::pilot::rc::Sticks;
 use sophie_fakes::{Answer, FakeAnalog, FakeArms, FakeImu, FakeLine, FakeMotors, FakeServos};
 use sophie_tasks::links::RcState;
 use sophie_tasks::ports::AnalogFrame;

@@ -1,13 +1,13 @@
 //! The clamp task's response to commands and stale inputs.
 
 use embassy_time::Instant;
-use sophie_control::fsr::FsrFault;
-use sophie_control::grip::ArmState;
-use sophie_control::grip_fault::GripFault;
-use sophie_control::grip_memory::GripMemory;
+use sophie_control::allocation::wrench::PerArm;
+use sophie_control::gripper::contact_pressure::FsrFault;
+use sophie_control::gripper::grip::ArmState;
+use sophie_control::gripper::grip_fault::GripFault;
+use sophie_control::gripper::retained_grip::GripMemory;
 use sophie_control::params::Params;
-use sophie_control::rc::ArmChoice;
-use sophie_control::wrench::PerArm;
+use sophie_control::pilot::rc::ArmChoice;
 use sophie_tasks::clamp;
 use sophie_tasks::links::{
     ArmAngles, ClampCommand, Contact, Links, MixOutput, TendonForce, TendonForces, TendonOrder,

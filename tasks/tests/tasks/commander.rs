@@ -2,12 +2,12 @@
 
 use embassy_time::{Duration, Instant};
 use sophie_control::arming::ArmingInhibit;
-use sophie_control::grip::GripState;
-use sophie_control::math::GRAVITY;
+use sophie_control::gripper::grip::GripState;
+use sophie_control::maths::scalar::GRAVITY;
+use sophie_control::maths::vector::Vec3;
 use sophie_control::mode::Mode;
 use sophie_control::params::Params;
-use sophie_control::rc::Sticks;
-use sophie_control::vector::Vec3;
+use sophie_control::pilot::rc::Sticks;
 use sophie_tasks::commander;
 use sophie_tasks::deadline::TaskId;
 use sophie_tasks::links::{Attitude, Battery, Contact, Links, MixOutput, RcState};

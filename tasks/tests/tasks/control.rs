@@ -1,9 +1,9 @@
 //! The control task's demand for each kind of setpoint.
 
 use embassy_time::Instant;
-use sophie_control::desaturation::Given;
-use sophie_control::vector::{Quat, Vec3};
-use sophie_control::wrench::Wrench;
+use sophie_control::allocation::desaturation::Given;
+use sophie_control::allocation::wrench::Wrench;
+use sophie_control::maths::vector::{Quat, Vec3};
 use sophie_tasks::control;
 use sophie_tasks::links::{Attitude, Demand, Links, MixOutput, Setpoint};
 

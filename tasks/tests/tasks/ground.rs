@@ -1,8 +1,8 @@
 //! The task of the flow and range module on scripted lines, and flow through to the position.
 
 use embassy_time::{Duration, Instant};
-use sophie_control::ground::{Flow, GroundView, Range};
-use sophie_control::vector::Vec3;
+use sophie_control::maths::vector::Vec3;
+use sophie_control::navigation::flow_range_sample::{Flow, GroundView, Range};
 use sophie_fakes::{BrokenLine, FakeLine};
 use sophie_tasks::deadline::TaskId;
 use sophie_tasks::links::{Attitude, Links};

@@ -7,7 +7,7 @@ use mavlink_core::{MAVLinkV2MessageRaw, MavHeader, MavlinkVersion, MessageData};
 use sophie_control::arming::ArmingInhibit;
 use sophie_control::mode::Mode;
 use sophie_control::params::Params;
-use sophie_control::remote::{RemoteAnswer, RemoteOrder, RemoteRequest};
+use sophie_control::pilot::remote::{RemoteAnswer, RemoteOrder, RemoteRequest};
 use sophie_fakes::FakeLine;
 use sophie_mavlink::dialect::{
     COMMAND_LONG_DATA, HEARTBEAT_DATA, ODOMETRY_DATA, PARAM_SET_DATA, SERIAL_CONTROL_DATA,

@@ -1,8 +1,8 @@
 //! The mixer task's use of demands, voltage and the arms' sensors.
 
 use embassy_time::Instant;
-use sophie_control::mixer::Flexible;
-use sophie_control::wrench::{Configuration, PerArm, Wrench};
+use sophie_control::allocation::mixer::Flexible;
+use sophie_control::allocation::wrench::{Configuration, PerArm, Wrench};
 use sophie_tasks::links::{ArmAngles, Battery, Demand, MixOutput, Setpoint};
 use sophie_tasks::mixer;
 

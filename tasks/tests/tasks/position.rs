@@ -1,7 +1,7 @@
 //! The position task between the links.
 
 use embassy_time::{Duration, Instant};
-use sophie_control::vector::{Quat, Vec3};
+use sophie_control::maths::vector::{Quat, Vec3};
 use sophie_mavlink::inputs::pose::{ExternalPose, Pose};
 use sophie_tasks::deadline::TaskId;
 use sophie_tasks::links::{Attitude, Links};

@@ -1,12 +1,12 @@
 //! State retained over a reset.
 
 use embassy_time::Instant;
-use sophie_control::grip::{ArmGrip, GripState};
-use sophie_control::grip_fault::GripFault;
-use sophie_control::grip_memory::GripMemory;
+use sophie_control::gripper::grip::{ArmGrip, GripState};
+use sophie_control::gripper::grip_fault::GripFault;
+use sophie_control::gripper::retained_grip::GripMemory;
+use sophie_control::maths::vector::Vec3;
 use sophie_control::params::{ImuMounting, Params};
-use sophie_control::rc::ArmChoice;
-use sophie_control::vector::Vec3;
+use sophie_control::pilot::rc::ArmChoice;
 use sophie_tasks::links::{Attitude, Links, MixOutput, TendonForce, TendonForces, TendonOrder};
 use sophie_tasks::retained_state::RetainedState;
 use sophie_tasks::retained_store::RetainedStore;

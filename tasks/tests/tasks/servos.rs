@@ -1,12 +1,12 @@
 //! Pulses for forces: when there are none, their speed, standing still.
 
 use embassy_time::{Duration, Instant};
+use sophie_control::allocation::wrench::PerArm;
 use sophie_control::arming::ArmingInhibit;
-use sophie_control::bench::Place;
-use sophie_control::grip_memory::GripMemory;
+use sophie_control::gripper::retained_grip::GripMemory;
 use sophie_control::params::{Params, ServoMarks};
-use sophie_control::rc::ArmChoice;
-use sophie_control::wrench::PerArm;
+use sophie_control::pilot::bench_orders::Place;
+use sophie_control::pilot::rc::ArmChoice;
 use sophie_tasks::links::{ArmAngles, Links, Stamped, TendonForce, TendonForces, TendonOrder};
 use sophie_tasks::retained_state::RetainedState;
 use sophie_tasks::servos;

@@ -5,7 +5,7 @@
 
 use std::fmt::Write;
 
-use sophie_control::decimal::{self, Decimal};
+use sophie_control::maths::decimal::{self, Decimal};
 use sophie_control::params::Params;
 use sophie_sim::scenario::settings::Setting;
 

@@ -1,8 +1,8 @@
 //! What a sensor's line says, and when it came.
 
 use sophie_control::chain::ImuReading;
-use sophie_control::ground::{Flow, Range};
-use sophie_control::vector::Vec3;
+use sophie_control::maths::vector::Vec3;
+use sophie_control::navigation::flow_range_sample::{Flow, Range};
 
 use crate::lines::{number, time};
 

@@ -2,12 +2,14 @@
 
 use std::path::Path;
 
+use sophie_control::attitude::estimator::Estimator;
 use sophie_control::chain::{Attitude, ImuSample, Sensing};
-use sophie_control::estimator::Estimator;
-use sophie_control::ground::GroundView;
-use sophie_control::math::GRAVITY;
+use sophie_control::maths::scalar::GRAVITY;
+use sophie_control::navigation::flow_range_sample::GroundView;
+use sophie_control::navigation::position_estimator::{
+    Estimate, FLIES, Fault, Inertial, PositionEstimator, STEP_MAX,
+};
 use sophie_control::params::Params;
-use sophie_control::position::{Estimate, FLIES, Fault, Inertial, PositionEstimator, STEP_MAX};
 
 use crate::event::Event;
 use crate::sensors::Sensors;

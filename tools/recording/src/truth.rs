@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use sophie_control::math;
-use sophie_control::position::{Estimate, about_down};
-use sophie_control::vector::{Quat, Vec3};
+use sophie_control::maths::scalar;
+use sophie_control::maths::vector::{Quat, Vec3};
+use sophie_control::navigation::position_estimator::{Estimate, about_down};
 
 use crate::lines::{Lines, number, time};
 use crate::table::head;
@@ -111,7 +111,7 @@ impl Truth {
         }
         let share = (at_us - a.at_us) as f32 / (b.at_us - a.at_us) as f32;
         let between = |a: Option<Vec3>, b: Option<Vec3>| Some(a? + (b? - a?) * share);
-        let turned = |a: Option<Vec3>, b: Option<Vec3>| Some(a? + (b? - a?).map(math::wrap_pi) * share);
+        let turned = |a: Option<Vec3>, b: Option<Vec3>| Some(a? + (b? - a?).map(scalar::wrap_pi) * share);
         Row {
             at_us,
             place: between(a.place, b.place),
@@ -173,15 +173,15 @@ impl Errors {
         };
         let (roll, pitch, yaw) = q.to_euler();
         if let Some(attitude) = truth.attitude {
-            self.roll.add(math::wrap_pi(roll - attitude.x));
-            self.pitch.add(math::wrap_pi(pitch - attitude.y));
+            self.roll.add(scalar::wrap_pi(roll - attitude.x));
+            self.pitch.add(scalar::wrap_pi(pitch - attitude.y));
         }
         let Some(e) = estimate else {
             self.laid = None;
             return;
         };
         if self.laid.is_none() {
-            let turn = truth.attitude.map(|a| math::wrap_pi(a.z - yaw - e.turn));
+            let turn = truth.attitude.map(|a| scalar::wrap_pi(a.z - yaw - e.turn));
             self.laid = turn.map(|turn| {
                 let place = truth.place.unwrap_or_default();
                 (turn, place - about_down(e.position, turn))

@@ -1,6 +1,6 @@
 //! Tendon force and contact pressure, over the flight and during closing.
 
-use sophie_control::tendon::ForceLimit;
+use sophie_control::gripper::tendon::ForceLimit;
 use sophie_sim::record::FlightRecord;
 
 use super::figures::{ARM, Figure, arm_legend, arm_series};

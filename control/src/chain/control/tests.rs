@@ -1,5 +1,5 @@
 use super::*;
-use crate::bench::Spin;
+use crate::pilot::bench_orders::Spin;
 
 const THRUST: f32 = 10.0;
 const GIVEN: Feedback = Feedback {
@@ -88,7 +88,7 @@ fn the_attitude_loop_starts_from_the_present_attitude_and_aims_anew() {
     bench.run(2000, roll_to(0.2), 1000);
     // Turned by hand to 0.4 rad while idle: the filtered direction is gone, though the time is the same.
     bench.run(1, Setpoint::Idle, 2000);
-    bench.attitude.q = crate::vector::Quat::from_euler(0.4, 0.0, 0.0);
+    bench.attitude.q = crate::maths::vector::Quat::from_euler(0.4, 0.0, 0.0);
     bench.run(1, roll_to(0.2), 1000);
     let started = bench.control.target().down.y;
     assert!((started - 0.389_42).abs() < 3e-3, "{started}");
@@ -185,7 +185,7 @@ fn on_the_pipe_a_lean_meets_twice_the_moment_of_the_air() {
 
 #[test]
 fn a_gated_yaw_takes_the_heading_along() {
-    let turned = crate::vector::Quat::from_euler(0.0, 0.0, 0.2);
+    let turned = crate::maths::vector::Quat::from_euler(0.0, 0.0, 0.2);
     for (yaw_gated, ahead) in [(true, 0.0), (false, -0.2)] {
         let mut bench = Bench::new();
         bench.run(1, roll_to(0.0), 0);

@@ -1,6 +1,6 @@
 use super::*;
-use crate::math::GRAVITY;
-use crate::wrench::{Configuration, Wrench};
+use crate::allocation::wrench::{Configuration, Wrench};
+use crate::maths::scalar::GRAVITY;
 
 struct Bench {
     mixing: Mixing,

@@ -101,7 +101,7 @@ fn arms_round_no_pipe_are_no_proof_until_they_lie_round_one() {
             let mut inputs = [ArmInput::default(); 4];
             for ((i, arm), tilt) in inputs.iter_mut().zip(&gripper.arms).zip(tilts) {
                 *i = ArmInput {
-                    tilt: Some(-math::deg(tilt)),
+                    tilt: Some(-scalar::deg(tilt)),
                     ..input(&cfg, arm, pressure)
                 };
             }

@@ -135,7 +135,7 @@ fn the_integral_waits_at_the_limit() {
     // 6.2 Pa/N give 830 Pa at the limit, which is reported.
     let mut grip = ArmGrip::default();
     for _ in 0..3000 {
-        let pressure = 150.0 + 6.2 * math::clamp(arm.force - 52.0, 0.0, 1e3);
+        let pressure = 150.0 + 6.2 * scalar::clamp(arm.force - 52.0, 0.0, 1e3);
         grip = run(&mut arm, &cfg, pressure, DT);
     }
     assert!(

@@ -27,7 +27,7 @@ fn closing_on_a_skin(sensor: impl Fn(f32) -> f32) -> (ArmGripper, ArmGrip) {
     let mut arm = ArmGripper::default();
     let mut grip = ArmGrip::default();
     for _ in 0..1500 {
-        let pressure = 70.0 * math::clamp(arm.force - 52.0, 0.0, 1e3);
+        let pressure = 70.0 * scalar::clamp(arm.force - 52.0, 0.0, 1e3);
         grip = run(&mut arm, &cfg, sensor(pressure), DT);
     }
     (arm, grip)
@@ -51,7 +51,7 @@ fn a_sensor_that_cannot_read_the_grip_pressure_stops_the_winding() {
     arm.step(&cfg, &released(input(&cfg, &arm, 500.0)), DT);
     assert!(arm.fault().is_none());
     for ceiling in [150.0, 400.0, 800.0] {
-        let (_, grip) = closing_on_a_skin(|pressure| math::clamp(pressure, 0.0, ceiling));
+        let (_, grip) = closing_on_a_skin(|pressure| scalar::clamp(pressure, 0.0, ceiling));
         assert!(grip.fault == Some(GripFault::Ceiling), "{ceiling}: {grip:?}");
         assert!(grip.force < 52.0 + 35.0, "{ceiling}: {grip:?}");
     }
@@ -75,7 +75,7 @@ fn a_rotor_that_starts_is_no_ceiling() {
     for step in 0..1500 {
         // 0.1 s after the touch the rotor gives 5 N, 32.6 N of the tendon's.
         let thrust = if step > 190 { 5.0 } else { 0.0 };
-        let pressure = 70.0 * math::clamp(arm.force - cfg.per_thrust * thrust - 52.0, 0.0, 1e3);
+        let pressure = 70.0 * scalar::clamp(arm.force - cfg.per_thrust * thrust - 52.0, 0.0, 1e3);
         let i = ArmInput {
             thrust,
             ..input(&cfg, &arm, if step > 180 { pressure + 120.0 } else { pressure })

@@ -55,7 +55,7 @@ impl Trial {
             };
             // 4 mrad, without trend.
             let noise = 0.004 * (((step * step * 17) % 101) as f32 / 50.0 - 1.0);
-            let pressure = math::clamp(SKIN * (PIPE - tilt), 0.0, 1e5);
+            let pressure = scalar::clamp(SKIN * (PIPE - tilt), 0.0, 1e5);
             let input = ArmInput {
                 close: true,
                 pressure: Pressure::Known(if self.open { 0.0 } else { pressure }),

@@ -4,11 +4,11 @@ use proptest::prelude::*;
 
 use super::rig::{DT, Rig};
 use crate::arming::ArmingInhibit;
-use crate::bench::{
+use crate::mode::*;
+use crate::pilot::bench_orders::{
     BenchAnswer, BenchOrder, BenchRefusal, BenchState, Place, SPIN_DRIVE, SPIN_DRIVE_MAX, SPIN_TIME, Spin,
 };
-use crate::mode::*;
-use crate::rc::ArmChoice;
+use crate::pilot::rc::ArmChoice;
 
 const SPIN: BenchOrder = BenchOrder::Spin(Spin::at(2, SPIN_DRIVE));
 const PLACE: BenchOrder = BenchOrder::Place(Place {

@@ -1,15 +1,15 @@
 //! Perching by itself: how it begins, how the pilot takes over from every part of it, tries, and the way back.
 
 use super::rig::Rig;
-use crate::grip::ArmState;
-use crate::mode::by_itself::TRIES;
-use crate::mode::clamping::STOP_TIME;
-use crate::mode::contact::CONTACT_TIME;
-use crate::mode::hold::SPOOL_DOWN_TIME;
+use crate::gripper::grip::ArmState;
+use crate::mode::inputs::auto_perch::TRIES;
+use crate::mode::shared::on_pipe::SPOOL_DOWN_TIME;
+use crate::mode::states::clamping::STOP_TIME;
+use crate::mode::states::contact::CONTACT_TIME;
 use crate::mode::*;
-use crate::position::{Estimate, Foot};
-use crate::remote::RemoteOrder::{Grab, Release};
-use crate::remote::RemoteRefusal;
+use crate::navigation::position_estimator::{Estimate, Foot};
+use crate::pilot::remote::RemoteOrder::{Grab, Release};
+use crate::pilot::remote::RemoteRefusal;
 
 /// Height of the crown over the ground in the rig's world, and where it is to the right, m.
 const CROWN: f32 = 1.5;
@@ -90,7 +90,7 @@ impl World {
         }
         let y = self.at.y - RIGHT;
         let on = self.pipe && y.abs() < 0.15;
-        let flank = 0.15 - crate::math::sqrt((0.0225 - y * y).max(0.0));
+        let flank = 0.15 - crate::maths::scalar::sqrt((0.0225 - y * y).max(0.0));
         let z = if on { flank - CROWN } else { 0.0 };
         self.count = self.count.wrapping_add(1);
         let foot = Foot {
@@ -205,7 +205,7 @@ fn said(off: Vec3) -> Option<PipeTarget> {
     Some(PipeTarget {
         at_us: 1,
         crown: Vec3::new(0.0, RIGHT, -CROWN) + off,
-        heading: Some(crate::math::PI),
+        heading: Some(crate::maths::scalar::PI),
     })
 }
 
@@ -312,7 +312,7 @@ const HANDS: [(Hand, Mode); 7] = [
     (|s| s.throttle = 0.7, Mode::Hold),
     (|s| s.perch_switch = false, Mode::Hold),
     (|s| s.hold_switch = false, Mode::Flight),
-    (|s| s.stick_mode = crate::rc::StickMode::Rate, Mode::Flight),
+    (|s| s.stick_mode = crate::pilot::rc::StickMode::Rate, Mode::Flight),
 ];
 
 #[test]
@@ -604,13 +604,13 @@ fn a_grab_and_a_release_by_order_do_it_with_the_pilots_switch_left_alone() {
     assert_eq!(w.r.out.mode, Mode::Contact);
     // A slide: the order lasts over the next try.
     w.r.inputs.motion = w.r.inputs.motion.map(|m| Motion {
-        q: crate::vector::Quat::from_euler(0.5, 0.0, 0.0),
+        q: crate::maths::vector::Quat::from_euler(0.5, 0.0, 0.0),
         ..m
     });
     w.run(0.1);
     assert_eq!(w.r.out.mode, Mode::Escaping);
     w.r.inputs.motion = w.r.inputs.motion.map(|m| Motion {
-        q: crate::vector::Quat::IDENTITY,
+        q: crate::maths::vector::Quat::IDENTITY,
         ..m
     });
     w.r.grip(false, true, ArmState::Free, 0.0);

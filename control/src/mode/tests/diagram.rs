@@ -8,7 +8,7 @@ use std::string::{String, ToString};
 use std::vec::Vec;
 
 use crate::mode::Mode;
-use crate::mode::transitions::{Origin, TRANSITIONS};
+use crate::mode::table::transitions::{Origin, TRANSITIONS};
 
 /// Half the size of a mode's box, px.
 const HALF: Point = Point { x: 58.0, y: 17.0 };

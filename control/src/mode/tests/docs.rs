@@ -6,7 +6,7 @@ use std::string::{String, ToString};
 use std::vec::Vec;
 
 use crate::arming::ArmingInhibit;
-use crate::mode::transitions::{Notice, Origin, TRANSITIONS, Transition};
+use crate::mode::table::transitions::{Notice, Origin, TRANSITIONS, Transition};
 use crate::mode::*;
 
 fn names(from: Origin) -> String {

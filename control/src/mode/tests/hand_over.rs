@@ -1,14 +1,14 @@
 //! Hand-over between states: the collective, the held attitude, the failsafe's command.
 
 use super::rig::{DT, Rig};
-use crate::grip::ArmState;
-use crate::math::GRAVITY;
-use crate::mode::demand::HAND_OVER_TIME;
-use crate::mode::failsafe::RESUME_TIME;
-use crate::mode::hold::SPOOL_DOWN_TIME;
+use crate::gripper::grip::ArmState;
+use crate::maths::scalar::GRAVITY;
+use crate::mode::shared::collective::HAND_OVER_TIME;
+use crate::mode::shared::on_pipe::SPOOL_DOWN_TIME;
+use crate::mode::states::failsafe::RESUME_TIME;
 use crate::mode::*;
 use crate::params::Params;
-use crate::rc::StickMode;
+use crate::pilot::rc::StickMode;
 
 /// Four rotors of 8.3 N.
 const FULL: f32 = 33.2;

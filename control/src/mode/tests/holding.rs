@@ -1,10 +1,10 @@
 //! Holding a position: how it begins, what ends it, and what the sticks ask for meanwhile.
 
 use super::rig::Rig;
-use crate::mode::holding::{COAST_AGE, FRESH_AGE, HEIGHT_AGE};
 use crate::mode::*;
-use crate::position::Estimate;
-use crate::rc::StickMode;
+use crate::navigation::fix_age::{COAST_AGE, FRESH_AGE, HEIGHT_AGE};
+use crate::navigation::position_estimator::Estimate;
+use crate::pilot::rc::StickMode;
 
 /// Flying with a position that is `age` s old.
 fn placed(age: f32) -> Rig {

@@ -1,14 +1,13 @@
 //! Escapes: start, course and end; arms that do not let go.
 
 use super::rig::{DT, Rig};
-use crate::grip::ArmState;
-use crate::math::{GRAVITY, deg};
-use crate::mode::escaping::FREE_MAX;
-use crate::mode::escaping::TAKE_OVER_SHARE;
-use crate::mode::escaping::TAKE_OVER_TIME;
+use crate::gripper::grip::ArmState;
+use crate::maths::scalar::{GRAVITY, deg};
+use crate::mode::states::escaping::{FREE_MAX, TAKE_OVER_SHARE, TAKE_OVER_TIME};
 use crate::mode::*;
 use crate::params::Params;
-use crate::rc::ArmChoice;
+use crate::pilot::rc::ArmChoice;
+use crate::pilot::release_throttle::release_thrust;
 
 impl Rig {
     /// Leans right by `degrees`, turning further at `rate`, rad/s.

@@ -2,9 +2,9 @@
 
 use super::rig::Rig;
 use crate::arming::ArmingInhibit;
-use crate::grip::ArmState;
+use crate::gripper::grip::ArmState;
 use crate::mode::*;
-use crate::rc::ArmChoice;
+use crate::pilot::rc::ArmChoice;
 
 #[test]
 fn rotors_do_not_start_on_a_vehicle_that_is_letting_go() {

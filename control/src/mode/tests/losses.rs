@@ -2,11 +2,11 @@
 //! rotors carry, and the state becomes that of an undisturbed vehicle.
 
 use super::rig::Rig;
-use crate::grip::ArmState;
-use crate::mode::clamping::HOPELESS_TIME;
-use crate::mode::releasing::FREE_TIME;
-use crate::mode::releasing::RELEASE_THROTTLE_MIN;
+use crate::gripper::grip::ArmState;
+use crate::mode::states::clamping::HOPELESS_TIME;
+use crate::mode::states::releasing::FREE_TIME;
 use crate::mode::*;
+use crate::pilot::release_throttle::RELEASE_THROTTLE_MIN;
 
 /// Every state in which rotors turn, or stand on the pipe.
 const STATES: [fn() -> Rig; 7] = [

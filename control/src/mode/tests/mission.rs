@@ -1,16 +1,15 @@
 //! Every transition of a flight without trouble.
 
 use super::rig::{DT, Rig};
-use crate::grip::ArmState;
-use crate::math::deg;
-use crate::mode::armed::IDLE_MAX;
-use crate::mode::hold::{SPOOL_DOWN_TIME, SPOOL_TIME};
-use crate::mode::landed::LANDED_TIME;
-use crate::mode::releasing::FREE_TIME;
+use crate::allocation::wrench::Wrench;
+use crate::gripper::grip::ArmState;
+use crate::maths::scalar::deg;
+use crate::mode::shared::on_pipe::{SPOOL_DOWN_TIME, SPOOL_TIME};
+use crate::mode::states::armed::IDLE_MAX;
+use crate::mode::states::landed::LANDED_TIME;
+use crate::mode::states::releasing::FREE_TIME;
 use crate::mode::*;
-use crate::rc::ArmChoice;
-use crate::rc::StickMode;
-use crate::wrench::Wrench;
+use crate::pilot::rc::{ArmChoice, StickMode};
 
 #[test]
 fn a_whole_mission_passes_every_state_in_order() {

@@ -10,12 +10,13 @@ use std::vec::Vec;
 use std::{format, fs};
 
 use crate::arming::{ArmingInhibit, GESTURE_TIME, TILT_MAX};
-use crate::grip_fault::GripFault;
-use crate::math::deg;
+use crate::contact::friction_limit::Seat;
+use crate::gripper::grip_fault::GripFault;
+use crate::maths::scalar::deg;
 use crate::mode::*;
 use crate::params::Params;
-use crate::rc::{CHANNELS, RAW_CENTRE, RAW_HIGH, RAW_LOW};
-use crate::seat::Seat;
+use crate::pilot::rc::{CHANNELS, RAW_CENTRE, RAW_HIGH, RAW_LOW};
+use crate::pilot::release_throttle::RELEASE_THROTTLE_MIN;
 
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/pilot.md");
 
@@ -259,20 +260,26 @@ fn numbers() -> [String; 14] {
     let level = (0..90)
         .take_while(|&lean| seat.holds(deg(lean as f32), p.perch_lift))
         .count();
-    let least = percent(releasing::RELEASE_THROTTLE_MIN);
+    let least = percent(RELEASE_THROTTLE_MIN);
     [
         format!("yaw full right, for {GESTURE_TIME:.0} s"),
         format!("leans less than {}", degrees(TILT_MAX)),
-        format!("idle for at most {:.0} s", armed::IDLE_MAX),
-        format!("disarms by itself {:.0} s after", landed::LANDED_TIME),
+        format!("idle for at most {:.0} s", states::armed::IDLE_MAX),
+        format!("disarms by itself {:.0} s after", states::landed::LANDED_TIME),
         format!("throttle at or below {most}"),
         format!("within {} of level", degrees(deg(level as f32 - 1.0))),
-        format!("After {} s the arms close", contact::CONTACT_TIME),
+        format!("After {} s the arms close", states::contact::CONTACT_TIME),
         format!("at most {:.0} s", p.clamp_timeout),
         format!("between {least} and {most}"),
-        format!("take the throttle over within {:.0} s", escaping::TAKE_OVER_TIME),
-        format!("less than {:.0} s", failsafe::RESUME_TIME),
-        format!("more than {} of their travel", percent(failsafe::RESUME_STICK)),
+        format!(
+            "take the throttle over within {:.0} s",
+            states::escaping::TAKE_OVER_TIME
+        ),
+        format!("less than {:.0} s", states::failsafe::RESUME_TIME),
+        format!(
+            "more than {} of their travel",
+            percent(states::failsafe::RESUME_STICK)
+        ),
         format!("below {} V", p.battery_warning),
         format!("below {} V under load", p.battery_critical),
     ]

@@ -1,20 +1,20 @@
 //! Random pilots, sensors and grips against invariants.
 
 extern crate std;
-use crate::grip::ArmGrip;
-use crate::grip_fit::Misfit;
-use crate::rc::ArmChoice;
+use crate::gripper::grip::ArmGrip;
+use crate::gripper::grip_geometry::Misfit;
+use crate::pilot::rc::ArmChoice;
 use std::vec::Vec;
 
 use proptest::prelude::*;
 
 use super::rig::Rig;
-use crate::grip::ArmState;
-use crate::mode::releasing::RELEASE_THROTTLE_MIN;
+use crate::gripper::grip::ArmState;
 use crate::mode::*;
-use crate::position::{Estimate, Foot};
-use crate::rc::StickMode;
-use crate::remote::RemoteOrder;
+use crate::navigation::position_estimator::{Estimate, Foot};
+use crate::pilot::rc::StickMode;
+use crate::pilot::release_throttle::RELEASE_THROTTLE_MIN;
+use crate::pilot::remote::RemoteOrder;
 
 fn number() -> impl Strategy<Value = f32> {
     prop_oneof![8 => -1.0f32..1.0, 1 => Just(f32::NAN), 1 => Just(f32::INFINITY)]

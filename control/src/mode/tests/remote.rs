@@ -2,13 +2,13 @@
 
 use super::rig::{DT, Rig};
 use crate::arming::{ArmingInhibit, GESTURE_TIME};
-use crate::bench::{BenchOrder, BenchRefusal, BenchRequest, BenchState, SPIN_DRIVE, Spin};
-use crate::grip::ArmState;
-use crate::mode::remote::GRAB_WAIT;
+use crate::gripper::grip::ArmState;
+use crate::mode::inputs::remote::GRAB_WAIT;
 use crate::mode::*;
-use crate::rc::ArmChoice;
-use crate::remote::RemoteOrder::{Arm, Disarm, Grab, Kill, Release};
-use crate::remote::{RemoteOrder, RemoteRefusal};
+use crate::pilot::bench_orders::{BenchOrder, BenchRefusal, BenchRequest, BenchState, SPIN_DRIVE, Spin};
+use crate::pilot::rc::ArmChoice;
+use crate::pilot::remote::RemoteOrder::{self, Arm, Disarm, Grab, Kill, Release};
+use crate::pilot::remote::RemoteRefusal;
 
 impl Rig {
     /// Gives `order` under a new number, renewed for some steps; what it was answered with after the first.

@@ -2,10 +2,10 @@
 
 use super::rig::Rig;
 use crate::arming::ArmingInhibit;
-use crate::grip::ArmState;
-use crate::mode::power_up_grip::AVERAGING_TIME;
+use crate::gripper::grip::ArmState;
+use crate::mode::shared::power_up_grip::AVERAGING_TIME;
 use crate::mode::*;
-use crate::rc::ArmChoice;
+use crate::pilot::rc::ArmChoice;
 
 const ALL: ClampCommand = ClampCommand::Close { arms: ArmChoice::All };
 

@@ -1,14 +1,13 @@
 //! The mode logic in a simple world that carries it or does not.
 
-use crate::grip::ArmGrip;
-use crate::grip::ArmState;
-use crate::math::GRAVITY;
-use crate::mode::clamping::STOP_TIME;
-use crate::mode::contact::CONTACT_TIME;
-use crate::mode::hold::SPOOL_DOWN_TIME;
+use crate::gripper::grip::{ArmGrip, ArmState};
+use crate::maths::scalar::GRAVITY;
+use crate::mode::shared::on_pipe::SPOOL_DOWN_TIME;
+use crate::mode::states::clamping::STOP_TIME;
+use crate::mode::states::contact::CONTACT_TIME;
 use crate::mode::*;
 use crate::params::Params;
-use crate::rc::ArmChoice;
+use crate::pilot::rc::ArmChoice;
 
 pub(super) const DT: f32 = 0.01;
 

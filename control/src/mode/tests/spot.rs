@@ -2,11 +2,11 @@
 
 use super::holding::angles;
 use super::rig::Rig;
-use crate::grip::ArmState;
-use crate::math::deg;
-use crate::mode::holding::{FRESH_AGE, HEIGHT_AGE};
+use crate::gripper::grip::ArmState;
+use crate::maths::scalar::deg;
 use crate::mode::*;
-use crate::position::Estimate;
+use crate::navigation::fix_age::{FRESH_AGE, HEIGHT_AGE};
+use crate::navigation::position_estimator::Estimate;
 
 fn at(r: &mut Rig, position: Vec3, age: f32) {
     r.inputs.position = Some(Estimate {

@@ -2,20 +2,17 @@
 
 use super::rig::Rig;
 use crate::arming::{ArmingInhibit, ArmingInhibits};
-use crate::grip::ArmState;
-use crate::grip_fit::Misfit;
-use crate::math::{GRAVITY, deg};
-use crate::mode::clamping::{HOPELESS_TIME, STOP_TIME};
-use crate::mode::contact::CONTACT_TIME;
-use crate::mode::dangers::BATTERY_TIME;
-use crate::mode::dangers::IMU_LOST_TIME;
-use crate::mode::dangers::TIPPED_TIME;
-use crate::mode::failsafe::RESUME_TIME;
-use crate::mode::hold::SPOOL_DOWN_TIME;
+use crate::gripper::grip::ArmState;
+use crate::gripper::grip_geometry::Misfit;
+use crate::maths::scalar::{GRAVITY, deg};
+use crate::mode::inputs::dangers::{BATTERY_TIME, IMU_LOST_TIME, TIPPED_TIME};
+use crate::mode::shared::on_pipe::SPOOL_DOWN_TIME;
+use crate::mode::states::clamping::{HOPELESS_TIME, STOP_TIME};
+use crate::mode::states::contact::CONTACT_TIME;
+use crate::mode::states::failsafe::RESUME_TIME;
 use crate::mode::*;
 use crate::params::{ImuGyroRange, Params};
-use crate::rc::ArmChoice;
-use crate::rc::StickMode;
+use crate::pilot::rc::{ArmChoice, StickMode};
 
 #[test]
 fn the_arm_switch_stops_the_rotors_in_one_step_and_never_opens_a_grip() {

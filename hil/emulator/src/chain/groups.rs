@@ -104,7 +104,7 @@ mod tests {
     #[test]
     fn functions_are_told_apart_by_their_paths() {
         for (function, group) in [
-            ("<sophie_control::mixer::Mixer>::allocate", "laws"),
+            ("<sophie_control::allocation::mixer::Mixer>::allocate", "laws"),
             (
                 "<embassy_executor::raw::TaskStorage<sophie_flight::tasks::__imu_task::__imu_task_inner_function::{closure#0}>>::poll",
                 "tasks, with what is inlined",
@@ -112,7 +112,7 @@ mod tests {
             ("<sophie_tasks::timing::Record>::add", "deadline records"),
             ("<sophie_tasks::links::Links>::record", "deadline records"),
             (
-                "<sophie_tasks::links::Link<sophie_control::setpoint::Setpoint>>::latest",
+                "<sophie_tasks::links::Link<sophie_control::chain::setpoint::Setpoint>>::latest",
                 "links",
             ),
             ("<sophie_tasks::last_value::LastValue<u8>>::send", "links"),

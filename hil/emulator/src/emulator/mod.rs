@@ -30,8 +30,8 @@ use rigless::image::Image;
 use rigless::session::Session;
 use rigless::soc::Width;
 use rigless::time::{NO_DEADLINE, VirtualNanos};
+use sophie_control::allocation::wrench::PerArm;
 use sophie_control::params::{ArmBusSpeed, FlowPort, Params};
-use sophie_control::wrench::PerArm;
 use sophie_sim::plant::esc::EscSpec;
 
 use self::board::Wired;

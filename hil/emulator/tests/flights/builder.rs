@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use sophie_console::bringup::{Reply, User};
 use sophie_control::calibration::Face;
 use sophie_control::params::Params;
-use sophie_control::rc::{ArmChoice, StickMode, Sticks};
+use sophie_control::pilot::rc::{ArmChoice, StickMode, Sticks};
 use sophie_emulator::hands::{Hands, Held};
 
 /// Board's time in which what hands have changed has gone through turn and filters, ms.

@@ -3,12 +3,12 @@
 use core::fmt::Arguments;
 
 use sophie_conformance::fold::{Fold, Noise};
+use sophie_control::allocation::wrench::{Configuration, Wrench};
+use sophie_control::chain::setpoint::Setpoint;
 use sophie_control::chain::{ArmReading, Command, Demand, FlightChain, ImuReading, Surroundings};
-use sophie_control::math;
+use sophie_control::maths::scalar;
+use sophie_control::maths::vector::Vec3;
 use sophie_control::params::Params;
-use sophie_control::setpoint::Setpoint;
-use sophie_control::vector::Vec3;
-use sophie_control::wrench::{Configuration, Wrench};
 use sophie_mixers::{Mixer, Variant};
 
 const INPUTS: u32 = 4096;
@@ -35,12 +35,12 @@ pub fn run(print: &mut dyn FnMut(Arguments<'_>)) {
 
 fn functions(print: &mut dyn FnMut(Arguments<'_>)) {
     let one: [(&str, Function, f32); 6] = [
-        ("sin", math::sin, 8.0),
-        ("cos", math::cos, 8.0),
-        ("asin", math::asin, 1.1),
-        ("tan", math::tan, 1.2),
-        ("sqrt", math::sqrt, 1e6),
-        ("inv_sqrt", math::inv_sqrt, 1e6),
+        ("sin", scalar::sin, 8.0),
+        ("cos", scalar::cos, 8.0),
+        ("asin", scalar::asin, 1.1),
+        ("tan", scalar::tan, 1.2),
+        ("sqrt", scalar::sqrt, 1e6),
+        ("inv_sqrt", scalar::inv_sqrt, 1e6),
     ];
     for (name, function, range) in one {
         let mut noise = Noise::new(1);
@@ -53,7 +53,7 @@ fn functions(print: &mut dyn FnMut(Arguments<'_>)) {
     let mut noise = Noise::new(2);
     let mut fold = Fold::new();
     for _ in 0..INPUTS {
-        fold.add(math::atan2(noise.unit(), noise.unit()).to_bits());
+        fold.add(scalar::atan2(noise.unit(), noise.unit()).to_bits());
     }
     print(format_args!("math atan2: {fold}"));
 }
@@ -72,7 +72,7 @@ fn flight(print: &mut dyn FnMut(Arguments<'_>), name: &str, variant: Variant) {
         let at_us = 1000 * u64::from(step);
         let batch: [_; READINGS] = core::array::from_fn(|_| {
             let gyro = vector(&mut noise) * (0.01 + 1.5 * moving);
-            let accel = Vec3::new(0.0, 0.0, -math::GRAVITY) + vector(&mut noise) * (0.05 + 2.0 * moving);
+            let accel = Vec3::new(0.0, 0.0, -scalar::GRAVITY) + vector(&mut noise) * (0.05 + 2.0 * moving);
             ImuReading { gyro, accel }
         });
         if step >= REST {

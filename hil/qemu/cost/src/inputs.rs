@@ -3,11 +3,11 @@
 //! while, with noise. A few readings are NaN.
 
 use sophie_conformance::fold::Noise;
-use sophie_control::attitude::AttitudeSetpoint;
+use sophie_control::attitude::attitude_loop::AttitudeSetpoint;
+use sophie_control::chain::setpoint::Setpoint;
 use sophie_control::chain::{ArmReading, Command, ImuReading, Surroundings};
-use sophie_control::math::GRAVITY;
-use sophie_control::setpoint::Setpoint;
-use sophie_control::vector::Vec3;
+use sophie_control::maths::scalar::GRAVITY;
+use sophie_control::maths::vector::Vec3;
 
 /// 4 kHz.
 pub const READINGS: usize = 4;

@@ -6,12 +6,12 @@ use core::hint::black_box;
 
 use embassy_time::Instant;
 use sophie_conformance::fold::Noise;
-use sophie_control::ground::{Flow, GroundView, Range};
-use sophie_control::math::GRAVITY;
+use sophie_control::maths::scalar::GRAVITY;
+use sophie_control::maths::vector::{Quat, Vec3};
+use sophie_control::navigation::flow_range_sample::{Flow, GroundView, Range};
+use sophie_control::navigation::position_estimator::{Estimate, Fix, Inertial, PositionEstimator};
 use sophie_control::params::Params;
-use sophie_control::position::{Estimate, Fix, Inertial, PositionEstimator};
 use sophie_control::position_hold::{Felt, PositionHold, Wish};
-use sophie_control::vector::{Quat, Vec3};
 use sophie_drivers::ground_module::GroundModule;
 use sophie_drivers::msp::Message;
 use sophie_tasks::ports::GroundDecoder;
@@ -56,7 +56,7 @@ fn estimate(e: &mut Estimator, i: &Inputs) {
 struct Hold {
     law: PositionHold,
     estimate: Estimate,
-    out: sophie_control::setpoint::Setpoint,
+    out: sophie_control::chain::setpoint::Setpoint,
 }
 
 #[inline(never)]
@@ -158,7 +158,7 @@ pub fn run(print: &mut dyn FnMut(Arguments<'_>), overhead: u32) {
             let law = law.get_or_insert_with(|| Hold {
                 law: PositionHold::begin(&p, &found, &felt),
                 estimate: found,
-                out: sophie_control::setpoint::Setpoint::Idle,
+                out: sophie_control::chain::setpoint::Setpoint::Idle,
             });
             law.estimate = found;
             if step.is_multiple_of(2) {

@@ -5,8 +5,8 @@
 use sophie_control::calibration::{
     self, AccelFit, BIAS, Face, SCALES, Samples, Unfit, rest_rate, six_faces, thousandths,
 };
-use sophie_control::decimal::Decimal;
-use sophie_control::vector::Vec3;
+use sophie_control::maths::decimal::Decimal;
+use sophie_control::maths::vector::Vec3;
 
 use super::super::Server;
 use super::super::answer::Answer;

@@ -1,9 +1,9 @@
 //! Orders to the commander: arming, gripper, and what is tried on the bench. Each is acknowledged when it has answered.
 
-use sophie_control::bench::{
+use sophie_control::pilot::bench_orders::{
     BenchOrder, BenchRefusal, BenchRequest, BenchState, PLACE_TIME, Place, SPIN_TIME, Spin,
 };
-use sophie_control::remote::{RemoteOrder, RemoteRefusal, RemoteRequest};
+use sophie_control::pilot::remote::{RemoteOrder, RemoteRefusal, RemoteRequest};
 
 use super::super::Server;
 use super::{or_zero, whole};

@@ -1,11 +1,11 @@
 //! The laws' response to a body rate: gyro filter, rate loop and attitude loop, as flown.
 
-use sophie_control::attitude::{AttitudeLoop, AttitudeSetpoint};
+use sophie_control::attitude::attitude_loop::{AttitudeLoop, AttitudeSetpoint};
+use sophie_control::attitude::imu_filter::ImuFilter;
+use sophie_control::attitude::rate_loop::{Feedback, RateLoop};
 use sophie_control::chain::{CONTROL_RATE_HZ, ImuReading};
-use sophie_control::imu_filter::ImuFilter;
+use sophie_control::maths::vector::{Quat, Vec3};
 use sophie_control::params::Params;
-use sophie_control::rate::{Feedback, RateLoop};
-use sophie_control::vector::{Quat, Vec3};
 
 use super::response::{Complex, Response, difference, quotient};
 

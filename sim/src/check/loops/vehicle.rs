@@ -5,14 +5,14 @@
 //! flight.
 
 use glam::DVec3;
+use sophie_control::allocation::mixer::Allocation;
+use sophie_control::allocation::wrench::Wrench;
+use sophie_control::chain::setpoint::Setpoint;
 use sophie_control::chain::{
     Attitude, CONTROL_RATE_HZ, Command, Control, Demand, MixOutput, Mixing, Surroundings,
 };
-use sophie_control::mixer::Allocation;
+use sophie_control::maths::vector::{Quat, Vec3};
 use sophie_control::params::Params;
-use sophie_control::setpoint::Setpoint;
-use sophie_control::vector::{Quat, Vec3};
-use sophie_control::wrench::Wrench;
 use sophie_mixers::Mixer;
 
 use super::response::Response;

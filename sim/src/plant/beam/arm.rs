@@ -8,7 +8,7 @@
 //! at the rates before.
 
 use glam::DVec3;
-use sophie_control::wrench::{FORE, SIDE};
+use sophie_control::allocation::wrench::{FORE, SIDE};
 
 use super::super::GRAVITY;
 use super::super::body::Load;

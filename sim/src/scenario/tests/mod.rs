@@ -4,9 +4,9 @@ mod refusals;
 
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
+use sophie_control::allocation::wrench::Configuration;
 use sophie_control::params::{Params, RcProtocol, ServoMarks};
-use sophie_control::rc::ArmChoice;
-use sophie_control::wrench::Configuration;
+use sophie_control::pilot::rc::ArmChoice;
 use sophie_mixers::Variant;
 
 use super::keys::{KEYS, Kind};

@@ -1,6 +1,6 @@
 //! Steps that the console's `calibrate` and `rotors` lead through.
 
-use sophie_control::decimal;
+use sophie_control::maths::decimal;
 
 use super::checks::takes_pulses;
 use super::walk::{Stop, Verdict, Walk};

@@ -463,7 +463,7 @@ impl Mcu for H743 {
 
 #[cfg(test)]
 mod tests {
-    use sophie_control::fsr::FsrScale;
+    use sophie_control::gripper::contact_pressure::FsrScale;
     use sophie_control::params::Params;
 
     use super::*;

@@ -75,8 +75,8 @@ impl Loose {
         );
         let (mut energy, mut linear, mut angular) = self.body.motion(v, w);
         for (i, arm) in self.arms.iter().enumerate() {
-            let side = f64::from(sophie_control::wrench::SIDE[i]);
-            let x = ARM_LENGTH * f64::from(sophie_control::wrench::FORE[i]);
+            let side = f64::from(sophie_control::allocation::wrench::SIDE[i]);
+            let x = ARM_LENGTH * f64::from(sophie_control::allocation::wrench::FORE[i]);
             let (q, rate) = (arm.q, arm.rate);
             let ends = points(&q, &rate, [MIDDLE, 1.0]);
             for (point, mass) in ends.iter().zip([spec.masses.middle, spec.masses.tip]) {

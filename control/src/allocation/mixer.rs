@@ -1,0 +1,90 @@
+//! Allocation of a wrench to four rotors whose arms bend, recomputed at 1 kHz.
+//!
+//! [`Flexible`] flies. The mixer task takes any [`Allocation`]; the simulator flies others of the same parts:
+//! [`Limits`] of rotors and yaw, and the [`Split`] of a wrench.
+
+mod flexible;
+mod limits;
+mod split;
+
+pub use flexible::{Flexible, YAW_FLOOR};
+pub use limits::Limits;
+pub use split::{Split, moment_patterns, stiff};
+
+use crate::allocation::arm_tilt::TiltModel;
+use crate::allocation::desaturation::Given;
+use crate::allocation::wrench::{PerArm, Wrench};
+use crate::chain::messages::{Demand, MixOutput};
+use crate::chain::mixing::{Mixing, Surroundings};
+
+/// Result of one step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Mix {
+    /// Thrust of each rotor, N, within the idle and the battery's limit.
+    pub thrusts: PerArm<f32>,
+    /// Shares given.
+    pub given: Given,
+    /// Yaw was given up for lack of authority; its integrator is to be reset.
+    pub yaw_gated: bool,
+}
+
+/// Inputs of an allocation besides the wrench.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Conditions {
+    /// Yaw may be used.
+    pub yaw: bool,
+    /// Battery voltage over nominal, limited to 0.5..1; lowers the largest thrust by its square.
+    pub battery_ratio: f32,
+    /// Step time, s, > 0.
+    pub dt: f32,
+}
+
+/// Turns wrenches into thrusts at the arms' modelled tilt.
+pub trait Allocation {
+    /// Thrusts for the wrench `w` (N, N·m) at the present tilt; idle if `w` is not finite.
+    fn allocate(&mut self, w: &Wrench, c: Conditions) -> Mix;
+
+    /// Rotors at idle.
+    fn at_idle(&self) -> Mix;
+
+    /// Steps the models of arms and motors by `dt` s with the sent thrusts (N).
+    fn follow(&mut self, thrusts: &PerArm<f32>, dt: f32);
+
+    /// The arms' modelled tilt.
+    fn tilt(&self) -> &TiltModel;
+
+    /// The arms' modelled tilt, for correction by the sensors.
+    fn tilt_mut(&mut self) -> &mut TiltModel;
+
+    /// One step: [`Self::allocate`], then [`Self::follow`].
+    #[inline(always)]
+    fn mix(&mut self, w: &Wrench, c: Conditions) -> Mix {
+        let mix = self.allocate(w, c);
+        self.follow(&mix.thrusts, c.dt);
+        mix
+    }
+
+    /// One step of `dt` s with the rotors at idle.
+    fn idle(&mut self, dt: f32) -> Mix {
+        let mix = self.at_idle();
+        self.follow(&mix.thrusts, dt);
+        mix
+    }
+
+    /// One step of the `mixing` that owns this allocation.
+    ///
+    /// Generic code is built with its caller, on a board for size. The flying allocation repeats this method without
+    /// inlining, to be built with this crate for speed.
+    #[inline(always)]
+    fn step_mixing(
+        mixing: &mut Mixing<Self>,
+        at_us: u64,
+        demand: &Demand,
+        surroundings: &Surroundings,
+        out: &mut MixOutput,
+    ) where
+        Self: Sized,
+    {
+        mixing.compose(at_us, demand, surroundings, out);
+    }
+}

@@ -1,0 +1,684 @@
+//! The way onto the pipe by itself, 100 Hz: finds the crown by the steps of the range, looks for the pipe's ends, and
+//! comes down over it. It asks for velocities, as the sticks do in a hold, and docs/hold.md describes it.
+//!
+//! Lengths are from where a try began: forward and right along its heading, down.
+
+#[cfg(test)]
+mod tests;
+mod to_target;
+
+use crate::approach::limits::*;
+use crate::approach::pipe_target::PipeTarget;
+use crate::approach::range_edges::{Edge, Edges};
+use crate::contact::contact_force::Held;
+use crate::maths::scalar::{self, clamp, clamp_abs};
+use crate::maths::vector::Vec3;
+use crate::navigation::position_estimator::{Foot, about_down};
+use crate::params::Params;
+use crate::position_hold::Wish;
+
+/// Why a try ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Doubt {
+    /// No pipe across the whole sweep.
+    NoPipe,
+    /// Between its ends there is no room.
+    TooShort,
+    /// The range no longer sees it.
+    PipeLost,
+    /// It does not come to rest over the crown, or two crossings differ.
+    NotCentred,
+    /// Nothing was touched where the crown should be.
+    NotTouched,
+    /// No range.
+    RangeStale,
+    /// Below the crown it shows what was not there before.
+    RangeMisfit,
+    /// It shows higher steps than before.
+    RangeLong,
+    /// The place of the pipe is not known any more.
+    TargetStale,
+    /// That place is none that the vehicle can reach.
+    TargetFar,
+    /// That place jumps.
+    TargetJumps,
+}
+
+/// What the law sees, in the estimate's axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// m.
+    pub position: Vec3,
+    /// m/s.
+    pub velocity: Vec3,
+    /// Of the nose, rad.
+    pub heading: f32,
+    /// The point that is held, m.
+    pub held: Vec3,
+    /// Age of the newest fix or flow, s.
+    pub age: f32,
+    /// Where the range sees something.
+    pub foot: Foot,
+    /// Where the pipe is said to be; with it no range is asked.
+    pub target: Option<PipeTarget>,
+}
+
+/// Part of the way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Phase {
+    /// Up from the pipe; then another try, or the end.
+    Climb,
+    /// Across, wider and wider, until the pipe was crossed.
+    Search,
+    /// Over the crown, and down to the height of the crossings.
+    Over,
+    /// Along the pipe, forward and back.
+    Fore,
+    Aft,
+    /// Across, for the crown.
+    Cross,
+    /// To rest over the crown.
+    Centre,
+    /// Down to the gate.
+    Descend,
+    /// Onto the pipe.
+    Commit,
+}
+
+/// A step that was not there before: what it makes of the range, the level that it came from, m down, and how long it has
+/// lasted, s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Other {
+    doubt: Doubt,
+    from: f32,
+    seconds: f32,
+}
+
+/// The law and its state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Approach {
+    diameter: f32,
+    /// Where the range looks down from, of the centre of mass, m: forward, right, down, as the nose is along the pipe.
+    lens: Vec3,
+    origin: Vec3,
+    heading: f32,
+    jumps: u8,
+    phase: Phase,
+    /// Time in it, s.
+    since: f32,
+    /// It only climbs, to be left there.
+    leaves: bool,
+    /// It comes back from another try.
+    returns: bool,
+    /// Height to climb to, m.
+    up: f32,
+    edges: Edges,
+    seen: u8,
+    /// Heights of the steps onto the pipe and off it as it was crossed first, m: infinite until then, and where nothing was within
+    /// reach beside it.
+    steps: [f32; 2],
+    /// Longest range that there was, m.
+    farthest: f32,
+    other: Option<Other>,
+    /// Middle of the sweeps, forward and right, m; side of the present leg, half the sweep's width, m, and legs flown.
+    middle: Vec3,
+    side: f32,
+    reach: f32,
+    legs: u8,
+    /// Where the range came onto the pipe, m.
+    entered: Option<f32>,
+    /// The middle of what the search has met last, by one of its edges, right, m.
+    met: Option<f32>,
+    /// The pipe's crown: right and down, m, half its width, m.
+    crown: f32,
+    top: f32,
+    half: f32,
+    /// Crown by the crossing before.
+    before: Option<f32>,
+    /// Where it sits down along the pipe, m, and the ends that were seen.
+    along: f32,
+    ends: [Option<f32>; 2],
+    /// Where the range fell off on the way along, m, and for how long it has seen no pipe at the way's end.
+    fell: Option<f32>,
+    lost: Held,
+    /// It was crossed at this height, and looked along.
+    crossed: bool,
+    looked: bool,
+    settled: Held,
+    /// Speed across a little ago, m/s.
+    slow: f32,
+    left: bool,
+    /// The pipe is where it is said to be: nothing is searched.
+    given: bool,
+    /// Asked for, m/s.
+    speed: Vec3,
+}
+
+impl Approach {
+    /// Begins where the vehicle is, over or beside a pipe along `heading`, rad.
+    pub fn begin(p: &Params, v: &View, heading: f32, jumps: u8) -> Self {
+        let law = Self {
+            diameter: p.pipe_diameter,
+            lens: p.flow_lens(),
+            origin: v.position,
+            heading,
+            jumps,
+            phase: Phase::Search,
+            since: 0.0,
+            leaves: false,
+            returns: false,
+            up: -RISE,
+            edges: Edges::default(),
+            seen: v.foot.count,
+            steps: [f32::INFINITY; 2],
+            farthest: 0.0,
+            other: None,
+            middle: Vec3::ZERO,
+            side: 1.0,
+            reach: SWEEP,
+            legs: 0,
+            entered: None,
+            met: None,
+            crown: 0.0,
+            top: 0.0,
+            half: 0.5 * p.pipe_diameter,
+            before: None,
+            along: 0.0,
+            ends: [None; 2],
+            fell: None,
+            lost: Held::default(),
+            crossed: false,
+            looked: false,
+            settled: Held::default(),
+            slow: 0.0,
+            left: false,
+            given: false,
+            speed: Vec3::ZERO,
+        };
+        match &v.target {
+            Some(target) => law.to(target),
+            None => law,
+        }
+    }
+
+    /// Climbs first: another try, or with `leaves` the way off the pipe.
+    pub fn again(p: &Params, v: &View, heading: f32, jumps: u8, leaves: bool) -> Self {
+        Self {
+            phase: Phase::Climb,
+            leaves,
+            returns: true,
+            up: if leaves { -HIGH } else { -RISE },
+            ..Self::begin(p, v, heading, jumps)
+        }
+    }
+
+    /// Climbs to where it crosses `crown`, the place at which it was last taken to be, and sweeps about it: an escape has
+    /// carried the vehicle a metre or two away.
+    pub fn back_to(crown: Vec3, p: &Params, v: &View, heading: f32, jumps: u8) -> Self {
+        let law = Self::again(p, v, heading, jumps, false);
+        let off = law.local(crown);
+        Self {
+            up: clamp(off.z - HIGH, -2.0 * HIGH, 0.0),
+            middle: Vec3::new(off.x, off.y, 0.0),
+            side: if off.y > 0.0 { 1.0 } else { -1.0 },
+            ..law
+        }
+    }
+
+    /// Where the crown is taken to be on the way down, in the estimate's axes, m.
+    pub fn crown(&self) -> Option<Vec3> {
+        let crown = about_down(self.spot(0.0), self.heading) + self.origin;
+        self.committed().then_some(crown)
+    }
+
+    /// Up and away from where the range misleads, to be left there.
+    pub fn cleared(p: &Params, v: &View, heading: f32, jumps: u8) -> Self {
+        Self {
+            up: -CLEAR,
+            ..Self::again(p, v, heading, jumps, true)
+        }
+    }
+
+    /// Another try from the top, over the crown where that is known; what leaves goes on doing so.
+    pub fn retried(&self, p: &Params, v: &View, heading: f32, jumps: u8) -> Self {
+        let again = Self::again(p, v, heading, jumps, self.leaves);
+        if self.leaves {
+            return again;
+        }
+        let known = !matches!(self.phase, Phase::Climb | Phase::Search);
+        let top = if known { self.top } else { self.edges.top() };
+        let over = self.origin.z + top - HIGH - v.position.z;
+        Self {
+            given: self.given,
+            steps: self.steps,
+            farthest: self.farthest,
+            up: clamp(over, -2.0 * HIGH, 0.0),
+            ..again
+        }
+    }
+
+    /// A touch from here on is the pipe's.
+    pub fn committed(&self) -> bool {
+        matches!(self.phase, Phase::Descend | Phase::Commit)
+    }
+
+    /// It is on the way down, so near that nothing but the pipe's back is below.
+    pub fn near_crown(&self, v: &View) -> bool {
+        let at = self.local(v.position);
+        let over = (at.y - self.crown).abs() < NEAR_OFF;
+        self.phase == Phase::Descend && !self.given && over && self.clearance(at) < STEADY
+    }
+
+    /// It is on its way up.
+    pub fn climbs(&self) -> bool {
+        self.phase == Phase::Climb
+    }
+
+    /// It only climbs.
+    pub fn leaves(&self) -> bool {
+        self.leaves
+    }
+
+    /// It has climbed off the pipe.
+    pub fn has_left(&self) -> bool {
+        self.left
+    }
+
+    /// The level way off the pipe for a vehicle at `position`, length 1, in the estimate's axes: across, to the nearer side.
+    /// `None` while nothing has been met.
+    pub fn off_pipe(&self, position: Vec3) -> Option<Vec3> {
+        let here = self.local(position).y;
+        let off = match (self.phase, self.met) {
+            (Phase::Search, Some(met)) => here - met,
+            // Over something from the beginning: on, as the sweep goes.
+            (Phase::Search, None) if self.origin.z + self.edges.level() < -RAISED => self.side,
+            (Phase::Search, None) => return None,
+            _ => here - self.crown,
+        };
+        let side = if off < 0.0 { -1.0 } else { 1.0 };
+        Some(about_down(Vec3::new(0.0, side, 0.0), self.heading))
+    }
+
+    /// Origin of the estimate's axes has jumped since the beginning.
+    pub fn jumped(&self, jumps: u8) -> bool {
+        self.jumps != jumps
+    }
+
+    /// One step of `dt` s: what to ask for.
+    ///
+    /// # Errors
+    /// Why the try ends.
+    pub fn step(&mut self, v: &View, dt: f32) -> Result<Wish, Doubt> {
+        self.since += dt;
+        let asks = !self.leaves && self.phase != Phase::Commit;
+        if asks && self.given {
+            self.follow(v, dt)?;
+        } else if asks && v.foot.age > RANGE_AGE {
+            return Err(Doubt::RangeStale);
+        }
+        let before = self.edges.level();
+        let edge = self.look(v).filter(|_| !self.given);
+        let at = self.local(v.position);
+        if let Some(edge) = edge {
+            self.other = self.other.filter(|other| !self.at_known(other.from));
+            let found = self.compare(edge, at).err().filter(|_| !self.climbs() && asks);
+            let found = found.map(|doubt| Other {
+                doubt,
+                from: before,
+                seconds: 0.0,
+            });
+            self.other = self.other.or(found);
+        }
+        if let Some(other) = &mut self.other {
+            other.seconds += dt;
+            if other.seconds > LASTING {
+                return Err(other.doubt);
+            }
+        }
+        let held = self.local(v.held);
+        let velocity = about_down(v.velocity, -self.heading);
+        let wanted = match self.phase {
+            Phase::Climb => Ok(self.climb(at, held)),
+            Phase::Search => self.search(edge, held),
+            Phase::Over => self.over(at, held, scalar::wrap_pi(self.heading - v.heading)),
+            Phase::Fore | Phase::Aft => self.look_along(edge, held, dt),
+            Phase::Cross => self.cross(edge, held),
+            Phase::Centre => self.centre(edge, at, held),
+            Phase::Descend => self.descend(edge, (at, velocity, held), v.age, dt),
+            Phase::Commit => self.commit(at, held),
+        };
+        // What such a range makes of the pipe is not looked into.
+        let wanted = wanted.map_err(|doubt| self.other.map_or(doubt, |other| other.doubt))?;
+        self.speed = Vec3::new(
+            scalar::slew(self.speed.x, wanted.x, SLEW * dt),
+            scalar::slew(self.speed.y, wanted.y, SLEW * dt),
+            wanted.z,
+        );
+        let off = scalar::wrap_pi(self.heading - v.heading);
+        Ok(Wish {
+            velocity: about_down(self.speed, -off),
+            yaw_rate: clamp_abs(HEADING_GAIN * off, YAW_RATE_MAX),
+            lean: [0.0; 2],
+        })
+    }
+
+    fn local(&self, place: Vec3) -> Vec3 {
+        about_down(place - self.origin, -self.heading)
+    }
+
+    fn enter(&mut self, phase: Phase) {
+        self.phase = phase;
+        self.since = 0.0;
+        (self.entered, self.fell) = (None, None);
+        (self.settled, self.lost) = Default::default();
+    }
+
+    fn late(&self, limit: f32, doubt: Doubt) -> Result<(), Doubt> {
+        if self.since > limit { Err(doubt) } else { Ok(()) }
+    }
+
+    /// The step that a new range shows.
+    fn look(&mut self, v: &View) -> Option<Edge> {
+        if v.foot.count == self.seen {
+            return None;
+        }
+        self.seen = v.foot.count;
+        let range = v.foot.point.map_or(0.0, |point| point.z - v.position.z);
+        self.farthest = self.farthest.max(range);
+        match v.foot.point {
+            Some(point) => self.edges.step(self.local(point)),
+            // Nothing within reach: farther than all that is.
+            None => self.edges.step_beyond(self.local(v.position)),
+        }
+    }
+
+    /// What is below is `before`, m down, again, or the pipe, or the ground at its sides.
+    fn at_known(&self, before: f32) -> bool {
+        let [onto, off] = self.steps.map(|step| self.top + step);
+        let near = |known: f32| (self.edges.level() - known).abs() < 0.5 * self.diameter;
+        self.sees_pipe() || [before, onto, off].into_iter().any(near)
+    }
+
+    /// Compares the step at `edge`, seen from `at`, with those by which the pipe was crossed first.
+    fn compare(&self, edge: Edge, at: Vec3) -> Result<(), Doubt> {
+        let [onto, off] = self.steps;
+        if !(onto + off).is_finite() {
+            return Ok(());
+        }
+        let most = onto.max(off);
+        let falls = matches!(edge, Edge::Off(_));
+        let from_crown = |step| self.edges.level() - step - self.edges.top() < 0.5 * self.diameter;
+        match self.edges.height() {
+            Some(step) if step > HIGHER * most + 0.5 * self.diameter => Err(Doubt::RangeLong),
+            Some(step) if falls && from_crown(step) && step < LOWEST * onto.min(off) => {
+                Err(Doubt::RangeMisfit)
+            }
+            // From as high what is below was within reach.
+            None if falls && self.edges.top() + most - at.z < self.farthest => Err(Doubt::RangeLong),
+            _ => Ok(()),
+        }
+    }
+
+    /// Velocity from the held point to `target`, level at most `speed` and vertically at most `climb`, m/s.
+    fn way(held: Vec3, target: Vec3, speed: f32, climb: f32) -> Vec3 {
+        let off = target - held;
+        Vec3::new(
+            level(off.x, speed),
+            level(off.y, speed),
+            clamp_abs(HEIGHT_GAIN * off.z, climb),
+        )
+    }
+
+    fn climb(&mut self, at: Vec3, held: Vec3) -> Vec3 {
+        let target = Vec3::new(0.0, 0.0, self.up);
+        if (at.z - self.up).abs() < OVER || self.since > WAY_TIME {
+            self.left = self.leaves;
+            self.enter(if self.given { Phase::Over } else { Phase::Search });
+        }
+        Self::way(held, target, CROSS_SPEED, CLIMB_SPEED)
+    }
+
+    /// The middle of the pipe, right, m, where this `edge` ends a crossing.
+    fn crossed(&mut self, edge: Option<Edge>) -> Option<f32> {
+        match (edge?, self.entered) {
+            (Edge::Onto(at), _) => {
+                self.entered = Some(at.y);
+                let [onto, off] = &mut self.steps;
+                if off.is_infinite() {
+                    *onto = self.edges.height().unwrap_or(f32::INFINITY);
+                }
+                None
+            }
+            (Edge::Off(at), Some(from)) => {
+                self.entered = None;
+                let width = (at.y - from).abs();
+                let (least, most) = WIDTH;
+                if !(least * self.diameter..=most * self.diameter).contains(&width) {
+                    return None;
+                }
+                (self.half, self.top) = (0.5 * width, self.edges.top());
+                let [onto, off] = &mut self.steps;
+                if onto.is_finite() && off.is_infinite() {
+                    *off = self.edges.height().unwrap_or(f32::INFINITY);
+                }
+                Some(0.5 * (at.y + from))
+            }
+            (Edge::Off(_), None) => None,
+        }
+    }
+
+    fn search(&mut self, edge: Option<Edge>, held: Vec3) -> Result<Vec3, Doubt> {
+        self.late(SEARCH_TIME, Doubt::NoPipe)?;
+        self.met = match edge {
+            Some(Edge::Onto(at)) => Some(at.y + self.side * self.half),
+            Some(Edge::Off(at)) => Some(at.y - self.side * self.half),
+            None => self.met,
+        };
+        if let Some(middle) = self.crossed(edge) {
+            self.crown = middle;
+            self.along = held.x;
+            self.enter(Phase::Over);
+        }
+        // A pipe that has been come onto is crossed to its end.
+        let beyond = self.entered.map_or(0.0, |_| self.diameter);
+        let across = self.side * (self.reach + beyond) - self.lens.y;
+        let target = self.middle + Vec3::new(0.0, across, held.z);
+        if (target.y - held.y).abs() < REACHED {
+            self.reach += if self.side < 0.0 { SWEEP } else { 0.0 };
+            self.side = -self.side;
+            if self.reach > SWEEP_MAX {
+                return Err(Doubt::NoPipe);
+            }
+        }
+        Ok(Self::way(held, target, SWEEP_SPEED, 0.0))
+    }
+
+    /// The place over the crown, `height` m above it.
+    fn spot(&self, height: f32) -> Vec3 {
+        Vec3::new(self.along, self.crown, self.top - height)
+    }
+
+    fn over(&mut self, at: Vec3, held: Vec3, askew: f32) -> Result<Vec3, Doubt> {
+        self.late(WAY_TIME, Doubt::NotCentred)?;
+        let target = self.spot(LOW);
+        let off = target - at;
+        if off.y.abs() < OVER && off.z.abs() < OVER && self.since > OVER_TIME {
+            if self.given {
+                if off.x.abs() < OVER && askew.abs() < ALONG {
+                    self.enter(Phase::Centre);
+                }
+            } else if self.crossed {
+                self.ends = [None; 2];
+                self.enter(Phase::Fore);
+            } else {
+                self.turn_across();
+            }
+        }
+        Ok(Self::way(held, target, CROSS_SPEED, DESCENT))
+    }
+
+    /// The crossings begin.
+    fn turn_across(&mut self) {
+        (self.side, self.legs, self.before) = (1.0, 0, None);
+        self.enter(Phase::Cross);
+    }
+
+    /// The range sees the pipe's back.
+    fn sees_pipe(&self) -> bool {
+        self.given || (self.edges.level() - self.top).abs() < 0.5 * self.diameter
+    }
+
+    fn look_along(&mut self, edge: Option<Edge>, held: Vec3, dt: f32) -> Result<Vec3, Doubt> {
+        self.late(WAY_TIME, Doubt::NotCentred)?;
+        let fore = self.phase == Phase::Fore;
+        let middle = self.middle.x;
+        let goal = middle + if fore { LOOK } else { -LOOK };
+        // The beam goes along the crown, not the vehicle.
+        let Vec3 { x, y, .. } = self.lens;
+        let target = Vec3::new(goal - x, self.crown - y, self.top - LOW);
+        // A gust carries the beam off the side as well: what it comes back onto has not ended.
+        match edge {
+            Some(Edge::Off(at)) => self.fell = Some(at.x),
+            Some(Edge::Onto(_)) => self.fell = None,
+            None => (),
+        }
+        let there = (target.x - held.x).abs() < REACHED;
+        let sees = self.sees_pipe();
+        self.lost.step(there && !sees, dt);
+        if there && (sees || self.lost.time() >= END_TIME) {
+            let end = if sees {
+                None
+            } else {
+                Some(self.fell.unwrap_or(held.x + x))
+            };
+            let [front, rear] = &mut self.ends;
+            *(if fore { front } else { rear }) = end;
+            if fore {
+                self.enter(Phase::Aft);
+            } else {
+                let [front, rear] = self.ends;
+                let most = front.map_or(middle + LOOK, |end| end - END);
+                let least = rear.map_or(middle - LOOK, |end| end + END);
+                if most < least {
+                    return Err(Doubt::TooShort);
+                }
+                self.along = clamp(middle, least, most);
+                self.looked = true;
+                self.turn_across();
+            }
+        }
+        Ok(Self::way(held, target, CROSS_SPEED, DESCENT))
+    }
+
+    fn cross(&mut self, edge: Option<Edge>, held: Vec3) -> Result<Vec3, Doubt> {
+        self.late(2.0 * WAY_TIME, Doubt::NotCentred)?;
+        if let Some(middle) = self.crossed(edge) {
+            if self.before.is_some_and(|before| (before - middle).abs() > AGREE) {
+                return Err(Doubt::NotCentred);
+            }
+            self.before = Some(middle);
+            self.crown = middle;
+        }
+        let mut target = self.spot(LOW);
+        target.y += self.side * (self.half + BESIDE) - self.lens.y;
+        if (target.y - held.y).abs() < REACHED {
+            self.side = -self.side;
+            self.legs = self.legs.saturating_add(1);
+            if self.legs >= LEGS {
+                if self.before.is_none() {
+                    return Err(Doubt::PipeLost);
+                }
+                self.crossed = true;
+                self.enter(if self.looked { Phase::Centre } else { Phase::Over });
+            }
+        }
+        Ok(Self::way(held, target, CROSS_SPEED, DESCENT))
+    }
+
+    fn centre(&mut self, edge: Option<Edge>, at: Vec3, held: Vec3) -> Result<Vec3, Doubt> {
+        self.late(CENTRE_TIME, Doubt::NotCentred)?;
+        match edge {
+            // From the side at which the last crossing ended: what has drifted since shows.
+            Some(Edge::Onto(onto)) => {
+                let inwards = if onto.y < self.crown {
+                    self.half
+                } else {
+                    -self.half
+                };
+                let middle = onto.y + inwards;
+                if (middle - self.crown).abs() > AGREE {
+                    return Err(Doubt::NotCentred);
+                }
+                self.crown += NEWER * (middle - self.crown);
+            }
+            // A gust carries the beam off the side.
+            Some(Edge::Off(_)) | None => (),
+        }
+        // It comes to rest on the way down: each second here costs a centimetre of what the edge has given.
+        if (at.y - self.crown).abs() < NEAR_OFF && self.sees_pipe() {
+            self.enter(Phase::Descend);
+        }
+        Ok(Self::way(held, self.spot(LOW), CROSS_SPEED, DESCENT))
+    }
+
+    fn descend(
+        &mut self,
+        edge: Option<Edge>,
+        (at, velocity, held): (Vec3, Vec3, Vec3),
+        age: f32,
+        dt: f32,
+    ) -> Result<Vec3, Doubt> {
+        self.late(GATE_WAIT, Doubt::NotCentred)?;
+        if matches!(edge, Some(Edge::Off(_))) || !self.sees_pipe() {
+            return Err(Doubt::PipeLost);
+        }
+        let off = at.y - self.crown;
+        let range = self.clearance(at);
+        let share = clamp(self.since / PATIENCE, 0.0, 1.0);
+        let within = STRICT + (CONTENT - STRICT) * share;
+        // Where it will touch if it sinks on: half of what its speed has just changed by will stay.
+        let gained = velocity.y - self.slow;
+        self.slow += gained * dt / (dt + SLOW_TIME);
+        let ahead = off + LAST_TIME * (velocity.y + LAST_TIME / (4.0 * SLOW_TIME) * gained);
+        let over = off.abs() < CONTENT && ahead.abs() < within && velocity.y.abs() < GATE_SPEED;
+        let blind = age > BLIND;
+        // Where it would stop: what sinks on past the gate must not do so before it is known to touch on the crown.
+        let stops = range - STOP_TIME * velocity.z;
+        let at_gate = stops < 1.3 * GATE;
+        if self.settled.step(at_gate && over && !blind, dt) >= GATE_TIME {
+            self.enter(Phase::Commit);
+        }
+        let mut way = Self::way(held, self.spot(LOW), CORRECT_SPEED, DESCENT);
+        let waits = off.abs() > NEAR_OFF;
+        // Flow sees again from a little higher. A pose comes back or not: what drifts must not do so beside the pipe.
+        let (goal, back) = match (blind, self.given) {
+            (false, _) => (GATE, BACK_SPEED),
+            (true, false) => (SEEING, BACK_SPEED),
+            (true, true) => (LOW, CLIMB_SPEED),
+        };
+        let braked = HEIGHT_GAIN * (self.clearance(held).min(stops) - goal);
+        way.z = if waits && range < NEAR && !blind {
+            0.0
+        } else {
+            clamp(braked, -back, DESCENT)
+        };
+        Ok(way)
+    }
+
+    fn commit(&mut self, at: Vec3, held: Vec3) -> Result<Vec3, Doubt> {
+        self.late(TOUCH_WAIT, Doubt::NotTouched)?;
+        if (at.y - self.crown).abs() > ASTRAY {
+            return Err(Doubt::NotCentred);
+        }
+        let mut way = Self::way(held, self.spot(LOW), CORRECT_SPEED, DESCENT);
+        way.z = LAST_SPEED;
+        Ok(way)
+    }
+}
+
+/// Speed towards what is `off` m away that a stop at [`SLEW`] still ends there, at most `speed`, m/s.
+fn level(off: f32, speed: f32) -> f32 {
+    let most = 1.6 * SLEW * off.abs();
+    let braked = most * scalar::inv_sqrt(most);
+    clamp(braked, 0.0, speed) * if off < 0.0 { -1.0 } else { 1.0 }
+}

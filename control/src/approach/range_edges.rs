@@ -1,0 +1,111 @@
+//! Steps of what is below: where the beam of the range comes onto something and where it falls off it.
+
+use crate::maths::vector::Vec3;
+
+/// Least step, m: half the height of the smallest pipe, and three times what a pipe's flank falls between two ranges.
+const STEP: f32 = 0.12;
+/// Share by which the level follows each range of the same surface.
+const FOLLOW: f32 = 0.5;
+/// Depth that stands for nothing within reach, m.
+const BEYOND: f32 = 50.0;
+
+/// A step, with the place of its edge: forward, right, down, m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Edge {
+    /// Onto something nearer.
+    Onto(Vec3),
+    /// Off it.
+    Off(Vec3),
+}
+
+/// What the ranges before have shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Edges {
+    /// Depth of the present surface, m; `None` before the first range.
+    level: Option<f32>,
+    /// Highest of the one that was come onto last, m.
+    top: f32,
+    last: Vec3,
+    /// First place of another surface, to be confirmed by the next range.
+    other: Option<Vec3>,
+    /// Height of the last step, m.
+    height: f32,
+}
+
+impl Edges {
+    /// Takes the next foot of the beam.
+    pub fn step(&mut self, foot: Vec3) -> Option<Edge> {
+        let Some(level) = self.level else {
+            (self.level, self.top, self.last) = (Some(foot.z), foot.z, foot);
+            return None;
+        };
+        let off = foot.z - level;
+        if off.abs() < STEP {
+            let level = level + FOLLOW * off;
+            (self.level, self.last, self.other) = (Some(level), foot, None);
+            self.top = self.top.min(level);
+            return None;
+        }
+        let other = self.other.replace(foot)?;
+        if (other.z - level) * off < 0.0 || (other.z - foot.z).abs() > STEP {
+            return None;
+        }
+        // Of the two surfaces' feet the higher one's: a tilted beam meets the ground a hand's breadth beside the edge.
+        let last = self.last;
+        self.height = off.abs();
+        (self.level, self.last, self.other) = (Some(foot.z), foot, None);
+        if off < 0.0 {
+            self.top = foot.z;
+            Some(Edge::Onto(other))
+        } else {
+            Some(Edge::Off(last))
+        }
+    }
+
+    /// The same where nothing is within reach of a vehicle at `place`.
+    pub fn step_beyond(&mut self, place: Vec3) -> Option<Edge> {
+        self.step(Vec3::new(place.x, place.y, BEYOND))
+    }
+
+    /// Depth of the present surface, m.
+    pub fn level(&self) -> f32 {
+        self.level.unwrap_or(BEYOND)
+    }
+
+    /// Height of the last step, m; `None` where nothing was within reach beside it.
+    pub fn height(&self) -> Option<f32> {
+        Some(self.height).filter(|height| *height < 0.5 * BEYOND)
+    }
+
+    /// Highest of the surface that was come onto last, m down.
+    pub fn top(&self) -> f32 {
+        self.top
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The foot of a beam that leans by 0.1: beside the pipe it falls 15 cm farther off than on it.
+    #[test]
+    fn an_edge_is_where_the_beam_meets_the_pipe() {
+        let mut edges = Edges::default();
+        let mut found = [None; 2];
+        for step in 0..100u8 {
+            let y = 0.01 * f32::from(step);
+            let on = (0.3..0.6).contains(&(y + 0.04));
+            let (z, foot) = if on { (0.4, y + 0.04) } else { (1.9, y + 0.19) };
+            match edges.step(Vec3::new(0.0, foot, z)) {
+                Some(Edge::Onto(at)) => found[0] = Some(at.y),
+                Some(Edge::Off(at)) => found[1] = Some(at.y),
+                None => (),
+            }
+        }
+        let [onto, off] = found.map(|at| at.expect("an edge"));
+        assert!(
+            (onto - 0.3).abs() < 0.011 && (off - 0.6).abs() < 0.011,
+            "{onto} {off}"
+        );
+    }
+}

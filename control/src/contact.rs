@@ -1,0 +1,8 @@
+//! What touches the pipe and whether it stays there: contact force, friction limit, lean, slip, fall.
+
+pub mod contact_force;
+pub(crate) mod crown_offset;
+pub(crate) mod fall;
+pub mod friction_limit;
+pub(crate) mod lean;
+pub(crate) mod slip;

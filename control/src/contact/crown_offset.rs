@@ -1,0 +1,45 @@
+//! On which side of a resting vehicle the crown of the pipe is.
+//!
+//! Upright beside the crown the vehicle stands on one pad, and the rotors hold what of the weight they do not carry: the offset
+//! is y = -M / (W - T), positive to the right of the crown.
+
+use crate::contact::contact_force::Support;
+use crate::maths::scalar::clamp;
+use crate::mode::{Inputs, Reason};
+
+/// Time constant of the offset, s.
+const SMOOTHING: f32 = 0.3;
+/// Least load on the pipe from which an offset follows, N.
+const LOAD_MIN: f32 = 3.0;
+/// Largest offset that is shown as one, m, and the least that is worth showing.
+const OFFSET_MAX: f32 = 0.2;
+const OFFSET_SHOWN: f32 = 0.015;
+
+/// Offset of the vehicle from the crown, m, right positive.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Crown(f32);
+
+impl Crown {
+    /// One step of `dt` s.
+    pub fn step(&mut self, i: &Inputs, support: &Support, dt: f32) {
+        let load = support.weight() - i.lift;
+        let offset = -i.roll_moment / load;
+        if !support.resting() || load < LOAD_MIN || !offset.is_finite() {
+            self.0 = 0.0;
+            return;
+        }
+        let goal = clamp(offset, -OFFSET_MAX, OFFSET_MAX);
+        self.0 += (goal - self.0) * dt / (dt + SMOOTHING);
+    }
+
+    /// What the pilot reads.
+    pub fn side(self) -> Option<Reason> {
+        if self.0 > OFFSET_SHOWN {
+            Some(Reason::CrownLeft)
+        } else if self.0 < -OFFSET_SHOWN {
+            Some(Reason::CrownRight)
+        } else {
+            None
+        }
+    }
+}

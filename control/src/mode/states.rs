@@ -1,0 +1,15 @@
+//! One file a mode: what it does each step and what it watches.
+
+pub mod approach;
+pub mod armed;
+pub mod calibrating;
+pub mod clamping;
+pub mod contact;
+pub mod disarmed;
+pub mod escaping;
+pub mod failsafe;
+pub mod flight;
+pub mod hold;
+pub mod landed;
+pub mod perched;
+pub mod releasing;

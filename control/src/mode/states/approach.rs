@@ -1,0 +1,229 @@
+//! Free flight onto the pipe, or off it, by itself.
+
+use super::hold::{felt, fresh};
+use crate::approach::limits::RANGE_AGE;
+use crate::approach::planner::{Approach as Law, Doubt, View};
+use crate::arming::ArmingInhibits;
+use crate::contact::contact_force::HINT_FORCE;
+use crate::maths::vector::Vec3;
+use crate::mode::behaviour::Behaviour;
+use crate::mode::context::{Context, Step};
+use crate::mode::inputs::auto_perch::TRIES;
+use crate::mode::{Inputs, Reason, Setpoint};
+use crate::navigation::position_estimator::Estimate;
+use crate::pilot::stick_positions::{centred, keeps_hold};
+use crate::position_hold::{PositionHold, Wish};
+
+/// See [`crate::mode::Mode::Approach`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Approach {
+    pub law: PositionHold,
+    way: Law,
+    wanted: Setpoint,
+    /// Why no other try follows.
+    pub given_up: Option<Reason>,
+    /// The same, once it has climbed.
+    gives_up: Option<Reason>,
+    /// The try ends at a touch.
+    astray: bool,
+}
+
+/// The perch switch was turned on while the position is held.
+pub fn asked(step: &Step<'_>) -> bool {
+    let turned = step.context.perch_switch.seen_off;
+    let wanted = |s: crate::pilot::rc::Sticks| s.perch_switch && keeps_hold(&s);
+    turned && step.inputs.sticks.is_some_and(wanted)
+}
+
+/// Why it cannot begin.
+pub fn obstacle(step: &Step<'_>) -> Option<Reason> {
+    let sticks = step.inputs.sticks.unwrap_or_default();
+    let ranged = |e: Estimate| e.foot.age <= RANGE_AGE;
+    if let Some(why) = step.inputs.servo_trouble() {
+        Some(Reason::Check(why))
+    } else if !centred(&sticks) {
+        Some(Reason::SticksNotCentred)
+    } else if !fresh(step.inputs) {
+        Some(Reason::NoPosition)
+    } else if let (Some(target), Some(e)) = (step.inputs.target, step.inputs.position) {
+        (!Law::reaches(&target, &e)).then_some(Reason::TargetFar)
+    } else if !step.inputs.position.is_some_and(ranged) {
+        Some(Reason::NoRange)
+    } else {
+        None
+    }
+}
+
+impl Approach {
+    /// Searches from where `law` holds.
+    pub fn search(law: Option<PositionHold>, step: &mut Step<'_>) -> Self {
+        Self::begin(law, step, |step, view, e| {
+            Law::begin(&step.context.params, view, heading(step, e), e.jumps)
+        })
+    }
+
+    /// Climbs, for another search or to be `left` there.
+    pub fn climb(step: &mut Step<'_>, left: bool) -> Self {
+        let crown = step.context.by_itself.crown.filter(|_| !left);
+        Self::begin(None, step, |step, view, e| {
+            let (params, heading) = (&step.context.params, heading(step, e));
+            match crown {
+                Some((crown, jumps)) if jumps == e.jumps => Law::back_to(crown, params, view, heading, jumps),
+                _ => Law::again(params, view, heading, e.jumps, left),
+            }
+        })
+    }
+
+    fn begin(
+        law: Option<PositionHold>,
+        step: &mut Step<'_>,
+        way: impl Fn(&Step<'_>, &View, &Estimate) -> Law,
+    ) -> Self {
+        let estimate = step.inputs.position.unwrap_or_default();
+        let law = law.unwrap_or_else(|| PositionHold::begin(&step.context.params, &estimate, &felt(step)));
+        let way = way(step, &view(&law, &estimate, step), &estimate);
+        let mut approach = Self {
+            law,
+            way,
+            wanted: Setpoint::Stop,
+            given_up: None,
+            gives_up: None,
+            astray: false,
+        };
+        approach.step(&estimate, step);
+        approach
+    }
+
+    /// It is on the way down to the pipe.
+    pub fn committed(&self) -> bool {
+        self.way.committed()
+    }
+
+    /// It crosses the pipe at a height, and touches nothing.
+    pub fn unaware(&self) -> bool {
+        !self.committed() && !self.way.climbs()
+    }
+
+    /// Its try has ended while something seemed to carry it.
+    pub fn astray(&self) -> bool {
+        self.astray
+    }
+
+    /// It has climbed off the pipe.
+    pub fn has_left(&self) -> bool {
+        self.way.has_left()
+    }
+
+    /// The level way off the pipe for a vehicle at `position`, length 1, in the estimate's axes; `None` where none is known.
+    pub fn off_pipe(&self, position: Vec3) -> Option<Vec3> {
+        self.way.off_pipe(position)
+    }
+
+    fn step(&mut self, estimate: &Estimate, step: &mut Step<'_>) {
+        let seen = view(&self.law, estimate, step);
+        if step.context.rise.misfit() && !self.way.leaves() {
+            self.misfit(false, &seen, estimate, step);
+        }
+        let result = if self.way.jumped(estimate.jumps) {
+            Err(Doubt::NotCentred)
+        } else {
+            self.way.step(&seen, step.dt)
+        };
+        if self.way.has_left() {
+            self.given_up = self.gives_up;
+        }
+        let crown = self.way.crown().map(|crown| (crown, estimate.jumps));
+        step.context.by_itself.crown = crown.or(step.context.by_itself.crown);
+        step.context.rise.steady = self.way.near_crown(&seen);
+        let wish = result.unwrap_or_else(|doubt| {
+            match doubt {
+                Doubt::RangeMisfit => self.misfit(false, &seen, estimate, step),
+                Doubt::RangeLong => self.misfit(true, &seen, estimate, step),
+                _ => self.again(reason(doubt), &seen, estimate, step),
+            }
+            Wish::default()
+        });
+        self.wanted = self.law.step(estimate, &felt(step), &wish, true, step.dt);
+    }
+
+    /// Another try, once, unless it is `proven`; then up and away.
+    fn misfit(&mut self, proven: bool, view: &View, e: &Estimate, step: &mut Step<'_>) {
+        let before = core::mem::replace(&mut step.context.by_itself.misfit, true) || proven;
+        self.again(Reason::RangeMisfit, view, e, step);
+        if before && !self.astray {
+            (self.given_up, self.gives_up) = (None, Some(Reason::RangeMisfit));
+            self.way = Law::cleared(&step.context.params, view, heading(step, e), e.jumps);
+        }
+    }
+
+    /// Another try, or none.
+    fn again(&mut self, why: Reason, view: &View, e: &Estimate, step: &mut Step<'_>) {
+        step.context.note(Some(why));
+        if self.committed() && step.context.support.force() > HINT_FORCE {
+            (self.astray, self.given_up) = (true, Some(why));
+            return;
+        }
+        let tries = &mut step.context.by_itself.tries;
+        let searched = matches!(
+            why,
+            Reason::NoPipe | Reason::RangeStale | Reason::TargetStale | Reason::TargetFar
+        );
+        if *tries >= TRIES || searched {
+            self.given_up = Some(why);
+        } else {
+            *tries += 1;
+            let heading = heading(step, e);
+            self.way = self.way.retried(&step.context.params, view, heading, e.jumps);
+        }
+    }
+}
+
+fn view(law: &PositionHold, e: &Estimate, step: &Step<'_>) -> View {
+    let heading = step.inputs.motion.map_or(0.0, |m| m.q.to_euler().2);
+    View {
+        position: e.position,
+        velocity: e.velocity,
+        heading: heading + e.turn,
+        held: law.held(),
+        age: e.age,
+        foot: e.foot,
+        target: step.inputs.target,
+    }
+}
+
+/// Heading along the pipe in the estimate's axes, rad.
+fn heading(step: &Step<'_>, e: &Estimate) -> f32 {
+    step.context.by_itself.heading + e.turn
+}
+
+fn reason(doubt: Doubt) -> Reason {
+    match doubt {
+        Doubt::NoPipe => Reason::NoPipe,
+        Doubt::TooShort => Reason::PipeTooShort,
+        Doubt::PipeLost => Reason::PipeLost,
+        Doubt::NotCentred => Reason::NotCentred,
+        Doubt::NotTouched => Reason::NotTouched,
+        Doubt::RangeStale => Reason::RangeStale,
+        Doubt::RangeMisfit | Doubt::RangeLong => Reason::RangeMisfit,
+        Doubt::TargetStale => Reason::TargetStale,
+        Doubt::TargetFar => Reason::TargetFar,
+        Doubt::TargetJumps => Reason::TargetJumps,
+    }
+}
+
+impl Behaviour for Approach {
+    fn advance(&mut self, step: &mut Step<'_>) {
+        // A silent inertial sensor stops the rotors within some steps; until then the last setpoint stands.
+        if let (Some(estimate), Some(_)) = (step.inputs.position, step.inputs.motion) {
+            self.step(&estimate, step);
+        }
+    }
+
+    fn rotors(&self, _: &Context, _: &Inputs) -> Setpoint {
+        self.wanted
+    }
+
+    fn reason(&self, context: &Context, inputs: &Inputs, _: ArmingInhibits) -> Option<Reason> {
+        context.reason(inputs, true)
+    }
+}

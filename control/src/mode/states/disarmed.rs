@@ -1,0 +1,63 @@
+//! Motors stopped, ready to be armed.
+
+use crate::arming::ArmingInhibits;
+use crate::gripper::retained_grip::GripMemory;
+use crate::mode::behaviour::Behaviour;
+use crate::mode::context::{Context, Step};
+use crate::mode::{ClampCommand, Inputs, Reason, Setpoint};
+use crate::pilot::bench_orders::BenchOrder;
+
+/// See [`crate::mode::Mode::Disarmed`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Disarmed {
+    /// Grip state, retained across motor stop and reset.
+    pub grip_memory: GripMemory,
+    /// Current bench order.
+    pub bench: Option<BenchOrder>,
+}
+
+impl Behaviour for Disarmed {
+    fn observe(&mut self, step: &mut Step<'_>) {
+        self.grip_memory = step.check_power_up_grip(self.grip_memory);
+        self.bench = step.context.bench.order();
+    }
+
+    fn advance(&mut self, step: &mut Step<'_>) {
+        self.grip_memory = step.context.after_switch(step.inputs.sticks, self.grip_memory);
+    }
+
+    fn grip_memory(&self) -> GripMemory {
+        self.grip_memory
+    }
+
+    fn tendons(&self) -> ClampCommand {
+        match (self.bench, self.grip_memory) {
+            (Some(BenchOrder::Place(place)), GripMemory::Open) => ClampCommand::Place(place),
+            (_, grip_memory) => grip_memory.tendons(),
+        }
+    }
+
+    fn rotors(&self, _: &Context, _: &Inputs) -> Setpoint {
+        match self.bench {
+            Some(BenchOrder::Spin(spin)) => Setpoint::Spin(spin),
+            _ => Setpoint::Stop,
+        }
+    }
+
+    fn reason(&self, context: &Context, i: &Inputs, inhibits: ArmingInhibits) -> Option<Reason> {
+        if self.bench.is_some() {
+            return Some(Reason::OnBench);
+        }
+        // What just happened precedes what prevents arming again.
+        match context.noted() {
+            None if i.sticks.is_some_and(|s| s.arm_switch) => first(inhibits),
+            None if !i.hardware.is_empty() => first(i.hardware),
+            _ => context.reason(i, false),
+        }
+    }
+}
+
+/// Highest-priority inhibit.
+pub fn first(inhibits: ArmingInhibits) -> Option<Reason> {
+    inhibits.first().map(Reason::Check)
+}

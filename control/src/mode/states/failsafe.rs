@@ -1,0 +1,78 @@
+//! Radio lost or battery empty: descends, stops on whatever carries.
+
+use super::hold;
+use crate::arming::ArmingInhibits;
+use crate::mode::behaviour::Behaviour;
+use crate::mode::context::{Context, Step};
+use crate::mode::shared::descent::descent;
+use crate::mode::shared::landing_point::Spot;
+use crate::mode::{Inputs, Reason, Setpoint, State};
+use crate::pilot::rc::Sticks;
+use crate::pilot::stick_positions;
+
+/// Longest radio silence, beyond the link's staleness, after which flight resumes by itself, s.
+pub const RESUME_TIME: f32 = 1.0;
+/// Roll or pitch stick that resumes flight after a longer silence, share of its travel.
+pub const RESUME_STICK: f32 = 0.3;
+
+/// See [`crate::mode::Mode::Failsafe`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Failsafe {
+    pub cause: Reason,
+    /// Where it comes down; `None` without a position, or where the pilot steers by angles.
+    spot: Option<Spot>,
+}
+
+impl Failsafe {
+    /// Begins for `cause`.
+    pub fn begin(from: &State, step: &mut Step<'_>, cause: Reason) -> Self {
+        let mut failsafe = Self { cause, spot: None };
+        if failsafe.holds(step.inputs) {
+            failsafe.spot = match from {
+                State::Failsafe(before) => before.spot,
+                _ => Spot::under(from, step),
+            };
+        }
+        failsafe
+    }
+
+    /// The pilot, if he steers.
+    fn pilot(&self, inputs: &Inputs) -> Option<Sticks> {
+        inputs.sticks.filter(|_| self.cause != Reason::RADIO_LOST)
+    }
+
+    /// There is a position, and no pilot whose sticks ask for angles.
+    fn holds(&self, inputs: &Inputs) -> bool {
+        inputs.motion.is_some()
+            && !hold::lost(inputs)
+            && self
+                .pilot(inputs)
+                .as_ref()
+                .is_none_or(stick_positions::keeps_hold)
+    }
+}
+
+impl Behaviour for Failsafe {
+    fn advance(&mut self, step: &mut Step<'_>) {
+        self.spot = match (self.holds(step.inputs), self.spot) {
+            (false, _) => None,
+            (true, Some(mut spot)) => {
+                spot.step(self.pilot(step.inputs), step);
+                Some(spot)
+            }
+            (true, None) => Spot::here(step),
+        };
+    }
+
+    /// Level and sinking; with radio the pilot steers. What carries the vehicle is no place to be moved on.
+    fn rotors(&self, context: &Context, inputs: &Inputs) -> Setpoint {
+        match &self.spot {
+            Some(spot) => spot.rotors(context),
+            None => descent(context, self.pilot(inputs)),
+        }
+    }
+
+    fn reason(&self, _: &Context, _: &Inputs, _: ArmingInhibits) -> Option<Reason> {
+        Some(self.cause)
+    }
+}

@@ -1,0 +1,18 @@
+//! On the ground again, rotors idle, about to disarm.
+
+use crate::mode::behaviour::Behaviour;
+use crate::mode::context::Context;
+use crate::mode::{Inputs, Setpoint};
+
+/// Time from landing to disarming, s.
+pub const LANDED_TIME: f32 = 2.0;
+
+/// See [`crate::mode::Mode::Landed`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Landed;
+
+impl Behaviour for Landed {
+    fn rotors(&self, _: &Context, _: &Inputs) -> Setpoint {
+        Setpoint::Idle
+    }
+}

@@ -1,0 +1,275 @@
+//! How a state begins from the one before.
+
+use crate::gripper::retained_grip::GripMemory;
+use crate::maths::scalar;
+use crate::mode::context::Step;
+use crate::mode::inputs::auto_perch::ByItself;
+use crate::mode::shared::on_pipe::{Hold, Spool, pressed};
+use crate::mode::states::approach::Approach;
+use crate::mode::states::armed::Armed;
+use crate::mode::states::clamping::Clamping;
+use crate::mode::states::contact::Contact;
+use crate::mode::states::disarmed::Disarmed;
+use crate::mode::states::escaping::Escaping;
+use crate::mode::states::failsafe::Failsafe;
+use crate::mode::states::flight::Flight;
+use crate::mode::states::hold;
+use crate::mode::states::landed::Landed;
+use crate::mode::states::perched::Perched;
+use crate::mode::states::releasing::Releasing;
+use crate::mode::{Reason, State};
+use crate::pilot::rc::ArmChoice;
+use crate::pilot::release_throttle::release_thrust;
+
+/// Calibration has ended; the grip stays as it is.
+pub fn calibrated(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Disarmed {
+    let grip_memory = from.behaviour().grip_memory();
+    Disarmed {
+        grip_memory: step.context.after_switch(step.inputs.sticks, grip_memory),
+        bench: None,
+    }
+}
+
+/// Rotors off; arms that were closed stay closed, and opening them takes a new and deliberate turn of the switch.
+pub fn stopped(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Disarmed {
+    let free = step.arms_free();
+    let grip_memory = match from {
+        State::Releasing(r) if r.opening && free => GripMemory::Open,
+        State::Escaping(_) if free => GripMemory::Open,
+        State::Escaping(_) | State::Clamping(_) | State::Releasing(_) | State::Perched(_) => {
+            step.context.perch_switch.seen_on = false;
+            from.behaviour().grip_memory()
+        }
+        _ => from.behaviour().grip_memory(),
+    };
+    Disarmed {
+        grip_memory,
+        bench: None,
+    }
+}
+
+/// Rotors idle.
+pub fn armed(_: &State, _: &mut Step<'_>, _: Option<Reason>) -> Armed {
+    Armed
+}
+
+/// The pilot flies.
+pub fn flight(_: &State, _: &mut Step<'_>, _: Option<Reason>) -> Flight {
+    Flight
+}
+
+/// The position is held from here on; a later hold takes a new turn of the switch.
+pub fn holding(_: &State, step: &mut Step<'_>, _: Option<Reason>) -> hold::Hold {
+    step.context.hold_seen_off = false;
+    hold::Hold::here(step)
+}
+
+/// The same after it has flown by itself: perching again takes a new turn of its switch.
+pub fn handed_back(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> hold::Hold {
+    step.context.hold_seen_off = false;
+    step.context.perch_switch.seen_off = false;
+    let law = match from {
+        State::Approach(a) => Some(a.law),
+        _ => None,
+    };
+    hold::Hold::after(law, step)
+}
+
+/// The search for the pipe begins.
+pub fn approach(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Approach {
+    step.context.perch_switch.seen_off = false;
+    let nose = present_heading(step);
+    // The pipe's, where it is known; else the nose lies along it.
+    let turn = step.inputs.position.map_or(0.0, |e| e.turn);
+    let pipe = step
+        .inputs
+        .target
+        .and_then(|target| target.heading_near(nose + turn));
+    let heading = pipe.map_or(nose, |pipe| scalar::wrap_pi(pipe - turn));
+    step.context.by_itself.begin(heading);
+    let law = match from {
+        State::Hold(h) => Some(h.place.law),
+        _ => None,
+    };
+    Approach::search(law, step)
+}
+
+/// Clear of the pipe: up, and another try, or only up after a release.
+pub fn approach_again(_: &State, step: &mut Step<'_>, _: Option<Reason>) -> Approach {
+    let by_itself = &mut step.context.by_itself;
+    by_itself.tries = by_itself.tries.saturating_add(1);
+    let leaves = by_itself.leaving;
+    Approach::climb(step, leaves)
+}
+
+/// On the ground.
+pub fn landed(_: &State, _: &mut Step<'_>, _: Option<Reason>) -> Landed {
+    Landed
+}
+
+/// On the pipe, with the pilot's choice of arms.
+pub fn contact(_: &State, step: &mut Step<'_>, _: Option<Reason>) -> Contact {
+    let arms = step.inputs.sticks.unwrap_or_default().arms;
+    Contact {
+        hold: present(step, arms),
+    }
+}
+
+/// The arms begin to close. A radio lost just now finishes the landing that the pilot began.
+pub fn closing(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Clamping {
+    step.context.lean.sit();
+    step.context.tightened = 0;
+    step.context.perch_switch.seen_on = step.inputs.sticks.is_some();
+    Clamping {
+        hold: hold(from),
+        spool: Spool::at(1.0),
+    }
+}
+
+/// The arms stay closed, or close again. Radio lost: hold on; a later release takes a new turn of the switch.
+pub fn closing_again(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Clamping {
+    step.context.lean.sit();
+    step.context.perch_switch.seen_on = Releasing::called_back(step) && step.inputs.sticks.is_some();
+    let share = match from {
+        State::Releasing(r) => r.spooled(step.dt),
+        _ => 0.0,
+    };
+    Clamping {
+        hold: hold(from),
+        spool: Spool::at(share),
+    }
+}
+
+/// The arms hold and the rotors stand.
+pub fn perched(from: &State, _: &mut Step<'_>, _: Option<Reason>) -> Perched {
+    Perched::on(from.behaviour().grip_memory())
+}
+
+/// The same, for a danger: opening takes a new turn of the switch.
+pub fn stopped_on_grip(from: &State, step: &mut Step<'_>, why: Option<Reason>) -> Perched {
+    step.context.perch_switch.seen_on = false;
+    perched(from, step, why)
+}
+
+/// Armed on purpose with the switch where it is: from here on, off is a wish to go.
+pub fn armed_on_pipe(from: &State, step: &mut Step<'_>, why: Option<Reason>) -> Perched {
+    let perch = &mut step.context.perch_switch;
+    perch.seen_on = step.inputs.sticks.is_some_and(|s| s.perch_switch);
+    perch.left_on = false;
+    perched(from, step, why)
+}
+
+/// The pilot wants to leave: rotors first.
+pub fn releasing(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Releasing {
+    step.context.by_itself = ByItself::default();
+    step.context.lean.sit();
+    let grip_memory = from.behaviour().grip_memory();
+    Releasing {
+        hold: present(step, grip_memory.arms().unwrap_or_default()),
+        share: 0.0,
+        free: 0.0,
+        opening: false,
+        kept: matches!(grip_memory, GripMemory::HeldByGears(_)),
+    }
+}
+
+/// The same after a slip: a slow spool-up would take the belly off the pipe while the arms still close, and it slides on.
+pub fn leaving(from: &State, step: &mut Step<'_>, why: Option<Reason>) -> Escaping {
+    step.context.by_itself = ByItself::default();
+    step.context.lean.sit();
+    giving_up(from, step, why)
+}
+
+/// The closing ends where the arms carry and the rotors may stand: these spool up first, as on a release.
+pub fn releasing_instead(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Releasing {
+    step.context.perch_switch.seen_off = false;
+    let share = match from {
+        State::Clamping(c) => c.spool.share,
+        _ => 0.0,
+    };
+    Releasing {
+        hold: hold(from),
+        share,
+        free: 0.0,
+        opening: false,
+        kept: false,
+    }
+}
+
+/// The same by itself, with the throttle centred.
+pub fn releasing_by_itself(from: &State, step: &mut Step<'_>, why: Option<Reason>) -> Releasing {
+    let releasing = releasing(from, step, why);
+    let heading = present_heading(step);
+    step.context.by_itself.leave(heading);
+    releasing
+}
+
+/// Off the pipe by itself, with free arms.
+pub fn lifting_off(_: &State, step: &mut Step<'_>, _: Option<Reason>) -> Escaping {
+    Escaping::leaving(step.inputs, GripMemory::Open, None)
+}
+
+/// Arms that do not come free while the rotors pull at them: less throttle, and the tendons stay slack.
+pub fn releasing_stuck(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Releasing {
+    let arms = from.behaviour().grip_memory().arms().unwrap_or_default();
+    Releasing {
+        hold: present(step, arms),
+        share: 1.0,
+        free: 0.0,
+        opening: true,
+        kept: false,
+    }
+}
+
+/// Leaves the pipe from which the vehicle slides or falls.
+pub fn sliding(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Escaping {
+    let grip_memory = match from {
+        State::Clamping(Clamping { hold, .. }) | State::Releasing(Releasing { hold, .. }) => {
+            GripMemory::Controlled(hold.arms)
+        }
+        _ => GripMemory::Open,
+    };
+    step.context.perch_switch.seen_off = false;
+    Escaping::leaving(step.inputs, grip_memory, None)
+}
+
+/// Leaves the pipe on which the vehicle stands.
+pub fn giving_up(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Escaping {
+    step.context.perch_switch.seen_off = false;
+    let from_thrust = step.context.collective.now();
+    let least = release_thrust(&step.context.params);
+    let grip_memory = from.behaviour().grip_memory();
+    let pressed = grip_memory
+        .arms()
+        .is_some_and(|arms| pressed(step.inputs.grip, arms));
+    Escaping::leaving(
+        step.inputs,
+        grip_memory,
+        pressed.then_some(from_thrust.max(least)),
+    )
+}
+
+/// The failsafe acts for the reason of the transition.
+pub fn failsafe(from: &State, step: &mut Step<'_>, why: Option<Reason>) -> Failsafe {
+    Failsafe::begin(from, step, why.unwrap_or(Reason::RADIO_LOST))
+}
+
+fn present_heading(step: &Step<'_>) -> f32 {
+    step.inputs.motion.map_or(0.0, |m| m.q.to_euler().2)
+}
+
+/// The present attitude, held with `arms`.
+fn present(step: &Step<'_>, arms: ArmChoice) -> Hold {
+    let (roll, pitch, _) = step.inputs.motion.map_or((0.0, 0.0, 0.0), |m| m.q.to_euler());
+    Hold { roll, pitch, arms }
+}
+
+/// What `from` holds on the pipe.
+fn hold(from: &State) -> Hold {
+    match from {
+        State::Contact(Contact { hold })
+        | State::Clamping(Clamping { hold, .. })
+        | State::Releasing(Releasing { hold, .. }) => *hold,
+        _ => Hold::default(),
+    }
+}

@@ -1,0 +1,224 @@
+//! Every transition, the first that applies first: the order of the rows is their priority.
+
+use super::entries;
+use super::guards::*;
+use crate::mode::context::Step;
+use crate::mode::{Entry, Mode, Reason, State};
+
+/// What the pilot reads because of a transition.
+#[derive(Clone, Copy, Debug)]
+pub enum Notice {
+    /// What was shown before.
+    Keep,
+    /// Nothing.
+    Clear,
+    /// This, for some seconds.
+    Show(Reason),
+    /// What the function gives, for some seconds: the cause that has ended a state.
+    ShowOf(fn(&State, &Step<'_>) -> Option<Reason>),
+    /// This, by the new state itself for as long as it lasts.
+    Lasting(Reason),
+    /// The same of what the function gives.
+    LastingOf(fn(&Step<'_>) -> Option<Reason>),
+}
+
+/// The modes in which a row applies.
+#[derive(Clone, Copy, Debug)]
+pub enum Origin {
+    /// These.
+    In(&'static [Mode]),
+    /// Every one in which rotors may turn: what stops a flight stops a new mode too.
+    RotorsTurning,
+}
+
+impl Origin {
+    fn contains(self, mode: Mode) -> bool {
+        match self {
+            Self::In(modes) => modes.contains(&mode),
+            Self::RotorsTurning => !mode.rotors_stand(),
+        }
+    }
+}
+
+/// One row.
+#[derive(Clone, Copy, Debug)]
+pub struct Transition {
+    /// The modes in which it applies.
+    pub from: Origin,
+    /// What must hold, all of it.
+    pub when: &'static [Guard],
+    /// The state that begins.
+    pub to: Entry,
+    /// What the pilot reads.
+    pub notice: Notice,
+}
+
+const fn row(from: &'static [Mode], when: &'static [Guard], to: Entry, notice: Notice) -> Transition {
+    Transition {
+        from: Origin::In(from),
+        when,
+        to,
+        notice,
+    }
+}
+
+const fn rotors(when: &'static [Guard], to: Entry, notice: Notice) -> Transition {
+    Transition {
+        from: Origin::RotorsTurning,
+        when,
+        to,
+        notice,
+    }
+}
+
+use Entry as To;
+use Mode::{
+    Approach, Armed, Calibrating, Clamping, Contact, Disarmed, Escaping, Failsafe, Flight, Hold, Landed,
+    Perched, Releasing,
+};
+use Notice::{Clear, Keep, Lasting, LastingOf, Show, ShowOf};
+
+/// The modes in which an arm may hold while rotors turn.
+const CLOSED: &[Mode] = &[Clamping, Releasing];
+const IDLE: &[Mode] = &[Armed, Landed];
+/// Those in which the pilot flies, and all in free air.
+const FLOWN: &[Mode] = &[Flight, Hold];
+const AIRBORNE: &[Mode] = &[Flight, Hold, Approach];
+
+/// Why a closing ends.
+const DOUBTED: Notice = ShowOf(|state, step| match state {
+    State::Clamping(c) => c.doubt(step),
+    _ => None,
+});
+/// Why the perching by itself ends.
+const HANDED_BACK: Notice = ShowOf(|state, _| match state {
+    State::Approach(a) => a.given_up,
+    _ => None,
+});
+/// Why the failsafe has acted.
+const CAUSE: Notice = ShowOf(|state, _| match state {
+    State::Failsafe(f) => Some(f.cause),
+    _ => None,
+});
+
+/// What forces the landing.
+const LANDS: Notice = LastingOf(|step| step.context.dangers.landing());
+
+/// Every transition in the order of priority.
+#[rustfmt::skip]
+pub const TRANSITIONS: &[Transition] = &[
+    // Everything is dropped.
+    row(CLOSED, &[ARM_SWITCH_OFF, ARMS_STAY], To::Perched(entries::stopped_on_grip), Clear),
+    rotors(&[ARM_SWITCH_OFF], To::Disarmed(entries::stopped), Clear),
+    row(CLOSED, &[IMU_SILENT, ARMS_STAY], To::Perched(entries::stopped_on_grip), Show(Reason::IMU_SILENT)),
+    rotors(&[IMU_SILENT], To::Disarmed(entries::stopped), Show(Reason::IMU_SILENT)),
+    row(CLOSED, &[TIPPED_OVER, ARMS_STAY], To::Perched(entries::stopped_on_grip), Show(Reason::TippedOver)),
+    rotors(&[TIPPED_OVER], To::Disarmed(entries::stopped), Show(Reason::TippedOver)),
+    // On the ground.
+    row(&[Calibrating], &[CALIBRATED], To::Disarmed(entries::calibrated), Keep),
+    row(&[Disarmed], &[ARM_GESTURE, CHECKS_PASS, ARMS_CLOSED], To::Perched(entries::armed_on_pipe), Keep),
+    row(&[Disarmed], &[ARM_GESTURE, CHECKS_PASS], To::Armed(entries::armed), Clear),
+    row(IDLE, &[RADIO_LOST], To::Disarmed(entries::stopped), Show(Reason::RADIO_LOST)),
+    row(IDLE, &[LINE_SILENT], To::Disarmed(entries::stopped), Show(Reason::LINE_SILENT)),
+    row(IDLE, &[DISARM_GESTURE], To::Disarmed(entries::stopped), Clear),
+    row(IDLE, &[THROTTLE_UP], To::Flight(entries::flight), Keep),
+    row(&[Armed], &[IDLED], To::Disarmed(entries::stopped), Show(Reason::IdleTooLong)),
+    row(&[Landed], &[STOOD], To::Disarmed(entries::stopped), Clear),
+    // In the air.
+    row(AIRBORNE, &[RADIO_LOST], To::Failsafe(entries::failsafe), Lasting(Reason::RADIO_LOST)),
+    row(AIRBORNE, &[MUST_LAND], To::Failsafe(entries::failsafe), LANDS),
+    // The pilot's hands first.
+    row(&[Hold, Approach], &[HOLD_OFF], To::Flight(entries::flight), Clear),
+    // What it feels would slide from under a hold: up, as from the pipe.
+    row(&[Approach], &[FEELS_PIPE, TAKEN_OVER], To::Escaping(entries::sliding), Show(Reason::TakenOver)),
+    row(&[Approach], &[FEELS_PIPE, POSITION_ADRIFT], To::Escaping(entries::sliding), Show(Reason::PositionStale)),
+    row(&[Approach], &[TOUCHED_ASTRAY], To::Escaping(entries::sliding), HANDED_BACK),
+    row(&[Approach], &[UNAWARE, TOUCHED], To::Escaping(entries::sliding), Show(Reason::TouchedEarly)),
+    row(&[Approach], &[TAKEN_OVER], To::Hold(entries::handed_back), Show(Reason::TakenOver)),
+    row(&[Approach], &[POSITION_ADRIFT], To::Hold(entries::handed_back), Show(Reason::PositionStale)),
+    row(&[Approach], &[GIVEN_UP], To::Hold(entries::handed_back), HANDED_BACK),
+    row(&[Approach], &[HAS_LEFT], To::Hold(entries::handed_back), Clear),
+    row(FLOWN, &[THROTTLE_LOW, GROUNDED], To::Landed(entries::landed), Keep),
+    row(&[Hold], &[POSITION_LOST], To::Flight(entries::flight), Show(Reason::PositionLost)),
+    row(&[Flight], &[SETS_DOWN, SWITCH_TURNED, SLIDES_AT_TOUCH],
+        To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
+    row(&[Flight], &[SETS_DOWN, SWITCH_TURNED, FALLS_BESIDE], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
+    row(&[Flight], &[MEANS_TO_PERCH, SWITCH_TURNED, SERVOS_FED, TOUCHED, LEVEL], To::Contact(entries::contact), Keep),
+    row(&[Flight], &[HOLD_ON, HOLD_TURNED, POSITION_FRESH, NOT_RESTING], To::Hold(entries::holding), Clear),
+    row(&[Hold], &[ASKED_TO_PERCH, MAY_APPROACH], To::Approach(entries::approach), Clear),
+    row(&[Approach], &[COMMITTED, SLIDES_AT_TOUCH], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
+    row(&[Approach], &[COMMITTED, TOUCHED, LEVEL], To::Contact(entries::contact), Keep),
+    // Onto the pipe.
+    row(&[Contact], &[BY_ITSELF, TAKEN_OVER], To::Escaping(entries::giving_up), Show(Reason::TakenOver)),
+    row(&[Contact], &[BY_HAND, CALLED_OFF], To::Flight(entries::flight), Keep),
+    row(&[Contact], &[SLIDES], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
+    row(&[Contact], &[TWISTS], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
+    row(&[Contact], &[LIFTED], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
+    row(&[Contact], &[RESTED], To::Clamping(entries::closing), Keep),
+    // Half-closed arms slide round the pipe with the body, pressed.
+    row(&[Clamping], &[UNPROVEN, SLIDES], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
+    row(&[Clamping], &[LOOSE, SLIDES], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
+    row(&[Clamping], &[LOOSE, CREEPS], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
+    row(&[Clamping], &[UNPROVEN, LOOSE, TWISTS], To::Escaping(entries::giving_up), Show(Reason::SlidesOff)),
+    row(&[Clamping], &[DOUBT, MAY_LEAVE, SPOOLED_ON_GRIP], To::Releasing(entries::releasing_instead), DOUBTED),
+    row(&[Clamping], &[DOUBT, MAY_LEAVE], To::Escaping(entries::giving_up), DOUBTED),
+    row(&[Clamping], &[STANDS, GRIP_PROVEN], To::Perched(entries::perched), Keep),
+    row(&[Clamping], &[STANDS, LAST_RESORT], To::Disarmed(entries::stopped), Keep),
+    // Off the pipe.
+    row(&[Perched], &[ARM_SWITCH_OFF, DISARM_GESTURE], To::Disarmed(entries::stopped), Keep),
+    row(&[Perched], &[RELEASE_BY_ITSELF, MAY_FLY, UPRIGHT], To::Releasing(entries::releasing_by_itself), Keep),
+    row(&[Perched], &[RELEASE_ASKED, SLIPPED, MAY_FLY, UPRIGHT], To::Escaping(entries::leaving), Show(Reason::LiftsOff)),
+    row(&[Perched], &[RELEASE_ASKED, MAY_FLY, UPRIGHT], To::Releasing(entries::releasing), Keep),
+    row(&[Releasing], &[ARMS_FREE, RADIO_LOST], To::Failsafe(entries::failsafe), Lasting(Reason::RADIO_LOST)),
+    row(&[Releasing], &[ARMS_FREE, BY_ITSELF], To::Escaping(entries::lifting_off), Keep),
+    row(&[Releasing], &[ARMS_FREE], To::Flight(entries::flight), Keep),
+    row(&[Releasing], &[LOOSE, SLIDES], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
+    row(&[Releasing], &[GIVES_WAY], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
+    row(&[Releasing], &[FALLS], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
+    row(&[Releasing], &[HELD_BY_GEARS, CALLED_BACK], To::Perched(entries::perched), Keep),
+    row(&[Releasing], &[HELD_BY_GEARS, GROUNDED_ON_PIPE], To::Perched(entries::perched), Keep),
+    row(&[Releasing], &[LEANS_TOO_FAR], To::Clamping(entries::closing_again), Show(Reason::LeansTooFar)),
+    row(&[Releasing], &[LIFTS_OFF], To::Escaping(entries::giving_up), Show(Reason::LiftsOff)),
+    row(&[Releasing], &[CALLED_BACK, NOT_RELEASED], To::Clamping(entries::closing_again), Keep),
+    row(&[Releasing], &[GROUNDED_ON_PIPE], To::Clamping(entries::closing_again), Keep),
+    row(&[Escaping], &[STUCK], To::Releasing(entries::releasing_stuck), Show(Reason::ArmsStuck)),
+    row(&[Escaping], &[CLEAR, RADIO_LOST], To::Failsafe(entries::failsafe), Lasting(Reason::RADIO_LOST)),
+    row(&[Escaping], &[CLEAR, MUST_LAND], To::Failsafe(entries::failsafe), LANDS),
+    row(&[Escaping], &[CLEAR, LEAVES, POSITION_FRESH], To::Approach(entries::approach_again), Keep),
+    row(&[Escaping], &[CLEAR, TRY_LEFT, SERVOS_FED, POSITION_FRESH], To::Approach(entries::approach_again), Keep),
+    row(&[Escaping], &[CLEAR, BY_ITSELF, HOLD_KEPT, POSITION_FRESH], To::Hold(entries::handed_back), Keep),
+    row(&[Escaping], &[CLEAR, BY_HAND, TAKES_OVER], To::Flight(entries::flight), Keep),
+    row(&[Escaping], &[CLEAR, NOT_TAKEN_OVER], To::Failsafe(entries::failsafe), Lasting(Reason::NotTakenOver)),
+    // Not by its support alone: a vehicle lighter or stronger than its parameters would seem carried in free air. On
+    // real ground the probe takes thrust away until most of the weight is carried.
+    row(&[Failsafe], &[GROUNDED], To::Disarmed(entries::stopped), CAUSE),
+    row(&[Failsafe], &[LOST_RADIO, RADIO, MUST_LAND], To::Failsafe(entries::failsafe), LANDS),
+    row(&[Failsafe], &[LOST_PILOT, RADIO, MUST_LAND], To::Failsafe(entries::failsafe), LANDS),
+    row(&[Failsafe], &[LOST_PILOT, TAKES_OVER], To::Flight(entries::flight), Keep),
+    row(&[Failsafe], &[LOST_PILOT, RADIO_LOST], To::Failsafe(entries::failsafe), Lasting(Reason::RADIO_LOST)),
+    row(&[Failsafe], &[LOST_RADIO, RESUMES], To::Flight(entries::flight), Keep),
+];
+
+impl Transition {
+    /// The first that applies to `state` in this step.
+    pub fn first(state: &State, step: &Step<'_>) -> Option<&'static Self> {
+        let mode = state.mode();
+        TRANSITIONS
+            .iter()
+            .find(|row| row.from.contains(mode) && row.when.iter().all(|guard| (guard.holds)(state, step)))
+    }
+
+    /// The state that begins, with what the pilot is to read noted.
+    pub fn enter(&self, from: &State, step: &mut Step<'_>) -> State {
+        let why = match self.notice {
+            Keep | Clear => None,
+            Show(why) | Lasting(why) => Some(why),
+            ShowOf(why) => why(from, step),
+            LastingOf(why) => why(step),
+        };
+        if !matches!(self.notice, Keep | Lasting(_) | LastingOf(_)) {
+            step.context.note(why);
+        }
+        self.to.enter(from, step, why)
+    }
+}

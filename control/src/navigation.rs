@@ -1,0 +1,16 @@
+//! Position, velocity and height, 100 Hz: inertial prediction, flow and range, external poses, barometer.
+
+pub mod air_pressure;
+pub(crate) mod axis_filter;
+pub mod baro_height;
+pub(crate) mod consistency;
+pub mod external_pose;
+pub(crate) mod fix_age;
+pub mod flow_range;
+pub mod flow_range_sample;
+pub(crate) mod frozen_range;
+pub(crate) mod history;
+pub(crate) mod pipe_footprint;
+pub mod position_estimator;
+pub(crate) mod range_scale;
+pub(crate) mod vertical_fallback;

@@ -1,0 +1,558 @@
+//! Optical flow and range: the velocity over the ground and the height above it, and whether they can be used.
+
+use super::consistency::Agreement;
+use super::frozen_range::Frozen;
+use super::history::Moment;
+use super::pipe_footprint::{Band, Depth};
+use super::position_estimator::{about_down, seconds};
+use super::range_scale::{Below, RangeScale};
+use crate::maths::scalar;
+use crate::maths::vector::{Quat, Vec3};
+use crate::navigation::flow_range_sample::{Flow, GroundView, Range};
+
+/// Heights between which flow is used, m: nearer its lens sees no picture (PMW3901). Up to 2.4 m a scale 10 % too large,
+/// five times what calibration leaves, does not swing the hold; one 20 % too large does from 1 m on (docs/hold.md).
+pub const FLOW_HEIGHT: (f32, f32) = (0.08, 2.5);
+/// Least quality of a flow, of 255.
+const QUALITY_MIN: u8 = 20;
+/// Deviation of a flow, rad: 0.12 rad/s in 20 ms (assumed for modules of this class).
+const FLOW_NOISE: f32 = 2.4e-3;
+/// How much farther the ground seems to a view of 42° whose scale was calibrated by turning: of its rays, tan² ahead, a turn
+/// moves 1 + tan² and a way 1, in the mean 1 + tan²(21°) / 3.
+const CALIBRATED: f32 = 1.049;
+/// Share of the way over the ground that flow and range are off, 1.
+const SCALE_NOISE: f32 = 0.05;
+/// Deviation of a range, m.
+const RANGE_NOISE: f32 = 0.02;
+/// Age beyond which a range is not the height of now, µs.
+const RANGE_AGE: u64 = 300_000;
+/// Departure of a range from the height that is a step of what is below, m, and the ranges in a row that agree on it.
+const STEP: f32 = 0.12;
+const STEP_RANGES: u32 = 3;
+/// Ranges that differ by less are of the same surface, m.
+const SAME: f32 = 0.08;
+/// Share by which the height of what is narrow follows each range while its flank alone was seen.
+const FLANK_SHARE: f32 = 0.2;
+/// Ranges for which it does, half a second at 50 Hz: where height and surface both follow, nothing gives either.
+const FLANK_RANGES: u32 = 25;
+/// Steps a second that are no fault, and how many more than these are one: the beam of a vehicle that swings in gusts beside
+/// the edge of a pipe crosses it 11 times in 4.3 s, a range that jumps each 0.3 s does so 12 times in 3.3 s.
+const STEPS_RATE: f32 = 2.0;
+const STEPS_MAX: f32 = 5.0;
+/// For how long the range is left out then, µs.
+const DISTRUST: u64 = 5_000_000;
+/// Equal flows in a row, none of them zero, of a sensor that stands still.
+const FROZEN_FLOWS: u32 = 12;
+/// Least cosine of a tilt at which flow and range say something: 40°.
+const COS_MIN: f32 = 0.77;
+/// Way, m, and time, µs, since what is narrow was met below, after which it is elsewhere: a pipe has ends.
+const LEFT_BEHIND: (f32, u64) = (2.0, 20_000_000);
+/// Widths of what the vehicle perches on that a surface must reach aside to be a floor.
+const WIDE: f32 = 1.2;
+/// Range below which flow is not judged, m: there the noise of the estimated velocity is as much as a slow turn.
+const JUDGED: f32 = 0.45;
+/// Time after a step of the range for which it is not, µs: three of the time constants of what is slow.
+const UNSURE_TIME: u64 = 600_000;
+
+/// What is wrong with flow or range.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SightFault {
+    /// The flow says the same whatever the vehicle does.
+    FlowFrozen,
+    /// The flow does not follow the vehicle's own turning: mirrored, turned, dead or of another scale.
+    FlowDisagrees,
+    /// The range says the same whatever the vehicle does.
+    RangeFrozen,
+    /// The range jumps more often than ground does.
+    RangeJumps,
+    /// The range changes by more or less than the vehicle rises or sinks.
+    RangeScaled,
+}
+
+impl SightFault {
+    /// Every fault.
+    pub const ALL: [Self; 5] = [
+        Self::FlowFrozen,
+        Self::FlowDisagrees,
+        Self::RangeFrozen,
+        Self::RangeJumps,
+        Self::RangeScaled,
+    ];
+
+    /// For the pilot's display: at most 40 ASCII characters.
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::FlowFrozen => "flow frozen, left out",
+            Self::FlowDisagrees => "flow mirrored or scaled, left out",
+            Self::RangeFrozen => "range frozen, left out",
+            Self::RangeJumps => "range jumps, left out",
+            Self::RangeScaled => "range scaled, left out",
+        }
+    }
+}
+
+/// Why flow cannot be used where the vehicle is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SightLimit {
+    /// Its lens sees no picture so near.
+    TooLow,
+    /// The error of its scale would swing the hold.
+    TooHigh,
+    /// There is nothing within the range's reach.
+    NoRange,
+    /// The picture has too little in it.
+    TooDark,
+}
+
+impl SightLimit {
+    /// Every limit.
+    pub const ALL: [Self; 4] = [Self::TooLow, Self::TooHigh, Self::NoRange, Self::TooDark];
+
+    /// What limits the newest flow and range; `None` where they can be used.
+    pub fn of(view: &GroundView) -> Option<Self> {
+        let (least, most) = FLOW_HEIGHT;
+        match view.range.and_then(|range| range.checked()?.distance) {
+            None => Some(Self::NoRange),
+            Some(distance) if distance < least => Some(Self::TooLow),
+            Some(distance) if distance > most => Some(Self::TooHigh),
+            Some(_) if view.flow.is_none_or(|flow| flow.quality < QUALITY_MIN) => Some(Self::TooDark),
+            Some(_) => None,
+        }
+    }
+
+    /// For the pilot's display: at most 40 ASCII characters.
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::TooLow => "too low for flow",
+            Self::TooHigh => "too high for flow: 2.5 m",
+            Self::NoRange => "no range: too high, or over an edge",
+            Self::TooDark => "flow sees no picture",
+        }
+    }
+}
+
+/// A velocity over the ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Seen {
+    /// Measured less estimated, along the estimate's axes, m/s.
+    pub off: [f32; 2],
+    /// (m/s)².
+    pub variance: f32,
+}
+
+/// What is known of the ground and of the module.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sight {
+    /// Half the width of what the vehicle perches on, m.
+    radius: f32,
+    /// Lens from the centre of mass, m, body. Both sensors look from there.
+    pub(crate) lens: Vec3,
+    /// Newest range with a distance: when, µs, and m.
+    range: Option<(u64, f32)>,
+    /// When the newest range that was looked at was measured, and when that was, µs.
+    range_us: u64,
+    now_us: u64,
+    /// Whether it is as long as it says.
+    pub(crate) scale: RangeScale,
+    /// Surfaces were met by a range that was found to be scaled.
+    mistaken: bool,
+    /// Where the first range fell of a surface that was met with nothing before; it may be what the vehicle has risen from.
+    /// `None` once that has shown to be wide, or was left for one that is deeper by what the vehicle perches on is thick.
+    unproven: Option<Vec3>,
+    /// Surface below, the lowest one known and the other one that was, along the estimate's down axis, m.
+    level: f32,
+    base: f32,
+    other: f32,
+    /// Step that ranges agree on, m, and how many do.
+    step: f32,
+    agreed: u32,
+    /// Steps beyond [`STEPS_RATE`], when the last one was, and until when the range is not used, µs.
+    steps: f32,
+    stepped_us: u64,
+    distrusted_us: u64,
+    /// Where the last range of the present surface fell, and where the edge of a step is.
+    foot: Vec3,
+    stepped_at: Vec3,
+    /// Ranges for which the height of what is narrow below is not known yet: its flank was seen alone.
+    flank: u32,
+    /// What is narrow, where its edge was seen; when it was met below last, µs, and where.
+    pub(crate) band: Option<Band>,
+    met: (u64, Vec3),
+    pub(crate) frozen: Frozen,
+    same_flows: u32,
+    angle: [f32; 2],
+    agreements: [Agreement; 2],
+    /// When the depth was unsure last, µs.
+    unsure_us: u64,
+    disagrees: bool,
+}
+
+impl Sight {
+    /// Over pipes of `diameter` m, from a `lens` that lies so far from the centre of mass, m, body.
+    pub fn new(diameter: f32, lens: Vec3) -> Self {
+        Self {
+            radius: 0.5 * diameter,
+            lens,
+            ..Self::default()
+        }
+    }
+
+    /// What is wrong at present.
+    pub fn fault(&self) -> Option<SightFault> {
+        let faults = [
+            (self.frozen.holds(), SightFault::RangeFrozen),
+            (self.distrusted_us > self.range_us, SightFault::RangeJumps),
+            (self.scale.wrong(), SightFault::RangeScaled),
+            (self.same_flows >= FROZEN_FLOWS, SightFault::FlowFrozen),
+            (self.disagrees, SightFault::FlowDisagrees),
+        ];
+        faults.iter().find(|(holds, _)| *holds).map(|(_, fault)| *fault)
+    }
+
+    /// Flow or range have gone another way than the vehicle, and so has what was estimated by them.
+    pub fn misleads(&self) -> bool {
+        self.disagrees || self.scale.wrong()
+    }
+
+    /// When the newest range that was looked at was measured, µs.
+    pub fn looked_us(&self) -> u64 {
+        self.range_us
+    }
+
+    /// The range is used.
+    pub fn range_is_sound(&self) -> bool {
+        !self.range_faulty()
+    }
+
+    fn range_faulty(&self) -> bool {
+        self.frozen.holds() || self.distrusted_us > self.range_us || self.scale.wrong()
+    }
+
+    /// The distance of a range that was not looked at before, m, and when it was measured, µs; a scaled one too. The rotors
+    /// carry a vehicle that `flies`.
+    pub fn new_range(&mut self, view: &GroundView, now: u64, flies: bool) -> Option<(u64, f32)> {
+        let range = view.range.and_then(Range::checked)?;
+        if range.at_us <= self.range_us || range.at_us > now {
+            return None;
+        }
+        (self.range_us, self.now_us) = (range.at_us, now);
+        let distance = range.distance?;
+        self.frozen.take(distance, range.at_us, flies);
+        self.range = Some((range.at_us, distance));
+        let used = self.scale.wrong() || !self.range_faulty();
+        used.then_some((range.at_us, distance))
+    }
+
+    /// Takes what is felt `down`wards, m/s², gravity left out, at `at_us` µs, of a vehicle that flies. The lean of the beam is
+    /// looked at only where a run of equal ranges needs it.
+    pub fn feel(&mut self, at_us: u64, down: Option<f32>, q: Quat) {
+        self.scale.feel(at_us, down);
+        if self.frozen.feels() {
+            let leans = (q.down_in_body().z, q.rotate(self.lens).z);
+            self.frozen.feel(at_us, down, leans, self.scale.climb());
+        }
+    }
+
+    /// Watches a range of `distance` m, measured with the attitude `q`, that is left out as scaled.
+    pub fn watch_scaled(&mut self, q: Quat, distance: f32) {
+        self.mistaken = true;
+        let cos = q.down_in_body().z;
+        if cos >= COS_MIN {
+            self.look_at_scale(distance * cos, q, Below::Plain);
+        }
+    }
+
+    /// Compares the share down of the newest range, `height` m, with what is felt.
+    fn look_at_scale(&mut self, height: f32, q: Quat, below: Below) {
+        let lag = seconds(self.range_us, self.now_us);
+        // Of the centre of mass: what its lever adds is no motion, and an error of it no scale.
+        self.scale.look(height + q.rotate(self.lens).z, lag, below);
+    }
+
+    /// Height of the centre of mass above the ground with which an estimate may begin, m, at a flow with the attitude `q`.
+    pub fn begin(&mut self, flow: &Flow, q: Quat) -> Option<f32> {
+        let cos = q.down_in_body().z;
+        let (at, distance) = self.range.filter(|_| !self.range_faulty())?;
+        let (least, most) = FLOW_HEIGHT;
+        let fresh = flow.until_us.saturating_sub(at) <= RANGE_AGE;
+        let sound = cos >= COS_MIN && flow.quality >= QUALITY_MIN && (least..=most).contains(&distance);
+        (self.level, self.base, self.other) = (0.0, 0.0, 0.0);
+        // No step, no flank and no place of the axes before: what is not known to be wide is where the beam falls now.
+        (self.agreed, self.step, self.flank) = (0, 0.0, 0);
+        self.band = None;
+        let height = distance * cos + q.rotate(self.lens).z;
+        let below = Vec3::new(0.0, 0.0, -height) + q.rotate(self.lens) + beam(q, distance, 0.0);
+        self.foot = below;
+        self.unproven = self.unproven.map(|_| below);
+        self.agreements = self.agreements.map(Agreement::anew);
+        (fresh && sound).then_some(height)
+    }
+
+    /// What the height of the lens at `then` is off by a range of `distance`, m, with its variance, m²; `None` while it is not
+    /// clear what is below. Where a pose is fresh the surface follows the height instead. A little `earlier` the beam was on its
+    /// way there; the axes are turned by `turn`, rad.
+    pub fn height(
+        &mut self,
+        (earlier, then): (&Moment, &Moment),
+        distance: f32,
+        posed: bool,
+        turn: f32,
+    ) -> Option<(f32, f32)> {
+        let cos = then.q.down_in_body().z;
+        if cos < COS_MIN {
+            return None;
+        }
+        let surface = then.position.z + distance * cos;
+        // What a scaled range has met is nowhere: over a ground that it had put too deep the true one would seem raised.
+        let anew = core::mem::take(&mut self.mistaken);
+        if anew {
+            // Nor has flow with that depth said anything.
+            (self.agreements, self.unsure_us) = (Default::default(), then.at_us);
+        }
+        if posed || anew {
+            (self.level, self.base, self.other) = (surface, surface, surface);
+            self.band = None;
+            return None;
+        }
+        let foot = then.position + beam(then.q, distance, turn);
+        // The range's own place is that of a surface at `level`.
+        let off = self.level - surface;
+        let raised = self.raised();
+        let heading = then.yaw() + turn;
+        let below = Band::below(foot, heading, self.radius, self.level);
+        if !self.scale.begun() {
+            self.unproven = Some(foot);
+        }
+        let wide = WIDE * 2.0 * self.radius;
+        self.unproven = self.unproven.filter(|first| below.aside(*first).abs() <= wide);
+        if raised {
+            self.met = (then.at_us, foot);
+        } else {
+            let (met_us, met) = self.met;
+            let (way, time) = (foot - met, then.at_us.saturating_sub(met_us));
+            let level = Vec3::new(way.x, way.y, 0.0).norm();
+            let behind = level > LEFT_BEHIND.0 || time > LEFT_BEHIND.1;
+            self.band = self.band.filter(|_| !behind);
+        }
+        let flank = raised && off < 0.0 && below.is_flank(-off);
+        if off.abs() <= STEP || flank {
+            (self.agreed, self.foot) = (0, foot);
+            // Where the beam passes its height: the ground is met farther off.
+            let at = |top: f32| then.position + beam(then.q, (top - then.position.z) / cos, turn);
+            self.band = self.band.map(|band| band.bounded(at(band.top), raised));
+            self.band = self.band.filter(|band| raised || !band.is_mistaken());
+            if !raised {
+                let below = if self.unproven.is_some() {
+                    Below::Narrow
+                } else {
+                    Below::Plain
+                };
+                self.look_at_scale(distance * cos, then.q, below);
+                return Some((off, RANGE_NOISE * RANGE_NOISE));
+            }
+            let band = self.band.get_or_insert(below);
+            band.top = self.level;
+            let (drop, doubt) = band.drop(foot);
+            let back = surface - drop;
+            let below = if self.flank > 0 {
+                Below::Known
+            } else {
+                Below::Narrow
+            };
+            if self.flank > 0 {
+                self.level += FLANK_SHARE * (back - self.level);
+                self.other = self.level;
+                self.flank = if doubt > RANGE_NOISE { self.flank - 1 } else { 0 };
+            }
+            let off = self.level - back;
+            self.look_at_scale(distance * cos - drop, then.q, below);
+            return Some((off, RANGE_NOISE * RANGE_NOISE + doubt * doubt));
+        }
+        self.agreed = if (off - self.step).abs() <= SAME {
+            self.agreed + 1
+        } else {
+            // Of the two surfaces' feet the higher one's: a tilted beam meets the ground a hand's breadth beside the edge.
+            self.stepped_at = if off > 0.0 { foot } else { self.foot };
+            1
+        };
+        self.step = off;
+        if self.agreed >= STEP_RANGES {
+            let (before, onto) = (self.level, off > 0.0);
+            let known = self.change_level(surface, then.at_us);
+            let fell = self.scale.begun() && self.level - before > 2.0 * self.radius;
+            self.unproven = self.unproven.filter(|_| !fell);
+            let seen = if known { Below::Known } else { Below::New };
+            self.look_at_scale(distance * cos, then.q, seen);
+            let mut band = self.band.unwrap_or(below);
+            band.top = self.level.min(before);
+            let reach = band.top - then.position.z;
+            let at = |m: &Moment| m.position + beam(m.q, reach, turn);
+            let way = at(then) - at(earlier);
+            self.band = Some(Band::at_edge(band, self.stepped_at, onto, way, heading));
+            self.foot = foot;
+            self.flank = if onto && !known { FLANK_RANGES } else { 0 };
+        }
+        None
+    }
+
+    /// Another surface is below; true if it was there before.
+    fn change_level(&mut self, surface: f32, now: u64) -> bool {
+        self.agreed = 0;
+        // One that was there before is that one.
+        let known = [self.base, self.other];
+        let again = known.iter().find(|level| (**level - surface).abs() <= STEP);
+        let before = self.level;
+        self.level = again.copied().unwrap_or(surface);
+        // Down is positive. What the beam falls down to is the ground: a height that has drifted since must not leave a
+        // deeper one beside it, over which the true one would seem raised.
+        if self.level > before {
+            (self.other, self.base) = (before, self.level);
+        } else {
+            self.other = self.level;
+        }
+        let faded = STEPS_RATE * seconds(self.stepped_us, now);
+        (self.steps, self.stepped_us) = ((self.steps - faded).max(0.0) + 1.0, now);
+        if self.steps > STEPS_MAX {
+            self.distrusted_us = now.saturating_add(DISTRUST);
+            self.steps = 0.0;
+        }
+        again.is_some()
+    }
+
+    /// Something narrow is below.
+    pub(crate) fn raised(&self) -> bool {
+        self.base - self.level > STEP
+    }
+
+    /// How far what the flow sees from `to` is. Beside something narrow the rest of the view is farther, and where an edge
+    /// of it was seen its share is known.
+    pub(crate) fn depth(&self, to: &Moment, cos: f32, turn: f32) -> Depth {
+        let far = |level: f32| {
+            let (least, most) = FLOW_HEIGHT;
+            scalar::clamp((level - to.position.z) / cos, least, 2.0 * most)
+        };
+        let near = far(self.level);
+        let foot = to.position + beam(to.q, near, turn);
+        let seen = match self.band {
+            Some(band) => band.sight(to.position, foot, far(self.base)),
+            None => Depth {
+                distance: near,
+                doubt: 0.0,
+                lean: Vec3::ZERO,
+            },
+        };
+        Depth {
+            distance: CALIBRATED * seen.distance,
+            ..seen
+        }
+    }
+
+    /// What the velocity of the lens between `from` and `to`, in axes turned by `turn` rad, is off by `flow`; `None` where it
+    /// says nothing.
+    pub fn velocity(&mut self, flow: &Flow, from: &Moment, to: &Moment, turn: f32) -> Option<Seen> {
+        self.watch_frozen(flow);
+        let cos = to.q.down_in_body().z;
+        let (at, distance) = self.range.filter(|_| !self.range_faulty())?;
+        let (least, most) = FLOW_HEIGHT;
+        let fresh = flow.until_us.abs_diff(at) <= RANGE_AGE;
+        if !fresh || cos < COS_MIN || flow.quality < QUALITY_MIN || !(least..=most).contains(&distance) {
+            return None;
+        }
+        let Depth {
+            distance: depth,
+            doubt,
+            lean,
+        } = self.depth(to, cos, turn);
+        // What the vehicle has turned by, body.
+        let turned = from.q.conjugate() * to.q;
+        let half = if turned.w < 0.0 { -2.0 } else { 2.0 };
+        let turned = [half * turned.x, half * turned.y];
+        let way = about_down(to.position - from.position, -turn);
+        let way = to.q.rotate_inverse(way);
+        // On the way down what is near on one side of the view seems to move to that side.
+        let aside = to.q.rotate_inverse(about_down(lean, -turn)) * way.z;
+        let [roll, pitch] = flow.angle;
+        let angle = [roll - aside.y / depth, pitch + aside.x / depth];
+        let [roll, pitch] = angle;
+        let predicted = [turned[0] - way.y / depth, turned[1] + way.x / depth];
+        let per = 1.0 / flow.seconds;
+        let pairs = self.agreements.iter_mut().zip(angle).zip(predicted);
+        if self.agreed > 0 || self.flank > 0 || distance < JUDGED {
+            self.unsure_us = flow.until_us;
+        }
+        let sure = flow.until_us.saturating_sub(self.unsure_us) > UNSURE_TIME;
+        let mut disagrees = false;
+        for ((agreement, measured), predicted) in pairs {
+            let (measured, predicted) = (measured * per, predicted * per);
+            disagrees |= agreement.step(measured, predicted, FLOW_NOISE * per, sure, flow.seconds);
+        }
+        self.disagrees = disagrees;
+        if disagrees || self.same_flows >= FROZEN_FLOWS {
+            return None;
+        }
+        // Along the down axis of the body flow sees nothing: there the estimate stands.
+        let seen = Vec3::new((pitch - turned[1]) * depth, (turned[0] - roll) * depth, way.z);
+        let off = about_down(to.q.rotate(seen - way), turn) * per;
+        let speed = FLOW_NOISE * depth * per;
+        let scale = (SCALE_NOISE + doubt) * (seen.x.abs() + seen.y.abs()) * per;
+        Some(Seen {
+            off: [off.x, off.y],
+            variance: speed * speed + scale * scale,
+        })
+    }
+
+    fn watch_frozen(&mut self, flow: &Flow) {
+        let moves = flow.angle.iter().any(|angle| angle.abs() > 1e-6);
+        let same = self
+            .angle
+            .iter()
+            .zip(flow.angle)
+            .all(|(a, b)| (a - b).abs() < 1e-7);
+        self.same_flows = if same && moves {
+            self.same_flows.saturating_add(1)
+        } else {
+            0
+        };
+        self.angle = flow.angle;
+    }
+}
+
+/// From the lens of a vehicle with the attitude `q` to what its range sees `distance` m away, in axes turned by `turn` rad.
+pub fn beam(q: Quat, distance: f32, turn: f32) -> Vec3 {
+    about_down(q.rotate(Vec3::new(0.0, 0.0, distance)), turn)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// In other axes the places of the ones before are none, and a flank that was half seen no longer keeps the flow from being
+    /// judged.
+    #[test]
+    fn nothing_of_the_axes_before_is_left_where_an_estimate_begins() {
+        let mut sight = Sight::new(0.3, Vec3::ZERO);
+        let at = |us: u64, y: f32| Moment {
+            at_us: us,
+            position: Vec3::new(7.0, y, -1.9),
+            q: Quat::IDENTITY,
+            ..Moment::default()
+        };
+        for (y, distance) in [(0.5, 1.9), (0.7, 0.4)] {
+            for _ in 0..5 {
+                let _ = sight.height((&at(0, y - 0.02), &at(0, y)), distance, false, 0.0);
+            }
+        }
+        assert!(sight.flank > 0 && sight.unproven.is_some() && sight.foot.x > 6.9);
+        sight.range = Some((20_000, 1.0));
+        let flow = Flow {
+            until_us: 20_000,
+            seconds: 0.02,
+            angle: [0.0; 2],
+            quality: 100,
+        };
+        assert_eq!(sight.begin(&flow, Quat::IDENTITY), Some(1.0));
+        assert_eq!((sight.flank, sight.agreed, sight.step), (0, 0, 0.0));
+        assert!(sight.foot.norm() < 1e-6, "{:?}", sight.foot);
+        assert!(sight.unproven.is_some_and(|first| first.norm() < 1e-6));
+    }
+}

@@ -1,0 +1,315 @@
+//! Where something narrow lies below, a pipe, by the step of the range at its edge: what share of the flow's view it fills.
+
+use crate::maths::scalar;
+use crate::maths::vector::Vec3;
+
+/// Width of the flow's view at a distance of 1 m (42° across).
+const VIEW: f32 = 0.77;
+/// Deviation of the place, m.
+const PLACE: f32 = 0.04;
+/// Rays that stand for the view, and the nearest distance of one, m.
+const RAYS: u32 = 9;
+const NEAREST: f32 = 0.05;
+/// How far the range may contradict the place, m: the width of its beam.
+const SLACK: f32 = 0.02;
+/// Share of the half width at which the back is taken to end: farther out it falls the more the less its place is known.
+const EDGE: f32 = 0.9;
+/// Forward over sideways speed beyond which an edge is one that lies across the way: the nose is along a pipe.
+const AHEAD: f32 = 2.0;
+
+/// How far what the flow sees is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Depth {
+    /// One over the mean of 1/distance, m.
+    pub distance: f32,
+    /// Share of it that is in doubt with the band's place.
+    pub doubt: f32,
+    /// Where in the view what is near lies, level, in the estimate's axes, 1: as it comes nearer it seems to move that way.
+    pub lean: Vec3,
+}
+
+/// A band along the vehicle, or across it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Band {
+    /// Point in its middle, and the direction across it, level, in the estimate's axes.
+    middle: Vec3,
+    across: Vec3,
+    /// Half its width, m.
+    radius: f32,
+    /// Its height along the down axis, m.
+    pub top: f32,
+    /// The beam has met it where it should since an edge was seen: it is narrow.
+    sure: bool,
+    /// How far the ground was met where it should be since then, m.
+    pushed: f32,
+}
+
+impl Band {
+    /// The band whose edge is at `foot`, `onto` or off which the beam has come on its `way` of a vehicle at `heading`, rad: as
+    /// it mostly moves, forward or sideways, leads across. Where the place `known` before says which of the two edges it
+    /// is, a gust to the other side does not.
+    pub fn at_edge(known: Self, foot: Vec3, onto: bool, way: Vec3, heading: f32) -> Self {
+        let (ahead, right) = ahead_and_right(heading);
+        let (forward, sideways) = (way.dot(ahead), way.dot(right));
+        let (across, speed) = if forward.abs() > AHEAD * sideways.abs() {
+            (ahead, forward)
+        } else {
+            (right, sideways)
+        };
+        let side = known.side(foot);
+        let same = across.dot(known.across) > 0.9 && side.abs() > 0.5 * known.radius;
+        let before = if same { side < 0.0 } else { (speed > 0.0) == onto };
+        let half = if before { known.radius } else { -known.radius };
+        Self {
+            middle: foot + across * half,
+            across,
+            sure: true,
+            pushed: 0.0,
+            ..known
+        }
+    }
+
+    /// One of which only that it is below is known: its middle is at `foot`, it lies along `heading`, rad, and its width and
+    /// height are `2 radius` and `top`, m.
+    pub fn below(foot: Vec3, heading: f32, radius: f32, top: f32) -> Self {
+        Self {
+            middle: foot,
+            across: ahead_and_right(heading).1,
+            radius,
+            top,
+            sure: false,
+            pushed: 0.0,
+        }
+    }
+
+    /// A beam that meets what is `raised`, or the ground, at `foot` bounds where it can be.
+    pub fn bounded(self, foot: Vec3, raised: bool) -> Self {
+        let side = self.side(foot);
+        let sign = if side < 0.0 { -1.0 } else { 1.0 };
+        let over = if raised {
+            (side.abs() - self.radius - SLACK).max(0.0)
+        } else {
+            (side.abs() - self.radius + SLACK).min(0.0)
+        };
+        Self {
+            middle: self.middle + self.across * (over * sign),
+            sure: self.sure && over <= 0.0,
+            pushed: self.pushed + (-over).max(0.0),
+            ..self
+        }
+    }
+
+    /// The ground was met all across where it should be: it is not there, but on the other side of the edge.
+    pub fn is_mistaken(&self) -> bool {
+        self.pushed > 2.0 * self.radius
+    }
+
+    /// How far its back has fallen at `foot` from its top, m, and by how much that is in doubt with the place. Where it may be
+    /// wide, it is flat.
+    pub fn drop(&self, foot: Vec3) -> (f32, f32) {
+        if !self.sure {
+            return (0.0, PLACE);
+        }
+        let side = self.side(foot).abs().min(EDGE * self.radius);
+        let drop = self.fallen(side);
+        (drop, self.fallen(side + PLACE) - drop)
+    }
+
+    /// What is `below` its top, m, may be its own flank.
+    pub fn is_flank(&self, below: f32) -> bool {
+        below < self.radius + PLACE
+    }
+
+    /// How far its round back has fallen `off` m beside its crown, m; beside it as far as at its edge.
+    fn fallen(&self, off: f32) -> f32 {
+        let square = self.radius * self.radius - off * off;
+        if square > 0.0 {
+            self.radius - square * scalar::inv_sqrt(square)
+        } else {
+            self.radius
+        }
+    }
+
+    /// How far its middle lies aside of `place`, m.
+    pub fn aside(&self, place: Vec3) -> f32 {
+        -self.side(place)
+    }
+
+    /// Of its middle, in its direction across, m.
+    fn side(&self, place: Vec3) -> f32 {
+        (place - self.middle).dot(self.across)
+    }
+
+    /// What the view from `place` sees, whose middle falls at `foot`: rays across the round band, `far` m to the ground
+    /// beside it.
+    pub fn sight(&self, place: Vec3, foot: Vec3, far: f32) -> Depth {
+        let side = self.side(place);
+        let slope = (foot - place).dot(self.across) / scalar::clamp(foot.z - place.z, NEAREST, 100.0);
+        let near = scalar::clamp(self.top - place.z, NEAREST, far);
+        let of = |side: f32| self.seen_from(side, slope, near, far);
+        let ((mean, moment), (left, _), (right, _)) = (of(side), of(side - PLACE), of(side + PLACE));
+        Depth {
+            distance: 1.0 / mean,
+            doubt: (left - mean).abs().max((right - mean).abs()) / mean,
+            lean: self.across * (moment / mean),
+        }
+    }
+
+    /// Mean of 1/distance, 1/m, and its moment about the view's middle from `side` m beside its middle, `near` m over its
+    /// top, of a view that leans by `slope`.
+    fn seen_from(&self, side: f32, slope: f32, near: f32, far: f32) -> (f32, f32) {
+        let deep = near + self.radius;
+        let (mut sum, mut moment) = (0.0, 0.0);
+        for ray in 0..RAYS {
+            let off = VIEW * ((ray as f32 + 0.5) / RAYS as f32 - 0.5);
+            let t = slope + off;
+            // Where the ray (side + t z, z) meets the circle about (0, deep).
+            let (a, b) = (1.0 + t * t, deep - side * t);
+            let square = b * b - a * (side * side + deep * deep - self.radius * self.radius);
+            let root = square * scalar::inv_sqrt(square);
+            let z = if square >= 0.0 { (b - root) / a } else { far };
+            let per = 1.0 / scalar::clamp(z, NEAREST, far);
+            sum += per;
+            moment += off * per;
+        }
+        (sum / RAYS as f32, moment / RAYS as f32)
+    }
+}
+
+/// Level directions along `heading`, rad, and to the right of it.
+fn ahead_and_right(heading: f32) -> (Vec3, Vec3) {
+    let (sin, cos) = (scalar::sin(heading), scalar::cos(heading));
+    (Vec3::new(cos, sin, 0.0), Vec3::new(-sin, cos, 0.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const RIGHT: Vec3 = Vec3::new(0.0, 0.3, 0.0);
+
+    /// One of 0.3 m along a heading of 0, whose middle is at 1 m to the right and its top at 1.5 m.
+    fn band() -> Band {
+        Band::below(Vec3::new(2.0, 1.0, 0.0), 0.0, 0.15, -1.5)
+    }
+
+    fn foot(y: f32) -> Vec3 {
+        Vec3::new(0.0, y, 0.0)
+    }
+
+    #[test]
+    fn the_view_is_as_near_as_what_fills_it() {
+        // Its middle is at 1 m, the ground 1.9 m below the vehicle.
+        let seen = |y: f32, z: f32, slope: f32| band().sight(Vec3::new(0.0, y, z), foot(y - slope * z), -z);
+        let depth = |y: f32, z: f32, slope: f32| seen(y, z, slope).distance;
+        // From 0.4 m its tangents, 15.8° to each side, are 74 % of the view; from 0.7 m 47 %.
+        let over = depth(1.0, -1.9, 0.0);
+        assert!((over - 1.0 / (0.74 / 0.43 + 0.26 / 1.9)).abs() < 0.06, "{over}");
+        let higher = depth(1.0, -2.2, 0.0);
+        assert!(
+            (higher - 1.0 / (0.47 / 0.73 + 0.53 / 2.2)).abs() < 0.15,
+            "{higher}"
+        );
+        // Far beside it there is the ground alone, and near it the flank of the band is in the view.
+        assert!((depth(1.8, -1.9, 0.0) - 1.9).abs() < 1e-3);
+        let beside = depth(1.28, -1.9, 0.0);
+        assert!((1.0..1.6).contains(&beside), "{beside}");
+        // A view that leans to it sees more of it.
+        assert!(depth(1.28, -1.9, -0.2) < beside && depth(0.72, -1.9, 0.2) < beside);
+        // Where its edge moves through the view its place matters, far from it not.
+        let doubt = |y: f32| seen(y, -1.9, 0.0).doubt;
+        assert!(
+            doubt(1.8) < 1e-3 && doubt(1.2) > 0.1 && doubt(1.0) < doubt(1.2),
+            "{} {}",
+            doubt(1.0),
+            doubt(1.2)
+        );
+        // From the right of it what is near lies to the left; above its middle, and beyond the view, on neither side.
+        let lean = |y: f32| seen(y, -1.9, 0.0).lean.y;
+        assert!(
+            lean(1.12) < -0.05 && (lean(1.12) + lean(0.88)).abs() < 1e-4,
+            "{}",
+            lean(1.12)
+        );
+        assert!(lean(1.0).abs() < 1e-4 && lean(1.8).abs() < 1e-4);
+    }
+
+    /// The two edges, from either side, of pipes of 0.2 and 0.4 m about 1 m.
+    #[test]
+    fn either_edge_from_either_side_gives_the_same_band() {
+        for radius in [0.1, 0.2] {
+            // Only that something is below is known, somewhere else along the way.
+            let below = Band::below(foot(1.0), 0.0, radius, -1.5);
+            for (side, onto, speed) in [
+                (-1.0, true, 0.3),
+                (1.0, true, -0.3),
+                (1.0, false, 0.3),
+                (-1.0, false, -0.3),
+            ] {
+                let edge = Vec3::new(5.0, 1.0 + side * radius, 0.0);
+                let band = Band::at_edge(below, edge, onto, Vec3::new(0.1, speed, 0.0), 0.0);
+                for y in [0.7, 0.9, 1.0, 1.2] {
+                    let off = band.side(foot(y)) - (y - 1.0);
+                    assert!(off.abs() < 1e-6, "{radius} {side} {onto} {speed}");
+                }
+                // On its crown, half way to its edge and at a fifth of its diameter beneath it.
+                let (drop, _) = band.drop(foot(1.0));
+                assert!(drop < 1e-6, "{drop}");
+                let (drop, doubt) = band.drop(foot(1.0 + 0.6 * radius));
+                assert!(
+                    (drop - 0.2 * radius).abs() < 1e-4 && doubt > 0.015,
+                    "{drop} {doubt}"
+                );
+                assert!(band.is_flank(radius) && !band.is_flank(radius + 0.05));
+            }
+        }
+    }
+
+    #[test]
+    fn a_gust_to_the_other_side_does_not_mistake_one_edge_for_the_other() {
+        // Its right edge is crossed outwards while the vehicle is taken to drift to the left, or mostly ahead.
+        for way in [Vec3::new(0.0, -0.1, 0.0), Vec3::new(0.15, -0.1, 0.0)] {
+            let moved = Band::at_edge(band(), foot(1.17), false, way, 0.0);
+            assert!(moved.side(foot(1.02)).abs() < 1e-6, "{moved:?}");
+        }
+        // Far ahead of sideways it is the pipe's end.
+        let end = Band::at_edge(band(), foot(1.0), false, Vec3::new(0.3, 0.1, 0.0), 0.0);
+        assert!(end.side(Vec3::new(-0.15, 1.0, 0.0)).abs() < 1e-6, "{end:?}");
+        // By its heading, not the axes'.
+        let turned = Band::below(foot(1.0), core::f32::consts::FRAC_PI_2, 0.15, -1.5);
+        assert!((turned.side(Vec3::new(-0.1, 1.0, 0.0)) - 0.1).abs() < 1e-6);
+        assert!(RIGHT.dot(turned.across).abs() < 1e-6);
+    }
+
+    /// In a throw off the pipe the beam leans against the way: the edge was taken for the other one, and the band, pushed ahead
+    /// of the vehicle, halved its speed for as long as it moved on.
+    #[test]
+    fn a_band_that_the_ground_pushes_by_more_than_its_width_is_mistaken() {
+        let pushed = |way: f32| {
+            let steps = (way * 100.0) as u8;
+            (0..=steps).fold(band(), |band, i| {
+                band.bounded(foot(0.9 + 0.01 * f32::from(i)), false)
+            })
+        };
+        assert!(!pushed(0.2).is_mistaken() && pushed(0.5).is_mistaken());
+        // An edge that is seen says where it is.
+        assert!(!Band::at_edge(pushed(0.5), foot(1.5), true, RIGHT, 0.0).is_mistaken());
+    }
+
+    #[test]
+    fn where_the_beam_meets_it_or_the_ground_bounds_its_place() {
+        for y in [0.6, 0.95, 1.1, 1.5] {
+            let on = band().bounded(foot(y), true).side(foot(y));
+            assert!(on.abs() < 0.15 + SLACK + 1e-6, "{y}: {on}");
+            let beside = band().bounded(foot(y), false).side(foot(y));
+            assert!(beside.abs() > 0.15 - SLACK - 1e-6, "{y}: {beside}");
+        }
+        // What is met beside it is wide, or it is elsewhere: flat, as far as is known.
+        let table = Band::at_edge(band(), foot(1.15), false, RIGHT, 0.0);
+        assert!(table.drop(foot(1.1)).0 > 0.02);
+        assert!(table.bounded(foot(1.3), true).drop(foot(1.25)).0 < 1e-6);
+        // What agrees moves nothing.
+        assert_eq!(band().bounded(foot(1.1), true), band());
+        assert_eq!(band().bounded(foot(1.3), false), band());
+    }
+}

@@ -1,0 +1,666 @@
+//! Position, velocity and disturbance, 200 Hz, from the inertial sensor and poses that others measure late, or without them
+//! from optical flow and range.
+//!
+//! The axes are those of the pose's sender: down is the vehicle's, the heading differs by a turn that is estimated
+//! (the vehicle has no compass, and a visual odometry drifts). By flow alone they begin where the first one came. docs/hold.md has derivation and figures.
+
+#[cfg(test)]
+mod tests;
+
+use crate::maths::scalar::{self, GRAVITY};
+use crate::maths::vector::{Quat, Vec3};
+use crate::navigation::air_pressure::AirPressure;
+use crate::navigation::axis_filter::{Axis, Change};
+use crate::navigation::baro_height::{Aloft, PressureFault};
+use crate::navigation::external_pose::{PoseFault, TURN_STEP, Trust};
+use crate::navigation::flow_range::{Sight, SightFault, beam};
+use crate::navigation::flow_range_sample::{Flow, GroundView};
+use crate::navigation::history::{Moment, Past};
+use crate::params::Params;
+
+/// Longest step, s: after a longer silence of the inertial sensor the estimate begins anew.
+pub const STEP_MAX: f32 = 0.05;
+/// Age of the newest fix with which the estimate ends, s: the inertial sensor alone is metres off by then.
+pub const LOST_AGE: f32 = 10.0;
+/// Fixes until the estimate is given out, half a second at 50 Hz, and the velocity's deviation by then, m/s.
+const READY_FIXES: u32 = 25;
+const READY_SPEED: f32 = 0.1;
+/// Farthest from the origin along an axis, m: beyond it a float has steps of a millimetre.
+const POSITION_MAX: f32 = 10_000.0;
+/// Largest heading, rad: a turn. Of a huge one sine and cosine are no numbers.
+const HEADING_MAX: f32 = 2.0 * scalar::PI;
+/// Deviation of a fix whose sender does not say it, m, and the bounds of one that does.
+pub const FIX_DEVIATION: f32 = 0.01;
+const DEVIATION_BOUNDS: (f32, f32) = (0.003, 0.5);
+/// Silence of the poses after which one that is off is no jump, s: what was estimated since may be as far off.
+pub(crate) const UNKNOWN_AGE: f32 = 1.0;
+/// Age that an estimate has once its poses were found to disagree, µs: none coasts on by it (see
+/// [`crate::mode::Mode::Hold`]).
+pub(crate) const TAINTED_AGE: u64 = 1_310_000;
+/// Deviation of a bias that was learnt before the estimate began anew, as after a perch, at least, m/s²: level that of the
+/// attitude, 0.6°, down that of the sensor alone.
+const KEPT_BIAS: [f32; 3] = [0.1, 0.1, 0.03];
+/// Largest that is kept, m/s²: more is what has misled the estimate.
+const SENSOR_BIAS: f32 = 0.3;
+/// Share of the weight from which on the rotors carry the vehicle.
+pub const FLIES: f32 = 0.5;
+/// Age of the newest pose from which on flow and range are taken, s.
+const POSE_FRESH: f32 = 0.2;
+/// Flows refused in a row after which the next is taken, a second at 50 Hz; one that is wrong for good is found out by
+/// its agreement with the inertial sensor.
+const FLOWS_REFUSED_MAX: u32 = 50;
+/// Range of a vehicle that stands, m, and the variance of its level speed, (m/s)².
+const STANDING: f32 = 0.05;
+const STAND_SPEED: f32 = 0.01;
+/// Time over which the way of the beam across an edge is taken, µs.
+const EDGE_TIME: u64 = 100_000;
+/// Share of a new heading's difference that the turn follows: 1 s at 50 Hz.
+pub(crate) const TURN_GAIN: f32 = 0.02;
+/// Cut-off of the lateral and the vertical disturbance, rad/s.
+const LATERAL_CUTOFF: f32 = 20.0;
+const VERTICAL_CUTOFF: f32 = 8.0;
+
+/// What the inertial sensor says.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Inertial {
+    /// When it was measured, µs.
+    pub at_us: u64,
+    /// Body to world.
+    pub q: Quat,
+    /// Specific force, m/s², body.
+    pub accel: Vec3,
+}
+
+/// A pose that somebody else has measured.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Fix {
+    /// When it was measured, µs.
+    pub at_us: u64,
+    /// In the sender's axes, down as the vehicle's, m.
+    pub position: Vec3,
+    /// Heading of the nose in the sender's axes, rad.
+    pub heading: f32,
+    /// Variance along each axis, m²; `None` where the sender does not say it.
+    pub variance: Option<Vec3>,
+    /// Counts the jumps of the sender's estimate.
+    pub resets: u8,
+}
+
+impl Fix {
+    fn is_sane(&self) -> bool {
+        let far = |x: f32| x.abs() > POSITION_MAX;
+        let p = self.position;
+        p.is_finite() && self.heading.abs() <= HEADING_MAX && !(far(p.x) || far(p.y) || far(p.z))
+    }
+
+    pub(crate) fn variance(&self) -> Vec3 {
+        let (least, most) = DEVIATION_BOUNDS;
+        let given = self.variance.filter(|v| v.is_finite());
+        given.map_or(Vec3::new(1.0, 1.0, 1.0) * (FIX_DEVIATION * FIX_DEVIATION), |v| {
+            v.map(|v| scalar::clamp(v, least * least, most * most))
+        })
+    }
+}
+
+/// Where the vehicle is, as far as the newest fix and the inertial sensor say.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Estimate {
+    /// In the sender's axes, m.
+    pub position: Vec3,
+    /// m/s.
+    pub velocity: Vec3,
+    /// Acceleration that rotors and gravity do not explain, m/s²: wind. Touching something it is no wind.
+    pub disturbance: Vec3,
+    /// Heading in the sender's axes less that of the vehicle's attitude, rad.
+    pub turn: f32,
+    /// Age of the newest fix that was taken, s, below [`LOST_AGE`].
+    pub age: f32,
+    /// The height is by the pressure of the air, since neither range nor pose give it.
+    pub by_pressure: bool,
+    /// Counts where the position has jumped with the sender's origin.
+    pub jumps: u8,
+    /// Where the beam of the range falls.
+    pub foot: Foot,
+}
+
+/// Where the beam of a range has met what is below.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Foot {
+    /// In the estimate's axes, m; `None` where nothing was within reach.
+    pub point: Option<Vec3>,
+    /// Counts the ranges.
+    pub count: u8,
+    /// Since it was measured, s.
+    pub age: f32,
+}
+
+impl Default for Foot {
+    /// None yet.
+    fn default() -> Self {
+        Self {
+            point: None,
+            count: 0,
+            age: f32::MAX,
+        }
+    }
+}
+
+impl Estimate {
+    /// True if every number is finite.
+    pub fn is_finite(&self) -> bool {
+        let foot = self.foot.point.unwrap_or_default();
+        let sum = self.position + self.velocity + self.disturbance + foot;
+        sum.is_finite() && (self.turn + self.age).is_finite() && !self.foot.age.is_nan()
+    }
+}
+
+/// What is measured and left out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fault {
+    /// The poses.
+    Pose(PoseFault),
+    /// Flow or range.
+    Sight(SightFault),
+    /// The pressure of the air.
+    Pressure(PressureFault),
+}
+
+impl Fault {
+    /// For the pilot's display: at most 40 ASCII characters.
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::Pose(fault) => fault.text(),
+            Self::Sight(fault) => fault.text(),
+            Self::Pressure(fault) => fault.text(),
+        }
+    }
+}
+
+/// The estimator.
+#[derive(Clone, Debug)]
+pub struct PositionEstimator {
+    mass: f32,
+    motor_tau: f32,
+    past: Past,
+    /// `None` before the first fix and after the last one has aged.
+    track: Option<Track>,
+    sight: Sight,
+    trust: Trust,
+    aloft: Aloft,
+    /// When the last track by flow ended, µs, and its axes, of which the biases are good for the next.
+    learnt: Option<(u64, [Axis; 3])>,
+    /// When the newest fix and the newest flow that were looked at were measured, µs: each is taken once.
+    seen_us: u64,
+    flow_us: u64,
+}
+
+impl PositionEstimator {
+    /// An estimator without a fix.
+    pub fn new(p: &Params) -> Self {
+        Self {
+            mass: p.mass,
+            motor_tau: p.motor_tau,
+            past: Past::default(),
+            track: None,
+            sight: Sight::new(p.pipe_diameter, p.flow_lens()),
+            trust: Trust::default(),
+            aloft: Aloft::default(),
+            learnt: None,
+            seen_us: 0,
+            flow_us: 0,
+        }
+    }
+
+    /// What is left out at present, with an estimate or without one.
+    pub fn fault(&self) -> Option<Fault> {
+        let pose = self.trust.fault().map(Fault::Pose);
+        pose.or_else(|| self.sight.fault().map(Fault::Sight))
+            .or_else(|| self.aloft.fault().map(Fault::Pressure))
+    }
+
+    /// Takes the newest pressure of the air, for the next step: the height of last resort. Without one nothing changes.
+    pub fn hear(&mut self, air: &AirPressure) {
+        self.aloft.hear(air);
+    }
+
+    /// One step with the inertial sensor, the thrust demanded along -z, N, the newest fix and the newest flow and range.
+    /// `None` without a position.
+    pub fn step(
+        &mut self,
+        felt: &Inertial,
+        lift: f32,
+        fix: Option<&Fix>,
+        view: Option<&GroundView>,
+    ) -> Option<Estimate> {
+        let at_us = felt.at_us;
+        let new = fix.filter(|fix| fix.at_us > self.seen_us && fix.at_us <= at_us && fix.is_sane());
+        self.seen_us = new.map_or(self.seen_us, |fix| fix.at_us);
+        let flow = view.and_then(|view| view.flow).and_then(Flow::checked);
+        let flow = flow.filter(|flow| flow.until_us > self.flow_us && flow.until_us <= at_us);
+        self.flow_us = flow.map_or(self.flow_us, |flow| flow.until_us);
+        let flies = lift > FLIES * GRAVITY * self.mass;
+        let before = self.sight.looked_us();
+        let range = view.and_then(|view| self.sight.new_range(view, at_us, flies));
+        let ranged = self.sight.looked_us();
+        let looked = (ranged != before && self.sight.range_is_sound()).then_some(ranged);
+        if !(felt.q.is_finite() && felt.accel.is_finite() && lift.is_finite()) {
+            return None;
+        }
+        let down = felt.q.rotate(felt.accel).z + GRAVITY;
+        self.sight.feel(at_us, flies.then_some(down), felt.q);
+        // A scaled range gives no height; how it changes may say that it is right again.
+        let range = match range {
+            Some((at, distance)) if self.sight.scale.wrong() => {
+                if let Some(then) = self.past.at(at) {
+                    self.sight.watch_scaled(then.q, distance);
+                }
+                None
+            }
+            range => range,
+        };
+        let swing = self.trust.feel(felt);
+        if let Some(fix) = new {
+            self.trust.look(fix, self.past.at(fix.at_us).as_ref(), flies);
+        }
+        let left_out = self.trust.fault().is_some();
+        let new = new.filter(|_| !left_out);
+        let here = Moment {
+            at_us,
+            q: felt.q,
+            swing,
+            ..Moment::default()
+        };
+        let track = match (&mut self.track, new) {
+            (Some(track), _) if track.follows(at_us) => track,
+            (track, Some(fix)) => {
+                self.past.clear();
+                self.aloft.forget();
+                *track = Some(Track::begin(at_us, felt.q.to_euler().2, fix));
+                return None;
+            }
+            (track, None) => {
+                // Where the first flow that is of use comes, the axes begin: on the ground below, as the vehicle's own.
+                let height = flow.and_then(|flow| self.sight.begin(&flow, felt.q));
+                self.learnt = track.as_ref().map_or(self.learnt, Track::learnt);
+                *track = height.map(|height| {
+                    self.past.clear();
+                    self.aloft.forget();
+                    Track::above(at_us, height, self.learnt.as_ref())
+                });
+                // Its own place: the next flow's interval may begin here.
+                let position = track.as_ref().map_or(here.position, Track::position);
+                self.past.push(Moment { position, ..here });
+                return None;
+            }
+        };
+        track.predict(felt, (lift / self.mass, self.motor_tau));
+        self.past.push(Moment {
+            position: track.position(),
+            ..here
+        });
+        track.left_out |= left_out;
+        let jumps = track.jumps;
+        if self.trust.fault() == Some(PoseFault::Disagrees) && !track.tainted {
+            track.taint();
+            track.tainted = true;
+            self.aloft.forget();
+        }
+        if let Some(fix) = new {
+            track.take(&mut self.past, &mut self.trust, fix);
+        }
+        if let Some(at) = looked {
+            let distance = range.map(|(_, distance)| distance);
+            track.step_on(&self.past, self.sight.lens, at, distance);
+        }
+        let posed = track.posed && seconds(track.pose_us, at_us) < POSE_FRESH;
+        if let Some((at, distance)) = range {
+            track.take_range(&mut self.past, &mut self.sight, (at, distance), posed);
+        }
+        if let Some(flow) = flow {
+            track.take_flow(&mut self.past, &mut self.sight, &flow, posed);
+        }
+        let misled = self.sight.misleads() && !posed;
+        if misled && !track.misled {
+            track.taint();
+        }
+        track.misled = misled;
+        if track.jumps != jumps {
+            self.aloft.forget();
+        }
+        if let Some(at) = self.aloft.news(at_us)
+            && flies
+        {
+            track.take_pressure(&mut self.past, &mut self.aloft, at);
+        }
+        track.estimate(self.aloft.carries(at_us))
+    }
+}
+
+/// What is known since the first fix.
+#[derive(Clone, Debug)]
+struct Track {
+    /// North or forward, east or right, down.
+    axes: [Axis; 3],
+    turn: f32,
+    /// Thrust over mass, with the motors' lag, m/s².
+    lift: f32,
+    disturbance: Vec3,
+    /// Times of the last step and of the newest fix or flow taken, µs.
+    at_us: u64,
+    fixed_us: u64,
+    fixes: u32,
+    /// Poses were left out since the last one that was taken.
+    left_out: bool,
+    /// What was estimated from poses since they began to disagree was given up.
+    tainted: bool,
+    /// The same by the flow.
+    misled: bool,
+    /// There was a pose, the newest one that was taken at this time, µs: the axes are its sender's.
+    posed: bool,
+    pose_us: u64,
+    /// When the newest pose or range that gave the height was measured, µs.
+    height_us: u64,
+    /// Flows refused in a row.
+    flows_refused: u32,
+    resets: u8,
+    jumps: u8,
+    ready: bool,
+    foot: Foot,
+    /// When that was measured, µs; 0 before the first.
+    foot_us: u64,
+}
+
+impl Track {
+    fn begin(at_us: u64, yaw: f32, fix: &Fix) -> Self {
+        let axes = fix.position.to_array().map(Axis::at);
+        Self {
+            axes,
+            turn: scalar::wrap_pi(fix.heading - yaw),
+            lift: 0.0,
+            disturbance: Vec3::ZERO,
+            at_us,
+            fixed_us: fix.at_us,
+            fixes: 1,
+            left_out: false,
+            tainted: false,
+            misled: false,
+            posed: true,
+            pose_us: fix.at_us,
+            height_us: fix.at_us,
+            flows_refused: 0,
+            resets: fix.resets,
+            jumps: 0,
+            ready: false,
+            foot: Foot::default(),
+            foot_us: 0,
+        }
+    }
+
+    /// At rest `height` m above the ground, in the vehicle's own axes, with the biases of the one before.
+    fn above(at_us: u64, height: f32, before: Option<&(u64, [Axis; 3])>) -> Self {
+        let here = Fix {
+            at_us,
+            position: Vec3::new(0.0, 0.0, -height),
+            ..Fix::default()
+        };
+        let mut track = Self {
+            posed: false,
+            ..Self::begin(at_us, 0.0, &here)
+        };
+        if let Some((ended_us, before)) = before {
+            let since = seconds(*ended_us, at_us);
+            let pairs = track.axes.iter_mut().zip(before).zip(KEPT_BIAS);
+            for ((axis, before), deviation) in pairs {
+                *axis = axis.biased_as(before, deviation, since);
+            }
+        }
+        track
+    }
+
+    /// Its end and its axes where they are the vehicle's own, and their biases a sensor's.
+    fn learnt(&self) -> Option<(u64, [Axis; 3])> {
+        let sound = self.axes.iter().all(|axis| axis.bias().abs() < SENSOR_BIAS);
+        (sound && !self.posed && !self.misled).then_some((self.at_us, self.axes))
+    }
+
+    /// The step at `at_us` µs follows the last one, and the newest fix is not too old.
+    fn follows(&self, at_us: u64) -> bool {
+        let since = seconds(self.at_us, at_us);
+        since > 0.0 && since <= STEP_MAX && seconds(self.fixed_us, at_us) < LOST_AGE
+    }
+
+    fn predict(&mut self, a: &Inertial, (lift, motor_tau): (f32, f32)) {
+        let dt = seconds(self.at_us, a.at_us);
+        self.at_us = a.at_us;
+        let force = about_down(a.q.rotate(a.accel), self.turn);
+        let acceleration = force + Vec3::new(0.0, 0.0, GRAVITY);
+        for (axis, acceleration) in self.axes.iter_mut().zip(acceleration.to_array()) {
+            axis.predict(acceleration, dt);
+        }
+        // Across the thrust axis rotors push little: what is felt there is the air, and the arms' lean.
+        let across = about_down(a.q.rotate(Vec3::new(a.accel.x, a.accel.y, 0.0)), self.turn) - self.bias();
+        self.lift += (lift - self.lift) * dt / (dt + motor_tau);
+        let down = acceleration.z - self.bias().z - GRAVITY + self.lift * a.q.down_in_body().z;
+        let follow = |from: f32, to: f32, cutoff: f32| from + (to - from) * cutoff * dt / (1.0 + cutoff * dt);
+        let Vec3 { x, y, z } = self.disturbance;
+        self.disturbance = Vec3::new(
+            follow(x, across.x, LATERAL_CUTOFF),
+            follow(y, across.y, LATERAL_CUTOFF),
+            follow(z, down, VERTICAL_CUTOFF),
+        );
+    }
+
+    /// Compares `fix` with where the vehicle was taken to be when it was measured.
+    fn take(&mut self, past: &mut Past, trust: &mut Trust, fix: &Fix) {
+        let Some(then) = past.at(fix.at_us) else {
+            return;
+        };
+        let yaw = then.yaw();
+        let innovation = fix.position - then.position;
+        let variance = fix.variance();
+        let close = |((axis, y), r): ((&Axis, f32), f32)| axis.accepts(y, r);
+        let pairs = self.axes.iter().zip(innovation.to_array());
+        let accepted = pairs.zip(variance.to_array()).all(close);
+        let off = scalar::wrap_pi(fix.heading - yaw - self.turn);
+        let unknown = self.left_out || seconds(self.pose_us, fix.at_us) > UNKNOWN_AGE;
+        let elsewhere = !accepted || off.abs() > TURN_STEP;
+        if !self.posed || fix.resets != self.resets || (unknown && elsewhere) {
+            past.clear();
+            self.jump(yaw, fix);
+        } else if accepted {
+            trust.gate(fix.at_us, false);
+            let lag = seconds(fix.at_us, self.at_us);
+            let mut changes = [Change::default(); 3];
+            let inputs = innovation.to_array().into_iter().zip(variance.to_array());
+            for ((axis, change), (y, r)) in self.axes.iter_mut().zip(&mut changes).zip(inputs) {
+                *change = axis.correct(y, r, lag);
+            }
+            past.change(fix.at_us, &changes);
+            let gain = scalar::clamp(1.0 / (1.0 + self.fixes as f32), TURN_GAIN, 1.0);
+            self.turn = scalar::wrap_pi(self.turn + gain * off);
+            self.count();
+        } else {
+            trust.gate(fix.at_us, true);
+            return;
+        }
+        (self.left_out, self.tainted) = (false, false);
+        self.fixed_us = fix.at_us;
+        (self.posed, self.pose_us, self.height_us) = (true, fix.at_us, fix.at_us);
+    }
+
+    /// Poses, or the flow, have gone another way than the vehicle for a while: velocity and bias follow them no longer. No one
+    /// coasts on with these, and the wind is what is felt.
+    fn taint(&mut self) {
+        self.fixed_us = self.fixed_us.min(self.at_us.saturating_sub(TAINTED_AGE));
+        for axis in &mut self.axes {
+            axis.set_speed(axis.velocity());
+        }
+        let [x, y, _] = &mut self.axes;
+        for axis in [x, y] {
+            axis.forget_bias();
+        }
+    }
+
+    /// One more fix or flow was taken.
+    fn count(&mut self) {
+        self.fixes = self.fixes.saturating_add(1);
+        let known = self.axes.iter().all(|axis| axis.speed_within(READY_SPEED));
+        self.ready |= known && self.fixes >= READY_FIXES;
+    }
+
+    /// Notes where the beam of a range of `distance` m, measured at `at` µs, has met something.
+    fn step_on(&mut self, past: &Past, lens: Vec3, at: u64, distance: Option<f32>) {
+        let Some(then) = past.at(at).map(|moment| moment.of(lens, self.turn)) else {
+            return;
+        };
+        self.foot.point = distance.map(|d| then.position + beam(then.q, d, self.turn));
+        self.foot.count = self.foot.count.wrapping_add(1);
+        self.foot_us = at;
+    }
+
+    /// Compares a range of `distance` m, measured at `at` µs, with the height; beside a pose it gives the height of the ground alone.
+    fn take_range(&mut self, past: &mut Past, sight: &mut Sight, (at, distance): (u64, f32), posed: bool) {
+        let Some(then) = past.at(at) else {
+            return;
+        };
+        if distance < STANDING && !posed {
+            // Flow sees nothing there, and what is so near carries the vehicle, or soon will.
+            let lag = seconds(at, self.at_us);
+            let [x, y, _] = &mut self.axes;
+            let [along, across] = [x, y].map(|axis| axis.correct_speed(-axis.velocity(), STAND_SPEED, lag));
+            past.change(at, &[along, across, Change::default()]);
+        }
+        let earlier = past.at(at.saturating_sub(EDGE_TIME)).unwrap_or(then);
+        // The lever is rigid: what the lens is off, the vehicle is.
+        let [earlier, then] = [earlier, then].map(|moment| moment.of(sight.lens, self.turn));
+        let [_, _, axis] = &mut self.axes;
+        let Some((innovation, variance)) = sight.height((&earlier, &then), distance, posed, self.turn) else {
+            return;
+        };
+        let change = axis.correct(innovation, variance, seconds(at, self.at_us));
+        past.change(at, &[Change::default(), Change::default(), change]);
+        self.height_us = at;
+    }
+
+    /// Compares the newest pressure, measured at `at` µs, with the height; beside range or pose it is only learnt from.
+    fn take_pressure(&mut self, past: &mut Past, aloft: &mut Aloft, at: u64) {
+        let Some(then) = past.at(at) else {
+            return;
+        };
+        let known = seconds(self.height_us, at);
+        let Some((innovation, variance)) = aloft.height(then.position.z, known) else {
+            return;
+        };
+        let [_, _, axis] = &mut self.axes;
+        if axis.accepts(innovation, variance) {
+            let change = axis.correct(innovation, variance, seconds(at, self.at_us));
+            past.change(at, &[Change::default(), Change::default(), change]);
+        } else {
+            aloft.refuse();
+        }
+    }
+
+    /// Compares a flow with the velocity in its middle; beside a pose it is only watched.
+    fn take_flow(&mut self, past: &mut Past, sight: &mut Sight, flow: &Flow, posed: bool) {
+        let begin = flow.until_us.saturating_sub((flow.seconds * 1e6) as u64);
+        let middle = begin + flow.until_us.saturating_sub(begin) / 2;
+        let (Some(from), Some(to)) = (past.at(begin), past.at(flow.until_us)) else {
+            return;
+        };
+        // Between the lens' two places lies the vehicle's way, and what its turning adds.
+        let [from, to] = [from, to].map(|moment| moment.of(sight.lens, self.turn));
+        let Some(seen) = sight.velocity(flow, &from, &to, self.turn) else {
+            return;
+        };
+        if posed {
+            return;
+        }
+        let [x, y, _] = &mut self.axes;
+        let sides = [(x, seen.off[0]), (y, seen.off[1])];
+        if sides
+            .iter()
+            .any(|(axis, off)| !axis.accepts_speed(*off, seen.variance))
+        {
+            self.flows_refused += 1;
+            if self.flows_refused < FLOWS_REFUSED_MAX {
+                return;
+            }
+            for (axis, off) in sides {
+                axis.set_speed(axis.velocity() + off);
+            }
+        } else {
+            let lag = seconds(middle, self.at_us);
+            let [along, across] = sides.map(|(axis, off)| axis.correct_speed(off, seen.variance, lag));
+            past.change(middle, &[along, across, Change::default()]);
+            self.count();
+        }
+        self.flows_refused = 0;
+        self.fixed_us = flow.until_us;
+    }
+
+    /// The sender's origin has jumped: velocity and bias stay, but for their turn.
+    fn jump(&mut self, yaw: f32, fix: &Fix) {
+        let before = self.turn;
+        self.turn = scalar::wrap_pi(fix.heading - yaw);
+        let by = self.turn - before;
+        let velocity = about_down(self.velocity(), by);
+        let bias = about_down(self.bias(), by);
+        self.disturbance = about_down(self.disturbance, by);
+        let values = velocity.to_array().into_iter().zip(bias.to_array());
+        for ((axis, position), (velocity, bias)) in
+            self.axes.iter_mut().zip(fix.position.to_array()).zip(values)
+        {
+            axis.jump(position, velocity, bias);
+        }
+        self.resets = fix.resets;
+        self.jumps = self.jumps.wrapping_add(1);
+    }
+
+    fn of(&self, value: impl Fn(&Axis) -> f32) -> Vec3 {
+        let [x, y, z] = &self.axes;
+        Vec3::new(value(x), value(y), value(z))
+    }
+
+    fn position(&self) -> Vec3 {
+        self.of(Axis::position)
+    }
+
+    fn velocity(&self) -> Vec3 {
+        self.of(Axis::velocity)
+    }
+
+    fn bias(&self) -> Vec3 {
+        self.of(Axis::bias)
+    }
+
+    fn estimate(&self, by_pressure: bool) -> Option<Estimate> {
+        let estimate = Estimate {
+            position: self.position(),
+            velocity: self.velocity(),
+            disturbance: self.disturbance,
+            turn: self.turn,
+            age: seconds(self.fixed_us, self.at_us),
+            by_pressure,
+            jumps: self.jumps,
+            foot: match self.foot_us {
+                0 => Foot::default(),
+                at => Foot {
+                    age: seconds(at, self.at_us),
+                    ..self.foot
+                },
+            },
+        };
+        (self.ready && estimate.is_finite()).then_some(estimate)
+    }
+}
+
+/// From `from` to `to`, µs, in s; 0 where it is not after.
+pub(crate) fn seconds(from: u64, to: u64) -> f32 {
+    to.saturating_sub(from) as f32 * 1e-6
+}
+
+/// `v` turned about down by `angle`, rad, clockwise from above.
+pub fn about_down(v: Vec3, angle: f32) -> Vec3 {
+    let (sin, cos) = (scalar::sin(angle), scalar::cos(angle));
+    Vec3::new(v.x * cos - v.y * sin, v.x * sin + v.y * cos, v.z)
+}

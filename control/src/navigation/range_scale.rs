@@ -1,0 +1,264 @@
+//! Whether the range is as long as it says, by how it changes where the inertial sensor feels the vehicle rise or sink.
+//!
+//! Height over what is below, its rate and the bias of the felt acceleration are one Kalman filter, run twice with the same
+//! gains: one run sees the range alone, the other is moved by the inertial sensor alone. Both are linear, so that a range s
+//! times too long leaves the innovation seen - s felt, and s is their regression. docs/hold.md has limits and times.
+
+#[cfg(test)]
+mod tests;
+
+use super::position_estimator::{STEP_MAX, seconds};
+use crate::maths::scalar;
+
+/// Noise of the acceleration, m/s²/√Hz, and walk of its bias, m/s²/√s (assumed: ten times that of a quiet sensor). What is
+/// rougher shows in the innovations, and divides what they prove.
+const ACCEL_NOISE: f32 = 0.015;
+const BIAS_WALK: f32 = 0.005;
+/// Deviations where the surface is new, m/s and m/s²: what an edge has done to the rate is forgotten.
+const START_RATE: f32 = 1.0;
+const START_BIAS: f32 = 0.3;
+const KEPT_BIAS: f32 = 0.1;
+/// Deviation of a range over a plain floor, and over what may be narrow and round, m: 3 cm of a back on which the vehicle
+/// drifts for half a second weigh as much, at 50 Hz, as white noise of that size.
+const PLAIN: f32 = 0.025;
+const NARROW: f32 = 0.14;
+/// Acceleration beyond which it is a shock, m/s².
+const SHOCK: f32 = 4.0;
+/// Time without a range after which all begins anew, s.
+const GAP: f32 = 0.5;
+/// Nearest range that counts, m: nearer the vehicle may stand.
+const NEAREST: f32 = 0.1;
+/// Departure that is a step of what is below, m, where no other law looks for it.
+const STEP: f32 = 0.25;
+/// Time over which it is judged, s, and the ranges before.
+const WINDOW: f32 = 10.0;
+const RANGES_MIN: f32 = 25.0;
+/// Square of the deviations by which the scale must differ from one: 3.5.
+const DIFFERS: f32 = 12.0;
+/// Scales that are tolerated, and the largest that is one: what changes more is the ground.
+const BORNE: (f32, f32) = (0.8, 1.25);
+const MOST: f32 = 4.0;
+/// Bounds of the variances, in the square of their units, and the least sum of what was felt that says something.
+const LEAST: f32 = 1e-9;
+const MOST_VARIANCE: f32 = 1e3;
+const FELT_MIN: f32 = 20.0;
+/// Scales within which a range is used again, and the square of one over the deviation with which it must be known: 0.15.
+const REGAINED: (f32, f32) = (0.85, 1.18);
+const SURE: f32 = 44.0;
+
+/// What a range has met.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Below {
+    /// The same surface as before, a floor.
+    Plain,
+    /// The same as before, which may be narrow and round.
+    Narrow,
+    /// Another one that was there before.
+    Known,
+    /// One that was not there before.
+    New,
+}
+
+/// One run of the filter: height over what is below, m, its rate, m/s, and the bias of what is felt downwards, m/s².
+type Run = [f32; 3];
+
+/// How the vehicle climbs, and how well that is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Climb {
+    /// m/s up.
+    pub rate: f32,
+    /// Of what is felt downwards, m/s².
+    pub bias: f32,
+    /// Of the rate with itself and the bias, and of the bias.
+    variances: [f32; 3],
+}
+
+impl Climb {
+    /// Variance of the way that the inertial sensor alone says, m², `t` s on.
+    pub fn way_variance(&self, t: f32) -> f32 {
+        let [rr, rb, bb] = self.variances;
+        t * t * (rr + t * (rb + ACCEL_NOISE * ACCEL_NOISE * (1.0 / 3.0) + t * 0.25 * bb))
+    }
+}
+
+/// The regression, and the filter behind it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RangeScale {
+    seen: Run,
+    felt: Run,
+    /// Variances and covariances: of the height with all, then of the rate with itself and the bias, and of the bias.
+    with_height: [f32; 3],
+    rest: [f32; 3],
+    /// Time of the last step, µs, and since when the covariance stands, s: it is carried on at ranges only.
+    at_us: u64,
+    since: f32,
+    /// There was a range since all began, and one that says where the present surface is.
+    begun: bool,
+    anchored: bool,
+    /// Sums of felt², seen * felt and seen² of innovations over their variance, and how many: all fading.
+    sums: [f32; 4],
+    wrong: bool,
+}
+
+impl RangeScale {
+    /// The range is not as long as it says.
+    pub fn wrong(&self) -> bool {
+        self.wrong
+    }
+
+    /// There was a range since it flies, and lately.
+    pub fn begun(&self) -> bool {
+        self.begun
+    }
+
+    /// How the vehicle climbs by range and inertial sensor; `None` where these do not say it.
+    pub fn climb(&self) -> Option<Climb> {
+        let ([_, seen, seen_bias], [_, felt, felt_bias]) = (self.seen, self.felt);
+        (self.anchored && !self.wrong).then_some(Climb {
+            rate: seen + felt,
+            bias: seen_bias + felt_bias,
+            variances: self.rest,
+        })
+    }
+
+    /// Carries on to `at_us` µs with what is felt `down`wards, m/s², gravity left out; `None` where the vehicle does not fly.
+    pub fn feel(&mut self, at_us: u64, down: Option<f32>) {
+        let dt = seconds(self.at_us, at_us);
+        self.since += dt;
+        let down = down.filter(|a| a.abs() <= SHOCK && dt <= STEP_MAX && self.since <= GAP);
+        let Some(down) = down else {
+            *self = Self {
+                wrong: self.wrong,
+                at_us,
+                ..Self::default()
+            };
+            return;
+        };
+        self.at_us = at_us;
+        for (run, down) in [(&mut self.seen, 0.0), (&mut self.felt, down)] {
+            let [height, rate, bias] = run;
+            let up = *bias - down;
+            *height += (*rate + 0.5 * up * dt) * dt;
+            *rate += up * dt;
+        }
+    }
+
+    /// Takes a range by which the centre of mass was `height` m over what is below, `lag` s ago.
+    pub fn look(&mut self, height: f32, lag: f32, below: Below) {
+        if !(height + lag).is_finite() {
+            return;
+        }
+        if height < NEAREST {
+            self.anchored = false;
+            return;
+        }
+        let dt = core::mem::take(&mut self.since);
+        self.carry(dt);
+        let then = |[height, rate, _]: Run| height - rate * lag;
+        let seen = height - then(self.seen);
+        let felt = then(self.felt);
+        // While it is left out no other law looks for steps.
+        let stepped = self.wrong && (seen - felt).abs() > STEP;
+        if !self.anchored || stepped || matches!(below, Below::Known | Below::New) {
+            if stepped || below == Below::New {
+                self.sums = [0.0; 4];
+            }
+            self.anchor(seen, felt, below);
+            return;
+        }
+        let noise = deviation(below);
+        let [hh, hr, hb] = self.with_height;
+        let [rr, rb, bb] = self.rest;
+        // Of the height `lag` s ago.
+        let gains = [hh - lag * hr, hr - lag * rr, hb - lag * rb];
+        let [own, slope, _] = gains;
+        let variance = own - lag * slope + noise * noise;
+        let per = 1.0 / variance;
+        let [h, r, b] = gains;
+        self.with_height = [
+            scalar::clamp(hh - h * h * per, LEAST, MOST_VARIANCE),
+            hr - h * r * per,
+            hb - h * b * per,
+        ];
+        self.rest = [
+            scalar::clamp(rr - r * r * per, LEAST, MOST_VARIANCE),
+            rb - r * b * per,
+            scalar::clamp(bb - b * b * per, LEAST, MOST_VARIANCE),
+        ];
+        for (run, off) in [(&mut self.seen, seen), (&mut self.felt, -felt)] {
+            for (value, gain) in run.iter_mut().zip(gains) {
+                *value += gain * per * off;
+            }
+        }
+        self.judge([felt * felt * per, seen * felt * per, seen * seen * per], dt);
+    }
+
+    /// Carries the covariance on by `dt` s.
+    fn carry(&mut self, dt: f32) {
+        let [hh, hr, hb] = self.with_height;
+        let [rr, rb, bb] = self.rest;
+        let half = 0.5 * dt * dt;
+        let (hr1, rr1) = (hr + rr * dt + rb * half, rr + rb * dt);
+        let (hb1, rb1) = (hb + rb * dt + bb * half, rb + bb * dt);
+        let hh1 = hh + hr * dt + hb * half + hr1 * dt + hb1 * half;
+        self.with_height = [scalar::clamp(hh1, LEAST, MOST_VARIANCE), hr1 + hb1 * dt, hb1];
+        self.rest = [
+            scalar::clamp(
+                rr1 + rb1 * dt + ACCEL_NOISE * ACCEL_NOISE * dt,
+                LEAST,
+                MOST_VARIANCE,
+            ),
+            rb1,
+            scalar::clamp(bb + BIAS_WALK * BIAS_WALK * dt, LEAST, MOST_VARIANCE),
+        ];
+    }
+
+    /// The surface is another one: the height begins where the range says, and the rate is learnt anew.
+    fn anchor(&mut self, seen: f32, felt: f32, below: Below) {
+        let [_, _, bb] = self.rest;
+        let bias = if self.begun {
+            bb.max(KEPT_BIAS * KEPT_BIAS)
+        } else {
+            START_BIAS * START_BIAS
+        };
+        let noise = deviation(below);
+        self.with_height = [noise * noise, 0.0, 0.0];
+        self.rest = [START_RATE * START_RATE, 0.0, bias];
+        let ([seen_height, ..], [felt_height, ..]) = (&mut self.seen, &mut self.felt);
+        *seen_height += seen;
+        *felt_height -= felt;
+        (self.begun, self.anchored) = (true, true);
+    }
+
+    /// Adds the squares and the product of two innovations over their variance, `dt` s after the last.
+    fn judge(&mut self, news: [f32; 3], dt: f32) {
+        let keep = WINDOW / (WINDOW + dt);
+        for (sum, new) in self.sums.iter_mut().zip(news.into_iter().chain([1.0])) {
+            *sum = *sum * keep + new;
+        }
+        let [felt, both, seen, count] = self.sums;
+        if count < RANGES_MIN || felt < FELT_MIN {
+            return;
+        }
+        let scale = both / felt;
+        let rough = ((seen - both * scale) / count).max(1.0);
+        // One over the variance of the scale.
+        let known = felt / rough;
+        if self.wrong {
+            let (least, most) = REGAINED;
+            self.wrong = known < SURE || !(least..=most).contains(&scale);
+        } else {
+            let (least, most) = BORNE;
+            let off = (scale - 1.0) * (scale - 1.0) * known > DIFFERS;
+            self.wrong = off && !(least..=most).contains(&scale) && (0.0..=MOST).contains(&scale);
+        }
+    }
+}
+
+/// Of a range, m.
+fn deviation(below: Below) -> f32 {
+    match below {
+        Below::Narrow => NARROW,
+        _ => PLAIN,
+    }
+}

@@ -1,0 +1,142 @@
+//! The vertical speed by what is felt, beside the estimate's. A range that changes its scale, or slides off a flank with
+//! another one, bends the estimate within tenths of a second; where no range follows, that would be held for seconds.
+
+#[cfg(test)]
+mod tests;
+
+use crate::contact::contact_force::Held;
+use crate::maths::scalar::{clamp, clamp_abs};
+use crate::mode::{Inputs, Mode};
+use crate::navigation::fix_age::{FRESH_AGE, HEIGHT_AGE};
+use crate::navigation::position_estimator::Estimate;
+
+/// Time in which the felt speed follows the estimate's, s, and in which the felt acceleration's error is learnt from that.
+const FOLLOW: f32 = 4.0;
+const LEARN: f32 = 8.0;
+/// Largest such error, m/s², and speed, m/s.
+const BIAS_MAX: f32 = 0.3;
+const SPEED_MAX: f32 = 20.0;
+/// Age of the newest flow beyond which, with no range in reach, nothing gives the height, s.
+const BLIND_AGE: f32 = 0.1;
+/// Difference of the two speeds from which on the felt one counts, m/s: where nothing gives the height, where a range does, and
+/// where that has just begun. On the first way to the pipe sound modules come to 0.22; on a later one, one came beyond 0.25.
+const BENT: f32 = 0.06;
+const BROKEN: f32 = 0.25;
+const UNLEARNT: f32 = 0.45;
+/// The same over a crown and near it, where no edge bends it: of 54 sound missions none comes beyond 0.07, one that becomes 1.6
+/// times too long 10 cm over it comes to 0.12.
+const STEADY: f32 = 0.1;
+/// Age of an estimate that has learnt the bias of its acceleration, s.
+const LEARNING: f32 = 4.0;
+/// Time for which they must differ, s.
+const BENT_TIME: f32 = 0.05;
+/// Time in which the way flown by it is given back, s, and the way that is another origin instead, m.
+const RETURN_TIME: f32 = 0.5;
+const JUMP: f32 = 0.12;
+
+/// The felt vertical speed, and the way flown by it.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Rise {
+    /// Downwards, m/s, and the error of the felt acceleration, m/s².
+    speed: f32,
+    bias: f32,
+    differs: Held,
+    /// Age of the estimate.
+    age: Held,
+    /// For how long the felt speed has counted, s; `None` where the estimate's does.
+    since: Option<f32>,
+    /// A range began it in this step.
+    misfit: bool,
+    /// The vehicle is over a crown and near it.
+    pub steady: bool,
+    /// What the estimate's height lacks, down, m, and how often its origin has jumped by that.
+    lacks: f32,
+    jumps: u8,
+}
+
+impl Rise {
+    /// One step of `dt` s in `mode` at `down` m/s² along world down.
+    pub fn step(&mut self, mode: Mode, down: f32, inputs: &Inputs, dt: f32) {
+        let flies = matches!(
+            mode,
+            Mode::Flight | Mode::Hold | Mode::Approach | Mode::Escaping | Mode::Failsafe
+        );
+        let (bias, jumps) = (self.bias, self.jumps);
+        let begun = Self {
+            bias,
+            jumps,
+            ..Self::default()
+        };
+        if !flies {
+            *self = begun;
+            return;
+        }
+        self.speed = clamp_abs(self.speed + (down - self.bias) * dt, SPEED_MAX);
+        let Some(e) = inputs.position else {
+            *self = Self {
+                speed: self.speed,
+                ..begun
+            };
+            return;
+        };
+        let off = e.velocity.z - self.speed;
+        let learnt = self.age.step(true, dt) > LEARNING;
+        let (ranged, blind) = (e.foot.age < f32::MAX, blind(&e));
+        let steady = core::mem::take(&mut self.steady);
+        let limit = match (blind, learnt) {
+            (true, _) => BENT,
+            (false, true) if steady => STEADY,
+            (false, true) => BROKEN,
+            (false, false) => UNLEARNT,
+        };
+        let begins = self.differs.step((ranged || blind) && off.abs() > limit, dt) > BENT_TIME;
+        self.misfit = self.since.is_none() && begins && learnt && limit > BENT;
+        self.since = match self.since {
+            Some(since) => (off.abs() > BENT).then_some(clamp(since + dt, 0.0, 1e3)),
+            None => begins.then_some(0.0),
+        };
+        if self.since.is_some() {
+            self.lacks -= off * dt;
+            return;
+        }
+        self.speed += off * dt / FOLLOW;
+        self.bias = clamp_abs(self.bias - off * dt / (FOLLOW * LEARN), BIAS_MAX);
+        if self.lacks.abs() > JUMP {
+            (self.lacks, self.jumps) = (0.0, self.jumps.wrapping_add(1));
+        }
+        self.lacks -= self.lacks * clamp(dt / RETURN_TIME, 0.0, 1.0);
+    }
+
+    /// `inputs` with the height and the vertical speed by what is felt, where that counts.
+    pub fn apply(&self, inputs: &Inputs) -> Inputs {
+        let mut inputs = *inputs;
+        if let Some(e) = &mut inputs.position {
+            e.position.z += self.lacks;
+            e.jumps = e.jumps.wrapping_add(self.jumps);
+            if let Some(point) = &mut e.foot.point {
+                point.z += self.lacks;
+            }
+            if let Some(since) = self.since {
+                e.velocity.z = self.speed;
+                // What is felt alone is no height for longer.
+                e.age = if since > HEIGHT_AGE {
+                    e.age.max(since)
+                } else {
+                    e.age
+                };
+            }
+        }
+        inputs
+    }
+
+    /// The range is found, in this step, not to go as the vehicle does.
+    pub fn misfit(&self) -> bool {
+        self.misfit
+    }
+}
+
+/// Nothing gives the height.
+fn blind(e: &Estimate) -> bool {
+    let seen = e.foot.point.is_some() && e.foot.age <= FRESH_AGE;
+    !seen && e.age > BLIND_AGE
+}

@@ -1,0 +1,259 @@
+//! What a builder tries on the table: orders of the console, and what the mode logic answers.
+//!
+//! An order has a number and is renewed under it while it lasts: one that is not renewed ends
+//! ([`crate::mode::ModeLogic`], in DISARMED alone).
+
+use crate::allocation::wrench::PerArm;
+
+/// Time for which a motor is spun, s: enough to see which one turns and which way.
+pub const SPIN_TIME: f32 = 2.0;
+/// Largest drive of a motor on the bench, share of full drive: 0.34 N of the 8.3 N that a rotor has at most, a fiftieth of
+/// what lifts the vehicle, should a propeller still be on.
+pub const SPIN_DRIVE_MAX: f32 = 0.12;
+/// Smallest drive, share of full drive: controllers do not start a motor on less.
+pub const SPIN_DRIVE_MIN: f32 = 0.02;
+/// Drive where none is named, share of full drive: about what an armed rotor idles at.
+pub const SPIN_DRIVE: f32 = 0.08;
+/// Time for which a servo is held away from its release mark, s: one that pulls at an arm gets hot.
+pub const PLACE_TIME: f32 = 30.0;
+/// Pulses that a servo takes, µs: the usual 500 to 2500.
+pub const PULSE_MIN_US: f32 = 500.0;
+/// The longest of them, µs.
+pub const PULSE_MAX_US: f32 = 2500.0;
+
+/// One motor at a low drive, the others stopped.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spin {
+    /// Which, 0 to 3.
+    pub rotor: usize,
+    /// Share of full drive, at most [`SPIN_DRIVE_MAX`]; raised to what turns a rotor.
+    pub drive: f32,
+    /// Not raised: looks for the drive that turns it.
+    pub probes: bool,
+}
+
+impl Spin {
+    /// Turns `rotor` at `drive`, or as slowly as its controller can where that is faster.
+    pub const fn at(rotor: usize, drive: f32) -> Self {
+        Self {
+            rotor,
+            drive,
+            probes: false,
+        }
+    }
+
+    /// The drive that it gets, where rotors turn from the command `least` on; 0 beyond the limit.
+    pub fn drive(&self, least: f32) -> f32 {
+        match self.drive {
+            drive if drive <= SPIN_DRIVE_MAX && (self.probes || drive > least) => drive,
+            drive if drive <= SPIN_DRIVE_MAX => least,
+            _ => 0.0,
+        }
+    }
+
+    /// Motor commands, never beyond the limit, where rotors turn from the command `least` on; none for a rotor that there
+    /// is not.
+    pub fn commands(&self, least: f32) -> PerArm<f32> {
+        let mut commands = [0.0; 4];
+        if let Some(command) = commands.get_mut(self.rotor) {
+            *command = self.drive(least);
+        }
+        commands
+    }
+
+    fn is_allowed(&self) -> bool {
+        self.rotor < 4 && (SPIN_DRIVE_MIN..=SPIN_DRIVE_MAX).contains(&self.drive)
+    }
+}
+
+/// One servo at a pulse, the others at their release marks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// Which, 0 to 3.
+    pub servo: usize,
+    /// Pulse width, µs, within [`PULSE_MIN_US`] and [`PULSE_MAX_US`].
+    pub pulse_us: f32,
+}
+
+impl Place {
+    fn is_allowed(&self) -> bool {
+        self.servo < 4 && (PULSE_MIN_US..=PULSE_MAX_US).contains(&self.pulse_us)
+    }
+}
+
+/// What is asked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BenchOrder {
+    /// Whatever lasts is to end.
+    End,
+    /// The builder says that the propellers are off: motors may be tried.
+    PropellersOff,
+    /// For [`SPIN_TIME`] at most.
+    Spin(Spin),
+    /// For [`PLACE_TIME`] at most, then back to the release mark.
+    Place(Place),
+}
+
+impl BenchOrder {
+    /// For how long it may last, s.
+    pub const fn longest(&self) -> f32 {
+        match self {
+            Self::End | Self::PropellersOff => 0.0,
+            Self::Spin(_) => SPIN_TIME,
+            Self::Place(_) => PLACE_TIME,
+        }
+    }
+
+    /// Its numbers are within their limits.
+    pub fn is_allowed(&self) -> bool {
+        match self {
+            Self::End | Self::PropellersOff => true,
+            Self::Spin(spin) => spin.is_allowed(),
+            Self::Place(place) => place.is_allowed(),
+        }
+    }
+}
+
+/// An order under its number; under another number it is another one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BenchRequest {
+    /// Counts from 1.
+    pub number: u32,
+    /// What is asked.
+    pub order: BenchOrder,
+}
+
+/// Declares why an order is refused or ended: name and text.
+macro_rules! bench_refusals {
+    ($($(#[$doc:meta])+ $name:ident = $text:literal;)+) => {
+        /// Why an order is refused, or ended before its time.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum BenchRefusal { $($(#[$doc])+ $name,)+ }
+
+        impl BenchRefusal {
+            /// For the console.
+            pub const fn text(self) -> &'static str {
+                match self { $(Self::$name => $text,)+ }
+            }
+        }
+    };
+}
+
+bench_refusals! {
+    /// Another mode than DISARMED.
+    NotDisarmed = "only while DISARMED";
+    /// The pilot may be about to arm.
+    ArmSwitchOn = "arm switch on: turn it off first";
+    /// The processor may stall.
+    Storing = "storing parameters: restart first";
+    /// The vehicle may hang on its arms.
+    ArmsClosed = "arms closed: perch switch on and off opens them";
+    /// Whether it hangs on its arms has not been found out.
+    GripUnknown = "pressure sensors silent: whether the arms hold is not known";
+    /// The builder has not confirmed that the propellers are off.
+    PropellersOn = "say 'propellers off' first, once they are";
+    /// The motors' path runs at the sensor's pace.
+    ImuSilent = "inertial sensor silent: motors wait for it";
+    /// No pulse turns a motor safely.
+    MotorPulses = "motor pulses out of order";
+    /// A number is beyond its limits.
+    OutOfRange = "out of range";
+    /// Who gave the order has not renewed it.
+    NotRenewed = "console silent";
+    /// A command to disarm came.
+    Disarm = "disarmed by command";
+    /// An order of another line lasts.
+    InUse = "another line uses the bench";
+}
+
+/// The bench as who wants to give an order sees it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct BenchView {
+    /// Number of the newest order, of whichever line.
+    pub newest: u32,
+    /// That order is still renewed.
+    pub renewed: bool,
+    /// The newest answer.
+    pub answer: BenchAnswer,
+}
+
+impl BenchView {
+    /// The number of the next order of a line whose last one was `own`.
+    ///
+    /// # Errors
+    /// Another line's order lasts.
+    pub fn next(&self, own: u32) -> Result<u32, BenchRefusal> {
+        let lasts = self.answer.number != self.newest || self.answer.state == BenchState::Running;
+        if self.newest != own && self.renewed && lasts {
+            return Err(BenchRefusal::InUse);
+        }
+        Ok(self.newest.wrapping_add(1).max(1))
+    }
+}
+
+/// What has become of the newest order.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BenchState {
+    /// There was none, or it has ended as it should.
+    #[default]
+    Done,
+    /// It lasts.
+    Running,
+    /// It never began.
+    Refused(BenchRefusal),
+    /// It was ended before its time.
+    Ended(BenchRefusal),
+}
+
+/// The answer to the order with this number.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct BenchAnswer {
+    /// The order's; 0 before the first.
+    pub number: u32,
+    /// What has become of it.
+    pub state: BenchState,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_drive_beyond_the_limit_or_without_a_rotor_turns_nothing() {
+        let spin = Spin::at;
+        assert_eq!(
+            spin(2, SPIN_DRIVE_MAX).commands(0.07),
+            [0.0, 0.0, SPIN_DRIVE_MAX, 0.0]
+        );
+        for bad in [
+            spin(0, 0.1201),
+            spin(0, f32::NAN),
+            spin(0, f32::INFINITY),
+            spin(4, 0.08),
+        ] {
+            assert_eq!(bad.commands(0.07), [0.0; 4], "{bad:?}");
+            assert!(!BenchOrder::Spin(bad).is_allowed(), "{bad:?}");
+        }
+        assert!(!BenchOrder::Spin(spin(0, 0.0)).is_allowed());
+        assert!(BenchOrder::Spin(spin(3, SPIN_DRIVE)).is_allowed());
+    }
+
+    #[test]
+    fn a_motor_that_is_tried_turns_unless_what_turns_it_is_looked_for() {
+        let slow = Spin::at(1, SPIN_DRIVE_MIN);
+        assert_eq!(slow.commands(0.14), [0.0, 0.14, 0.0, 0.0]);
+        assert_eq!(Spin::at(1, 0.1).commands(0.075), [0.0, 0.1, 0.0, 0.0]);
+        let probe = Spin { probes: true, ..slow };
+        assert_eq!(probe.commands(0.14), [0.0, SPIN_DRIVE_MIN, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn a_servo_takes_the_usual_pulses_only() {
+        let allowed = |servo, pulse_us| BenchOrder::Place(Place { servo, pulse_us }).is_allowed();
+        assert!(allowed(0, PULSE_MIN_US) && allowed(3, PULSE_MAX_US));
+        for bad in [499.9, 2500.1, f32::NAN, f32::INFINITY, -1500.0] {
+            assert!(!allowed(0, bad), "{bad}");
+        }
+        assert!(!allowed(4, 1500.0));
+    }
+}
