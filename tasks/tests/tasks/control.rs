@@ -4,7 +4,7 @@ use embassy_time::Instant;
 use sophie_control::desaturation::Given;
 use sophie_control::vector::{Quat, Vec3};
 use sophie_control::wrench::Wrench;
-use sophie_tasks::control;
+use sophie_tasks::flight::control;
 use sophie_tasks::links::{Attitude, Demand, Links, MixOutput, Setpoint};
 
 use crate::rig::Rig;
