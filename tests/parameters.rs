@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use sophie_control::params::{Params, RENAMED};
-use sophie_tasks::parameters::Allowed;
+use sophie_tasks::storage::parameters::Allowed;
 
 fn page() -> String {
     let mut page = String::from(

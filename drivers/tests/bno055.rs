@@ -389,7 +389,7 @@ fn the_arms_task_waits_for_slow_chips_and_names_the_broken_ones() {
         run(async move {
             let (port, chips) = arms([Config::default(); 4]);
             let links = Links::new(Params::default());
-            let mut task = pin!(sophie_tasks::arms::run(&links, port));
+            let mut task = pin!(sophie_tasks::perching::arms::run(&links, port));
             let _ = with_timeout(Duration::from_millis(late_ms), task.as_mut()).await;
             chips.iter().for_each(|chip| chip.borrow_mut().reset());
             for _ in 0..600 {

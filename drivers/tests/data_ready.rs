@@ -16,7 +16,7 @@ use sophie_drivers::fault::Fault;
 use sophie_drivers::mounting::Mounting;
 use sophie_drivers::spi_imu::{Chip, SpiImu};
 use sophie_drivers::{icm20689, icm42688p};
-use sophie_tasks::imu::SILENCE;
+use sophie_tasks::flight::imu::SILENCE;
 use sophie_tasks::links::Links;
 use sophie_tasks::ports::{Imu, PortError};
 
@@ -250,7 +250,7 @@ fn the_imu_task_keeps_its_rate_over_a_cut_line_reports_it_and_takes_it_back() {
     run(async {
         let (driver, part) = pair(Kind::Icm42688p, icm42688p::Config::default());
         let links = Links::new(Params::default());
-        let mut task = pin!(sophie_tasks::imu::run(&links, driver));
+        let mut task = pin!(sophie_tasks::flight::imu::run(&links, driver));
         let _ = with_timeout(Duration::from_secs(1), task.as_mut()).await;
         part.borrow_mut().failure = Failure::LineCut;
         let reason = ArmingInhibit::ImuLineSilent;

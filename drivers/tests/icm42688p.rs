@@ -547,7 +547,7 @@ fn the_imu_task_reports_what_the_driver_finds_and_takes_it_back() {
             run(async move {
                 let (driver, part) = pair(Config::default());
                 let links = Links::new(Params::default());
-                let mut task = pin!(sophie_tasks::imu::run(&links, driver));
+                let mut task = pin!(sophie_tasks::flight::imu::run(&links, driver));
                 if !at_start {
                     let _ = with_timeout(Duration::from_secs(1), task.as_mut()).await;
                     assert!(links.hardware().is_empty() && links.imu.fresh().is_some());

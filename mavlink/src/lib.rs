@@ -1,7 +1,8 @@
 //! The MAVLink 2 server of the vehicle: takes bytes with the time of their arrival, gives frames to send.
 //!
 //! It does no I/O, allocates nothing and is not generic, so that it is compiled once and for size: a task
-//! (`sophie_tasks::mavlink`) fills in the [`vehicle::Vehicle`] and moves the bytes. `docs/mavlink.md` has the messages.
+//! (`sophie_tasks::ground_station::mavlink`) fills in the [`vehicle::Vehicle`] and moves the bytes. `docs/mavlink.md` has
+//! the messages.
 
 #![no_std]
 // The generated messages ask for features of the generator's own crate, which there are not here.

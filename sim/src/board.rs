@@ -16,7 +16,7 @@ use sophie_drivers::esc_protocol::EscProtocol;
 use sophie_drivers::esc_pwm::PulseRate;
 use sophie_tasks::links::Raw;
 use sophie_tasks::ports::{self, AnalogFrame, IMU_BATCH, ImuReading, PortError};
-use sophie_tasks::retained_state::{WORDS, Words};
+use sophie_tasks::start::retained_state::{WORDS, Words};
 
 use crate::plant::esc::{EscSpec, ONESHOT125};
 use crate::plant::{Actuators, Plant, STEP};

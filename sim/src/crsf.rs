@@ -2,7 +2,7 @@
 
 use sophie_control::mode::Mode;
 use sophie_control::pilot::rc::{CHANNELS, Sticks};
-use sophie_tasks::telemetry::parse_mode_text;
+use sophie_tasks::pilot::telemetry::parse_mode_text;
 use uf_crsf::packets::{PacketAddress, RcChannelsPacked};
 use uf_crsf::{CrsfParser, Packet, write_packet_to_buffer};
 

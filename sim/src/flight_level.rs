@@ -131,13 +131,13 @@ impl Rig {
         let time = VirtualTime::new();
         let board: &'static Board = Box::leak(Box::new(board));
         let links: &'static Links = Box::leak(Box::new(Links::new(params)));
-        time.spawn(sophie_tasks::imu::run(links, Port(board)));
-        time.spawn(sophie_tasks::estimator::run(links));
-        time.spawn(sophie_tasks::control::run(links));
-        time.spawn(sophie_tasks::mixer::run(links, allocation));
-        time.spawn(sophie_tasks::motors::run(links, Port(board)));
-        time.spawn(sophie_tasks::arms::run(links, Port(board)));
-        time.spawn(sophie_tasks::analog::run(links, Port(board)));
+        time.spawn(sophie_tasks::flight::imu::run(links, Port(board)));
+        time.spawn(sophie_tasks::flight::estimator::run(links));
+        time.spawn(sophie_tasks::flight::control::run(links));
+        time.spawn(sophie_tasks::flight::mixer::run(links, allocation));
+        time.spawn(sophie_tasks::flight::motors::run(links, Port(board)));
+        time.spawn(sophie_tasks::perching::arms::run(links, Port(board)));
+        time.spawn(sophie_tasks::perching::analog::run(links, Port(board)));
         Self {
             time,
             board,

@@ -12,11 +12,17 @@ use sophie_drivers::param_store::ParamStore;
 use sophie_fakes::{Answer, BrokenLine, FakeAnalog, FakeChip, FakeImu, FakeLine, FakeServos, Flash, Part};
 use sophie_sim::clock::VirtualTime;
 use sophie_tasks::deadline::TaskId;
+use sophie_tasks::ground_station::mavlink::signing::Record;
 use sophie_tasks::links::{Links, Status};
-use sophie_tasks::mavlink::signing::Record;
 use sophie_tasks::ports::{AnalogFrame, Loaded, Look, PortError, SerialOutput, Storage, StorageError};
 use sophie_tasks::stack_use::StackUse;
-use sophie_tasks::{analog, clamp, commander, console, estimator, imu, parameters, servos};
+use sophie_tasks::{
+    console,
+    flight::{estimator, imu},
+    perching::{analog, clamp, servos},
+    pilot::commander,
+    storage::parameters,
+};
 
 /// A terminal at 115,200 baud, or one that takes nothing.
 #[derive(Clone, Default)]

@@ -64,12 +64,12 @@ fn a_gap_in_the_samples_shorter_than_the_limit_is_flown_through() {
 fn a_setpoint_that_is_not_renewed_stops_the_rotors() {
     // All tasks but the commander, which sent one message.
     let (time, links, motors) = (VirtualTime::new(), links(), FakeMotors::default());
-    time.spawn(sophie_tasks::imu::run(links, FakeImu::default()));
-    time.spawn(sophie_tasks::estimator::run(links));
-    time.spawn(sophie_tasks::control::run(links));
+    time.spawn(sophie_tasks::flight::imu::run(links, FakeImu::default()));
+    time.spawn(sophie_tasks::flight::estimator::run(links));
+    time.spawn(sophie_tasks::flight::control::run(links));
     let mixer = |p: &_| Flexible::new(Configuration::B, p);
-    time.spawn(sophie_tasks::mixer::run(links, mixer));
-    time.spawn(sophie_tasks::motors::run(links, motors.clone()));
+    time.spawn(sophie_tasks::flight::mixer::run(links, mixer));
+    time.spawn(sophie_tasks::flight::motors::run(links, motors.clone()));
     let setpoint = Setpoint::Angle {
         roll: 0.0,
         pitch: 0.0,

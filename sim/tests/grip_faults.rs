@@ -11,7 +11,7 @@ use sophie_control::pilot::rc::ArmChoice;
 use sophie_fakes::{Answer, FakeAnalog, FakeServos, links, links_with};
 use sophie_sim::clock::VirtualTime;
 use sophie_tasks::links::{ArmAngles, ClampCommand, Links, TendonForce, TendonForces, TendonOrder};
-use sophie_tasks::timing::Quantity;
+use sophie_tasks::schedule::timing::Quantity;
 
 /// Tilt without tendon force, and at the touch, rad.
 const FREE_TILT: f32 = -0.2;
@@ -100,9 +100,9 @@ impl Bench {
     fn with(params: Params) -> Self {
         let (time, links) = (VirtualTime::new(), links_with(params));
         let (converter, servos) = (FakeAnalog::default(), FakeServos::default());
-        time.spawn(sophie_tasks::analog::run(links, converter.clone()));
-        time.spawn(sophie_tasks::clamp::run(links));
-        time.spawn(sophie_tasks::servos::run(links, servos.clone()));
+        time.spawn(sophie_tasks::perching::analog::run(links, converter.clone()));
+        time.spawn(sophie_tasks::perching::clamp::run(links));
+        time.spawn(sophie_tasks::perching::servos::run(links, servos.clone()));
         let arm = Arm {
             tilt: FREE_TILT,
             stiffness: 40.0,
@@ -235,7 +235,7 @@ fn four_different_servos_close_hold_and_let_go_at_every_frame_rate() {
 #[test]
 fn no_pulse_goes_out_before_the_clamp_loop_has_spoken_and_none_pulls_before_it_is_told_to() {
     let (time, links, servos) = (VirtualTime::new(), links(), FakeServos::default());
-    time.spawn(sophie_tasks::servos::run(links, servos.clone()));
+    time.spawn(sophie_tasks::perching::servos::run(links, servos.clone()));
     time.run_until(1_000_000);
     let silent = servos.pulses.borrow().len();
     assert!(silent >= 50 && servos.pulses.borrow().iter().all(|p| *p == [0.0; 4]));
@@ -245,7 +245,7 @@ fn no_pulse_goes_out_before_the_clamp_loop_has_spoken_and_none_pulls_before_it_i
     );
 
     // Without commander the clamp loop is silent too: arms may be on a pipe.
-    time.spawn(sophie_tasks::clamp::run(links));
+    time.spawn(sophie_tasks::perching::clamp::run(links));
     time.run_until(2_000_000);
     assert!(servos.pulses.borrow().iter().all(|p| *p == [0.0; 4]) && links.tendons.latest().is_none());
     links.clamp_command.send(Instant::now(), ClampCommand::Keep);
@@ -414,7 +414,7 @@ fn a_commander_that_falls_silent_leaves_the_grip_as_it_is() {
 #[test]
 fn a_clamp_loop_that_falls_silent_leaves_the_servos_where_they_are() {
     let (time, links, servos) = (VirtualTime::new(), links(), FakeServos::default());
-    time.spawn(sophie_tasks::servos::run(links, servos.clone()));
+    time.spawn(sophie_tasks::perching::servos::run(links, servos.clone()));
     let step = |ms: u64, force: Option<f32>| {
         time.run_until(ms * 1000);
         let (now, tilt) = (Instant::now(), [Some(-0.8); 4]);

@@ -17,7 +17,12 @@ use sophie_sim::mixers::Variant;
 use sophie_sim::sensors::imu::Misfit;
 use sophie_tasks::links::Links;
 use sophie_tasks::ports::{ImuReading, PortError, SerialOutput};
-use sophie_tasks::{commander, console, estimator, imu, parameters};
+use sophie_tasks::{
+    console,
+    flight::{estimator, imu},
+    pilot::commander,
+    storage::parameters,
+};
 
 /// Turned by 90 degrees to the left, 3 % off along two axes.
 fn misfit() -> Misfit {

@@ -22,7 +22,7 @@ struct Line {
 impl Line {
     fn new() -> Self {
         let (time, links, line) = (VirtualTime::new(), links(), FakeLine::default());
-        time.spawn(sophie_tasks::rc::run(links, line.clone(), Decoder::new()));
+        time.spawn(sophie_tasks::pilot::rc::run(links, line.clone(), Decoder::new()));
         Self {
             time,
             links,
@@ -141,7 +141,7 @@ fn a_broken_line_is_counted_and_leaves_the_processor_alone() {
         let (time, links) = (VirtualTime::new(), links());
         let line = BrokenLine::default();
         line.0.answer.set(answer);
-        time.spawn(sophie_tasks::rc::run(links, line.clone(), Decoder::new()));
+        time.spawn(sophie_tasks::pilot::rc::run(links, line.clone(), Decoder::new()));
         time.run_until(1_000_000);
         assert!(!line.0.spun.get(), "{answer:?}");
         assert!(links.rc.latest().is_none());
@@ -152,7 +152,7 @@ fn a_broken_line_is_counted_and_leaves_the_processor_alone() {
 fn the_simulated_line_loses_no_byte_that_fits() {
     let (time, links) = (VirtualTime::new(), links());
     let board: &'static Board = Box::leak(Box::new(Board::new(Streams::new(1))));
-    time.spawn(sophie_tasks::rc::run(links, Port(board), Decoder::new()));
+    time.spawn(sophie_tasks::pilot::rc::run(links, Port(board), Decoder::new()));
     for i in 1..=100 {
         board.receive(&frame(0.4));
         time.run_until(i * 10_000);

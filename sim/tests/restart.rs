@@ -24,7 +24,7 @@ use sophie_sim::record::{FlightRecord, Silent};
 use sophie_sim::scenario::{Overrides, Scenario, Step};
 use sophie_tasks::links::{Links, RcState};
 use sophie_tasks::ports::AnalogFrame;
-use sophie_tasks::retained_state::{RetainedState, WORDS, Words};
+use sophie_tasks::start::retained_state::{RetainedState, WORDS, Words};
 use sophie_tasks::start::{Start, StartCause};
 
 /// Counts at about 950 Pa with the default sensor.
@@ -86,22 +86,26 @@ impl Vehicle {
         };
         v.motors.commands.set([9.0; 4]);
         let mixer = |p: &_| Flexible::new(Configuration::B, p);
-        v.time.spawn(sophie_tasks::motors::run(links, v.motors.clone()));
-        v.time.spawn(sophie_tasks::mixer::run(links, mixer));
-        v.time.spawn(sophie_tasks::control::run(links));
-        v.time.spawn(sophie_tasks::estimator::run(links));
-        v.time.spawn(sophie_tasks::imu::run(links, FakeImu::default()));
-        v.time.spawn(sophie_tasks::supervisor::run(
+        v.time
+            .spawn(sophie_tasks::flight::motors::run(links, v.motors.clone()));
+        v.time.spawn(sophie_tasks::flight::mixer::run(links, mixer));
+        v.time.spawn(sophie_tasks::flight::control::run(links));
+        v.time.spawn(sophie_tasks::flight::estimator::run(links));
+        v.time
+            .spawn(sophie_tasks::flight::imu::run(links, FakeImu::default()));
+        v.time.spawn(sophie_tasks::supervision::supervisor::run(
             links,
             FakeWatchdog::default(),
             v.memory.clone(),
         ));
-        v.time.spawn(sophie_tasks::commander::run(links));
+        v.time.spawn(sophie_tasks::pilot::commander::run(links));
         v.time
-            .spawn(sophie_tasks::analog::run(links, v.converter.clone()));
-        v.time.spawn(sophie_tasks::clamp::run(links));
-        v.time.spawn(sophie_tasks::servos::run(links, v.servos.clone()));
-        v.time.spawn(sophie_tasks::arms::run(links, FakeArms::default()));
+            .spawn(sophie_tasks::perching::analog::run(links, v.converter.clone()));
+        v.time.spawn(sophie_tasks::perching::clamp::run(links));
+        v.time
+            .spawn(sophie_tasks::perching::servos::run(links, v.servos.clone()));
+        v.time
+            .spawn(sophie_tasks::perching::arms::run(links, FakeArms::default()));
         v
     }
 

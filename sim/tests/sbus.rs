@@ -39,7 +39,7 @@ fn on_line(params: Params) -> (Vehicle, FakeLine) {
     let line = FakeLine::default();
     let decoder = Decoder::from_params(&v.links.params);
     v.time
-        .spawn(sophie_tasks::rc::run(v.links, line.clone(), decoder));
+        .spawn(sophie_tasks::pilot::rc::run(v.links, line.clone(), decoder));
     (v, line)
 }
 
@@ -176,7 +176,7 @@ fn telemetry_keeps_off_a_line_that_has_no_way_back() {
     for (params, silent) in [(Params::default(), false), (sbus(), true)] {
         let (time, links) = (VirtualTime::new(), sophie_fakes::links_with(params));
         let board: &'static Board = Box::leak(Box::new(Board::new(Streams::new(1))));
-        time.spawn(sophie_tasks::telemetry::run(links, Port(board)));
+        time.spawn(sophie_tasks::pilot::telemetry::run(links, Port(board)));
         for ms in 1..=500 {
             links.status.send(Instant::now(), Status::default());
             time.run_until(ms * 1000);

@@ -11,7 +11,7 @@ fn rig() -> (VirtualTime, &'static Links, &'static Board) {
     let time = VirtualTime::new();
     let links: &'static Links = Box::leak(Box::new(Links::new(Params::default())));
     let board: &'static Board = Box::leak(Box::new(Board::new(Streams::new(1))));
-    time.spawn(sophie_tasks::motors::run(links, Port(board)));
+    time.spawn(sophie_tasks::flight::motors::run(links, Port(board)));
     (time, links, board)
 }
 

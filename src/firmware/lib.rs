@@ -20,9 +20,9 @@ use embassy_executor::Spawner;
 use sophie_control::gripper::retained_grip::GripMemory;
 use sophie_control::params::Params;
 use sophie_tasks::links::Links;
-use sophie_tasks::parameters;
 use sophie_tasks::ports::{Loaded, Look};
 use sophie_tasks::start::Start;
+use sophie_tasks::storage::parameters;
 use static_cell::StaticCell;
 
 use sophie_boards::retained::{self, Kept, Memory, ResetCause};

@@ -6,15 +6,15 @@ use embassy_sync::mutex::Mutex;
 use sophie_boards::retained::Memory;
 use sophie_boards::{BarometerPort, Board, BufferedInput, BufferedOutput, ThisChip, UsbDriver};
 use sophie_flight::tasks as flight;
+use sophie_tasks::console::one_of::OneOf;
+use sophie_tasks::console::terminals::{Keyboards, Screens, Served};
+use sophie_tasks::ground_station::console_pipe::{Shell, ShellPort};
+use sophie_tasks::ground_station::mavlink::Lines;
+use sophie_tasks::ground_station::mavlink::signing::Stored;
 use sophie_tasks::links::{Links, Raw};
-use sophie_tasks::mavlink::Lines;
-use sophie_tasks::mavlink::signing::Stored;
-use sophie_tasks::one_of::OneOf;
 use sophie_tasks::ports::{Barometer, Look, Storage};
 use sophie_tasks::schedule::TaskId;
-use sophie_tasks::shared::SharedStorage;
-use sophie_tasks::shell::{Shell, ShellPort};
-use sophie_tasks::terminals::{Keyboards, Screens, Served};
+use sophie_tasks::storage::shared_storage::SharedStorage;
 use sophie_tasks::usb::{self, Identity, Memory as UsbMemory, Port, UsbInput, UsbOutput};
 use static_cell::StaticCell;
 
@@ -118,17 +118,17 @@ pub fn spawn(
 
 #[embassy_executor::task]
 async fn arms(links: &'static Links, port: sophie_boards::ArmsPort) -> ! {
-    sophie_tasks::arms::run(links, port).await
+    sophie_tasks::perching::arms::run(links, port).await
 }
 
 #[embassy_executor::task]
 async fn barometer(links: &'static Links, port: BarometerPort) -> ! {
-    sophie_tasks::barometer::run(links, port).await
+    sophie_tasks::navigation::barometer::run(links, port).await
 }
 
 #[embassy_executor::task]
 async fn telemetry(links: &'static Links, port: sophie_boards::TelemetryLine) -> ! {
-    sophie_tasks::telemetry::run(links, port).await
+    sophie_tasks::pilot::telemetry::run(links, port).await
 }
 
 #[embassy_executor::task]
@@ -149,7 +149,7 @@ async fn mavlink(
     storage: StoragePort,
     signing: Stored,
 ) -> ! {
-    sophie_tasks::mavlink::run(
+    sophie_tasks::ground_station::mavlink::run(
         links,
         lines,
         &SHELL,

@@ -10,9 +10,9 @@
 //! times the first is the shortest. docs/timing.md defines them.
 
 use sophie_tasks::deadline::TaskId;
-use sophie_tasks::histogram::Histogram;
 use sophie_tasks::links::Links;
-use sophie_tasks::timing::{Quantity, Timing};
+use sophie_tasks::schedule::histogram::Histogram;
+use sophie_tasks::schedule::timing::{Quantity, Timing};
 
 /// Missed deadlines already reported.
 #[derive(Default)]

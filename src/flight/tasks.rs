@@ -28,77 +28,77 @@ pub async fn imu(links: &'static Links, mut port: sophie_boards::ImuPort, self_t
             Err(fault) => defmt::error!("imu: {=str} ({})", fault.what(), fault),
         }
     }
-    sophie_tasks::imu::run(links, port).await
+    sophie_tasks::flight::imu::run(links, port).await
 }
 
 /// Attitude estimator.
 #[embassy_executor::task]
 pub async fn estimator(links: &'static Links) {
-    sophie_tasks::estimator::run(links).await;
+    sophie_tasks::flight::estimator::run(links).await;
 }
 
 /// Attitude and rate control.
 #[embassy_executor::task]
 pub async fn control(links: &'static Links) {
-    sophie_tasks::control::run(links).await;
+    sophie_tasks::flight::control::run(links).await;
 }
 
 /// Allocation.
 #[embassy_executor::task]
 pub async fn mixer(links: &'static Links) {
-    sophie_tasks::mixer::run(links, |p| Flexible::new(Configuration::default(), p)).await;
+    sophie_tasks::flight::mixer::run(links, |p| Flexible::new(Configuration::default(), p)).await;
 }
 
 /// Motor output.
 #[embassy_executor::task]
 pub async fn motors(links: &'static Links, port: sophie_boards::MotorsPort) {
-    sophie_tasks::motors::run(links, port).await;
+    sophie_tasks::flight::motors::run(links, port).await;
 }
 
 /// Pressure sensors and battery.
 #[embassy_executor::task]
 pub async fn analog(links: &'static Links, port: sophie_boards::AnalogPort) -> ! {
-    sophie_tasks::analog::run(links, port).await
+    sophie_tasks::perching::analog::run(links, port).await
 }
 
 /// Clamp loops.
 #[embassy_executor::task]
 pub async fn clamp(links: &'static Links) -> ! {
-    sophie_tasks::clamp::run(links).await
+    sophie_tasks::perching::clamp::run(links).await
 }
 
 /// Servo output.
 #[embassy_executor::task]
 pub async fn servos(links: &'static Links, port: sophie_boards::ServosPort) -> ! {
-    sophie_tasks::servos::run(links, port).await
+    sophie_tasks::perching::servos::run(links, port).await
 }
 
 /// Receiver.
 #[embassy_executor::task]
 pub async fn rc(links: &'static Links, port: sophie_boards::ReceiverLine) -> ! {
-    sophie_tasks::rc::run(links, port, Decoder::from_params(&links.params)).await
+    sophie_tasks::pilot::rc::run(links, port, Decoder::from_params(&links.params)).await
 }
 
 /// Module of optical flow and range.
 #[embassy_executor::task]
 pub async fn ground(links: &'static Links, port: sophie_boards::GroundLine) -> ! {
-    sophie_tasks::ground::run(links, port, GroundModule::from_params(&links.params)).await
+    sophie_tasks::navigation::flow_range::run(links, port, GroundModule::from_params(&links.params)).await
 }
 
 /// Mode logic.
 #[embassy_executor::task]
 pub async fn commander(links: &'static Links) -> ! {
-    sophie_tasks::commander::run(links).await
+    sophie_tasks::pilot::commander::run(links).await
 }
 
 /// Position for the hold.
 #[embassy_executor::task]
 pub async fn position(links: &'static Links) -> ! {
-    sophie_tasks::position::run(links).await
+    sophie_tasks::navigation::position::run(links).await
 }
 
 /// Deadline supervision and watchdog. Also keeps the state that outlives a reset.
 #[embassy_executor::task]
 pub async fn supervisor(links: &'static Links, port: sophie_boards::WatchdogPort, memory: Memory) -> ! {
-    sophie_tasks::supervisor::run(links, port, memory).await
+    sophie_tasks::supervision::supervisor::run(links, port, memory).await
 }

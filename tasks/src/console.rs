@@ -12,12 +12,14 @@ mod keys;
 mod line;
 mod mavlink;
 mod nearest;
+pub mod one_of;
 mod output;
 mod parameters;
 mod report;
 mod rotors;
 mod save;
 mod selftest;
+pub mod terminals;
 mod watch;
 
 use embassy_futures::yield_now;
@@ -33,8 +35,8 @@ pub use self::nearest::edits;
 use self::output::Output;
 use crate::links::Links;
 use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
-use crate::storing::NotNow;
-use crate::{parameters as table, storing};
+use crate::storage::storing::NotNow;
+use crate::storage::{parameters as table, storing};
 
 /// Pause after a line error or an empty read, so that a dead line cannot take the processor.
 const PAUSE: Duration = Duration::from_millis(1);

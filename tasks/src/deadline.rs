@@ -3,9 +3,9 @@
 use embassy_time::{Duration, Instant, Timer};
 
 use crate::links::Links;
+use crate::schedule::timing::Run;
+pub use crate::schedule::timing::Timing;
 pub use crate::schedule::{Level, TaskId};
-use crate::timing::Run;
-pub use crate::timing::Timing;
 
 /// Records a run of an event-driven task, released by its input's measurement, until now.
 pub fn record_run(links: &Links, task: TaskId, released: Instant, started: Instant, deadline: Duration) {

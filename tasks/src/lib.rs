@@ -3,6 +3,9 @@
 //! Each task is a plain `async fn` over borrowed [`links::Links`] and a port of [`ports`]: the firmware wraps
 //! it in a static task, the host spawns it on its own executor. No task owns a global. Level, period and deadline of each
 //! are declared in [`schedule`], its messages in [`links`].
+//!
+//! From the ground up: [`schedule`] and [`start`], [`links`], [`deadline`] and [`supervision`], then the rooms of tasks.
+//! [`deadline`] lies beside `schedule`, not in it, as it records over the links, which know the schedule.
 
 #![no_std]
 #![deny(
@@ -18,43 +21,19 @@
     reason = "ports are awaited in place; no caller needs a Send bound"
 )]
 
-pub mod analog;
-pub mod arms;
-pub mod barometer;
-pub mod clamp;
-pub mod commander;
 pub mod console;
-pub mod control;
 pub mod deadline;
-pub mod estimator;
-mod flow_limit;
-pub mod ground;
-pub mod histogram;
+pub mod flight;
+pub mod ground_station;
 pub mod image_id;
-pub mod imu;
-pub mod last_value;
 pub mod links;
-pub mod mavlink;
-pub mod mixer;
-pub mod motors;
-pub mod one_of;
-pub mod parameters;
+pub mod navigation;
+pub mod perching;
+pub mod pilot;
 pub mod ports;
-pub mod position;
-pub mod rc;
-pub mod retained_state;
-pub mod retained_store;
 pub mod schedule;
-pub mod servos;
-pub mod shared;
-pub mod shell;
-pub mod silence;
 pub mod stack_use;
 pub mod start;
-pub mod storing;
-pub mod supervisor;
-pub mod telemetry;
-pub mod terminals;
-pub mod timing;
+pub mod storage;
+pub mod supervision;
 pub mod usb;
-pub mod warning;

@@ -13,6 +13,8 @@
 //! grip_memory, reel angle, tendon forces, gyro bias ──> supervisor ──> memory that outlives a reset ──> start
 //! ```
 
+pub mod last_value;
+
 use core::cell::{Cell, RefCell};
 use core::sync::atomic::{AtomicBool, Ordering};
 
@@ -44,13 +46,13 @@ pub use sophie_mavlink::inputs::attitude::OffboardAttitude;
 pub use sophie_mavlink::inputs::pose::ExternalPose;
 use sophie_mavlink::signing::{Refused, Signing, Stored};
 
-use crate::histogram::Histogram;
-use crate::last_value::{LastValue, Receiver};
-pub use crate::last_value::{RECEIVERS, Raw};
+use crate::links::last_value::{LastValue, Receiver};
+pub use crate::links::last_value::{RECEIVERS, Raw};
 use crate::ports::AnalogFrame;
+use crate::schedule::histogram::Histogram;
+use crate::schedule::timing::{Quantity, Record, Run, Timing};
 use crate::schedule::{Level, TaskId};
 use crate::start::{Start, StartCause};
-use crate::timing::{Quantity, Record, Run, Timing};
 
 /// A value and the time at which what it describes was measured.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,6 +3,9 @@
 //! This is data, below the links and the loops that use it: the enum, the records of timing, the supervisor's list and
 //! the table of docs/timing.md follow from it. Which port a task takes is said where it is spawned.
 
+pub mod histogram;
+pub mod timing;
+
 use embassy_time::Duration;
 
 /// How urgent a task is: each level preempts those below it, tasks of one level take turns.

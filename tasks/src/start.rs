@@ -1,6 +1,8 @@
 //! Cause of a start, and the state retained from the last run.
 
-use crate::retained_state::{RetainedState, Words};
+pub mod retained_state;
+
+use crate::start::retained_state::{RetainedState, Words};
 
 /// Cause of a start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -75,7 +77,7 @@ mod tests {
     use sophie_control::pilot::rc::ArmChoice;
 
     use super::*;
-    use crate::retained_state::WORDS;
+    use crate::start::retained_state::WORDS;
 
     #[test]
     fn memory_is_trusted_only_where_power_never_went() {

@@ -20,16 +20,20 @@ use sophie_control::maths::vector::Vec3;
 use sophie_control::params::{MotorMap, Params};
 use sophie_control::pilot::rc::Sticks;
 use sophie_fakes::{FakeAnalog, FakeBarometer, FakeImu, FakeLine, FakeMotors, FakeServos};
+use sophie_tasks::ground_station::console_pipe::{Shell, ShellPort};
+use sophie_tasks::ground_station::mavlink::signing::{Key, Record, Stored};
+use sophie_tasks::ground_station::mavlink::{self, Lines};
 use sophie_tasks::links::{Links, RcState};
-use sophie_tasks::mavlink::signing::{Key, Record, Stored};
-use sophie_tasks::mavlink::{self, Lines};
 use sophie_tasks::ports::{
     AnalogFrame, ArmImus, Chip, ImuReading, Loaded, Look, NotSet, PortError, SerialOutput, Storage,
     StorageError,
 };
-use sophie_tasks::shell::{Shell, ShellPort};
 use sophie_tasks::{
-    analog, arms, barometer, clamp, commander, console, control, estimator, imu, mixer, motors, servos,
+    console,
+    flight::{control, estimator, imu, mixer, motors},
+    navigation::barometer,
+    perching::{analog, arms, clamp, servos},
+    pilot::commander,
 };
 
 use super::wire::Wire;

@@ -139,7 +139,10 @@ mod tests {
     #[test]
     fn a_name_belongs_to_the_crate_that_it_begins_with() {
         for (name, owner) in [
-            ("sophie_tasks::imu::run::{closure#0}", Some("sophie_tasks")),
+            (
+                "sophie_tasks::flight::imu::run::{closure#0}",
+                Some("sophie_tasks"),
+            ),
             (
                 "<sophie_control::allocation::mixer::Mixer>::mix",
                 Some("sophie_control"),

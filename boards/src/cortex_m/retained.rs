@@ -1,5 +1,5 @@
 //! Memory retained over a reset: the count of starts, the end of the last run, and two copies of the tasks' state
-//! (`sophie_tasks::retained_state`).
+//! (`sophie_tasks::start::retained_state`).
 //!
 //! Only these functions access it: the linker places nothing else there, no DMA points at it, and the stack lies at the
 //! bottom of another memory, where an overflow faults. A fault handler writes only the message, so it may interrupt a
@@ -10,8 +10,8 @@ use core::fmt::{self, Write};
 
 use heapless::String;
 use sophie_tasks::ports::Retain;
-use sophie_tasks::retained_state::{WORDS as STATE_WORDS, Words};
 use sophie_tasks::start::StartCause;
+use sophie_tasks::start::retained_state::{WORDS as STATE_WORDS, Words};
 
 /// Reset cause.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, defmt::Format)]

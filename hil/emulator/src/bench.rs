@@ -16,8 +16,8 @@ use sophie_sim::crsf::Telemetry;
 use sophie_sim::flight::aircraft::{Aircraft, Belief, Reset, Said};
 use sophie_sim::plant::{Actuators, Plant};
 use sophie_sim::scenario::Scenario;
+use sophie_tasks::pilot::telemetry::parse_mode_text;
 use sophie_tasks::start::StartCause;
-use sophie_tasks::telemetry::parse_mode_text;
 use uf_crsf::{CrsfParser, Packet};
 
 use crate::below::Module;

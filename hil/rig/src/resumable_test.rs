@@ -5,7 +5,7 @@ use core::cell::RefCell;
 
 use critical_section::Mutex;
 use sophie_tasks::ports::Retain;
-use sophie_tasks::retained_state::{WORDS, Words};
+use sophie_tasks::start::retained_state::{WORDS, Words};
 
 use crate::cycles;
 use sophie_boards::retained::{self, Memory};

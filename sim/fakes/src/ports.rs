@@ -17,7 +17,7 @@ use sophie_tasks::ports::{
     Analog, AnalogFrame, ArmImus, Barometer, IMU_BATCH, Imu, ImuReading, Motors, PortError, Retain,
     SerialInput, Servos, Watchdog,
 };
-use sophie_tasks::retained_state::{WORDS, Words};
+use sophie_tasks::start::retained_state::{WORDS, Words};
 
 /// Links without messages, for as long as the process lives.
 pub fn links() -> &'static Links {

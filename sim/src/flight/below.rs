@@ -4,8 +4,8 @@ use std::cell::Cell;
 
 use glam::DVec3;
 use sophie_drivers::ground_module::GroundModule;
-use sophie_tasks::ground;
 use sophie_tasks::links::Links;
+use sophie_tasks::navigation::flow_range;
 
 use crate::clock::VirtualTime;
 use crate::live::line::{Line, LinePort};
@@ -48,7 +48,7 @@ impl Below {
     /// Spawns the board's task.
     pub fn spawn(&self, time: &VirtualTime, links: &'static Links) {
         let decoder = GroundModule::from_params(&links.params);
-        time.spawn(ground::run(links, LinePort(self.line), decoder));
+        time.spawn(flow_range::run(links, LinePort(self.line), decoder));
     }
 
     /// Looks down, each millisecond.

@@ -5,10 +5,10 @@ use std::cell::Cell;
 use glam::{DQuat, DVec3};
 use mavlink_core::{MAVLinkV2MessageRaw, MavHeader, MessageData};
 use sophie_mavlink::dialect::{ATT_POS_MOCAP_DATA, LANDING_TARGET_DATA};
+use sophie_tasks::ground_station::console_pipe::Shell;
+use sophie_tasks::ground_station::mavlink;
+use sophie_tasks::ground_station::mavlink::signing::Stored;
 use sophie_tasks::links::Links;
-use sophie_tasks::mavlink;
-use sophie_tasks::mavlink::signing::Stored;
-use sophie_tasks::shell::Shell;
 
 use crate::clock::VirtualTime;
 use crate::live::Live;

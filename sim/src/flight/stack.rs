@@ -13,7 +13,7 @@ use sophie_drivers::rc_decoder::Decoder;
 use sophie_mixers::{Mixer, Variant};
 use sophie_tasks::deadline::TaskId;
 use sophie_tasks::links::{GripState, Links, Newest, Stamped, Status};
-use sophie_tasks::retained_state::Words;
+use sophie_tasks::start::retained_state::Words;
 use sophie_tasks::start::{Start, StartCause};
 
 use super::aircraft::{Aircraft, Belief, Reset, Said};
@@ -106,29 +106,33 @@ impl Stack {
         let mixer = move |p: &Params| Mixer::new(variant, configuration, p);
         let time = VirtualTime::new();
         // Flight level.
-        time.spawn(sophie_tasks::imu::run(links, Port(board)));
-        time.spawn(sophie_tasks::estimator::run(links));
-        time.spawn(sophie_tasks::control::run(links));
-        time.spawn(sophie_tasks::mixer::run(links, mixer));
-        time.spawn(sophie_tasks::motors::run(links, Port(board)));
+        time.spawn(sophie_tasks::flight::imu::run(links, Port(board)));
+        time.spawn(sophie_tasks::flight::estimator::run(links));
+        time.spawn(sophie_tasks::flight::control::run(links));
+        time.spawn(sophie_tasks::flight::mixer::run(links, mixer));
+        time.spawn(sophie_tasks::flight::motors::run(links, Port(board)));
         // Steady level.
-        time.spawn(sophie_tasks::analog::run(links, Port(board)));
-        time.spawn(sophie_tasks::clamp::run(links));
-        time.spawn(sophie_tasks::servos::run(links, Port(board)));
+        time.spawn(sophie_tasks::perching::analog::run(links, Port(board)));
+        time.spawn(sophie_tasks::perching::clamp::run(links));
+        time.spawn(sophie_tasks::perching::servos::run(links, Port(board)));
         let decoder = Decoder::from_params(&links.params);
-        time.spawn(sophie_tasks::rc::run(links, Port(board), decoder));
+        time.spawn(sophie_tasks::pilot::rc::run(links, Port(board), decoder));
         if let Some(below) = &self.below {
             below.spawn(&time, links);
         }
-        time.spawn(sophie_tasks::commander::run(links));
-        time.spawn(sophie_tasks::position::run(links));
-        time.spawn(sophie_tasks::supervisor::run(links, Port(board), Port(board)));
+        time.spawn(sophie_tasks::pilot::commander::run(links));
+        time.spawn(sophie_tasks::navigation::position::run(links));
+        time.spawn(sophie_tasks::supervision::supervisor::run(
+            links,
+            Port(board),
+            Port(board),
+        ));
         // Background.
-        time.spawn(sophie_tasks::arms::run(links, Port(board)));
+        time.spawn(sophie_tasks::perching::arms::run(links, Port(board)));
         if self.barometer {
-            time.spawn(sophie_tasks::barometer::run(links, Port(board)));
+            time.spawn(sophie_tasks::navigation::barometer::run(links, Port(board)));
         }
-        time.spawn(sophie_tasks::telemetry::run(links, Port(board)));
+        time.spawn(sophie_tasks::pilot::telemetry::run(links, Port(board)));
         if let Some(live) = &mut self.live {
             live.spawn(&time, links);
         } else if let Some(companion) = &mut self.companion {

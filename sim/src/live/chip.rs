@@ -1,8 +1,8 @@
 //! The simulated board's chip, as its console shows it.
 
 use sophie_tasks::image_id;
-use sophie_tasks::parameters::table_id;
 use sophie_tasks::ports::{Chip, Look, NotSet};
+use sophie_tasks::storage::parameters::table_id;
 
 use super::Line;
 

@@ -3,7 +3,7 @@
 use std::cell::Cell;
 
 use sophie_control::params::Params;
-use sophie_tasks::mavlink::signing::{Record, Stored};
+use sophie_tasks::ground_station::mavlink::signing::{Record, Stored};
 use sophie_tasks::ports::{Loaded, Storage, StorageError};
 
 /// What a board has stored.

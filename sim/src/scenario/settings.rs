@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use sophie_control::params::{ParamInfo, Params, Renamed};
-use sophie_tasks::parameters::Allowed;
+use sophie_tasks::storage::parameters::Allowed;
 use toml::de::{DeTable, DeValue};
 
 use super::error::ScenarioError;

@@ -58,23 +58,26 @@ impl Vehicle {
             sticks: Some(Sticks::default()),
             ms: 0,
         };
-        v.time.spawn(sophie_tasks::imu::run(links, v.imu.clone()));
-        v.time.spawn(sophie_tasks::estimator::run(links));
-        v.time.spawn(sophie_tasks::control::run(links));
+        v.time.spawn(sophie_tasks::flight::imu::run(links, v.imu.clone()));
+        v.time.spawn(sophie_tasks::flight::estimator::run(links));
+        v.time.spawn(sophie_tasks::flight::control::run(links));
         let mixer = |p: &_| Flexible::new(Configuration::B, p);
-        v.time.spawn(sophie_tasks::mixer::run(links, mixer));
-        v.time.spawn(sophie_tasks::motors::run(links, v.motors.clone()));
+        v.time.spawn(sophie_tasks::flight::mixer::run(links, mixer));
         v.time
-            .spawn(sophie_tasks::analog::run(links, v.converter.clone()));
-        v.time.spawn(sophie_tasks::clamp::run(links));
-        v.time.spawn(sophie_tasks::servos::run(links, v.servos.clone()));
-        v.time.spawn(sophie_tasks::commander::run(links));
-        v.time.spawn(sophie_tasks::supervisor::run(
+            .spawn(sophie_tasks::flight::motors::run(links, v.motors.clone()));
+        v.time
+            .spawn(sophie_tasks::perching::analog::run(links, v.converter.clone()));
+        v.time.spawn(sophie_tasks::perching::clamp::run(links));
+        v.time
+            .spawn(sophie_tasks::perching::servos::run(links, v.servos.clone()));
+        v.time.spawn(sophie_tasks::pilot::commander::run(links));
+        v.time.spawn(sophie_tasks::supervision::supervisor::run(
             links,
             v.watchdog.clone(),
             FakeMemory::default(),
         ));
-        v.time.spawn(sophie_tasks::arms::run(links, v.arms.clone()));
+        v.time
+            .spawn(sophie_tasks::perching::arms::run(links, v.arms.clone()));
         v
     }
 

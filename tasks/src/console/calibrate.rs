@@ -17,8 +17,8 @@ use sophie_control::pilot::bench_orders::{BenchOrder, Place, SPIN_DRIVE, SPIN_DR
 
 use super::Console;
 use super::bench::End;
-use crate::arms::fits;
 use crate::links::Links;
+use crate::perching::arms::fits;
 use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
 use sophie_control::maths::decimal::{self, Decimal};
 
@@ -585,7 +585,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
             what, value, unit, ..
         } = unfit;
         let [value, least, most] = [value, unfit.allowed[0], unfit.allowed[1]].map(Decimal);
-        let unit = crate::parameters::Unit(if unit.is_empty() { "1" } else { unit });
+        let unit = crate::storage::parameters::Unit(if unit.is_empty() { "1" } else { unit });
         self.out
             .line(format_args!(
                 "not taken: {what} is {value:.2}; {least:.2} to {most:.2}{unit} allowed"

@@ -27,7 +27,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
 
     /// Leaves for the chip's own loader. Arming is refused meanwhile.
     pub(super) async fn enter_loader(&mut self) {
-        if let Err(status) = crate::storing::hold_arming(self.links).await {
+        if let Err(status) = crate::storage::storing::hold_arming(self.links).await {
             return self.refuse("not left", status).await;
         }
         self.out
@@ -81,7 +81,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         if self.brown_out_level().is_none_or(|look| look.ok) {
             return self.out.line(format_args!("not set: nothing to do")).await;
         }
-        if let Err(why) = crate::storing::hold_arming(self.links).await {
+        if let Err(why) = crate::storage::storing::hold_arming(self.links).await {
             return self.refuse("not set", why).await;
         }
         match self.chip.set_brown_out().await {

@@ -7,7 +7,7 @@ use sophie_mavlink::signing::{Key, Record, Refused, Stored};
 use super::Console;
 use crate::links::{LineState, SigningState};
 use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
-use crate::storing;
+use crate::storage::storing;
 
 impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, C> {
     /// Whether it is signed, and what was refused for that.

@@ -4,8 +4,8 @@ use sophie_control::params::{ParamInfo, Params, RENAMED, Renamed};
 
 use super::Console;
 use super::nearest::nearest;
-use crate::parameters::{Allowed, Shown, Unit, parse_value};
 use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
+use crate::storage::parameters::{Allowed, Shown, Unit, parse_value};
 use sophie_control::maths::decimal::Decimal;
 
 impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, C> {

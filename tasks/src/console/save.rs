@@ -5,7 +5,7 @@ use sophie_control::arming::ArmingInhibit;
 use super::Console;
 use crate::links::SigningState;
 use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
-use crate::storing;
+use crate::storage::storing;
 
 impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, C> {
     /// Stores the working copy and restarts. Arming is refused meanwhile: storing may stall the processor.

@@ -2,8 +2,8 @@
 
 use embassy_time::Instant;
 use sophie_control::params::{ArmSign, Params};
-use sophie_tasks::arms;
 use sophie_tasks::links::{Attitude, Links};
+use sophie_tasks::perching::arms;
 
 use crate::rig::Rig;
 use sophie_fakes::{Answer, FakeArms};

@@ -1,7 +1,7 @@
 //! The barometer's rate, its age, and what is no pressure.
 
 use embassy_time::Instant;
-use sophie_tasks::barometer;
+use sophie_tasks::navigation::barometer;
 use sophie_tasks::schedule::TaskId;
 
 use crate::rig::Rig;

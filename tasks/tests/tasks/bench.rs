@@ -12,7 +12,12 @@ use sophie_control::pilot::rc::Sticks;
 use sophie_fakes::{Answer, FakeAnalog, FakeArms, FakeImu, FakeLine, FakeMotors, FakeServos};
 use sophie_tasks::links::RcState;
 use sophie_tasks::ports::AnalogFrame;
-use sophie_tasks::{analog, arms, clamp, commander, console, control, estimator, imu, mixer, motors, servos};
+use sophie_tasks::{
+    console,
+    flight::{control, estimator, imu, mixer, motors},
+    perching::{analog, arms, clamp, servos},
+    pilot::commander,
+};
 
 use crate::console::{Board, Screen};
 use crate::rig::Rig;

@@ -10,10 +10,10 @@ use sophie_control::params::Params;
 use sophie_mavlink::inputs::Counts;
 use sophie_tasks::console;
 use sophie_tasks::deadline::TaskId;
+use sophie_tasks::ground_station::mavlink::signing::{Key, Record, Refused, Stored};
 use sophie_tasks::links::{Battery, LineState, Links, RcState, SigningState, Status};
-use sophie_tasks::mavlink::signing::{Key, Record, Refused, Stored};
 use sophie_tasks::ports::{Chip, Loaded, Look, NotSet, PortError, SerialOutput, Storage, StorageError};
-use sophie_tasks::timing::Run;
+use sophie_tasks::schedule::timing::Run;
 
 use crate::rig::Rig;
 use sophie_fakes::FakeLine;
@@ -271,7 +271,7 @@ fn what_is_not_allowed_or_not_known_is_answered_with_what_is() {
             &format!(
                 "build 1234abcd, {} parameters, table {:08x}",
                 Params::TABLE.len(),
-                sophie_tasks::parameters::table_id()
+                sophie_tasks::storage::parameters::table_id()
             )
         ]
     );

@@ -4,7 +4,7 @@ use embassy_time::Instant;
 use sophie_control::allocation::desaturation::Given;
 use sophie_control::allocation::wrench::Wrench;
 use sophie_control::maths::vector::{Quat, Vec3};
-use sophie_tasks::control;
+use sophie_tasks::flight::control;
 use sophie_tasks::links::{Attitude, Demand, Links, MixOutput, Setpoint};
 
 use crate::rig::Rig;

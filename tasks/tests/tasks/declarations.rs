@@ -5,7 +5,7 @@ use std::fmt::Write;
 use embassy_time::Duration;
 use sophie_tasks::links::Links;
 use sophie_tasks::schedule::{TaskId, Watch};
-use sophie_tasks::supervisor::least_runs;
+use sophie_tasks::supervision::supervisor::least_runs;
 
 const TEST: &str = "--package sophie-tasks --test tasks declarations";
 

@@ -10,7 +10,7 @@ use sophie_control::maths::scalar::GRAVITY;
 use sophie_control::maths::vector::Vec3;
 use sophie_control::params::Params;
 use sophie_tasks::deadline::TaskId;
-use sophie_tasks::imu;
+use sophie_tasks::flight::imu;
 use sophie_tasks::ports::{IMU_BATCH, Imu, ImuReading, PortError};
 
 use crate::rig::Rig;

@@ -5,8 +5,8 @@ use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
 use sophie_control::params::Params;
 use sophie_tasks::deadline::{Level, TaskId};
 use sophie_tasks::links::Setpoint;
+use sophie_tasks::schedule::timing::{Quantity, Run};
 use sophie_tasks::start::{Start, StartCause};
-use sophie_tasks::timing::{Quantity, Run};
 
 use crate::rig::Rig;
 

@@ -13,7 +13,7 @@ mod control;
 mod deadline;
 mod declarations;
 mod fake_bus;
-mod ground;
+mod flow_range;
 mod imu;
 mod last_value;
 mod links;

@@ -15,10 +15,10 @@ use sophie_mavlink::dialect::{
 };
 use sophie_mavlink::signing::{Key, Record, Refused, Signing, Stored};
 use sophie_tasks::console;
+use sophie_tasks::ground_station::console_pipe::Shell;
+use sophie_tasks::ground_station::mavlink::{self, Lines};
 use sophie_tasks::links::{LineState, Links, SigningState, Status};
-use sophie_tasks::mavlink::{self, Lines};
 use sophie_tasks::ports::{PortError, SerialOutput};
-use sophie_tasks::shell::Shell;
 
 use crate::console::Board;
 use crate::rig::Rig;

@@ -3,8 +3,8 @@
 use embassy_time::Instant;
 use sophie_control::allocation::mixer::Flexible;
 use sophie_control::allocation::wrench::{Configuration, PerArm, Wrench};
+use sophie_tasks::flight::mixer;
 use sophie_tasks::links::{ArmAngles, Battery, Demand, MixOutput, Setpoint};
-use sophie_tasks::mixer;
 
 use crate::rig::Rig;
 

@@ -3,9 +3,9 @@
 use sophie_clock::VirtualTime;
 use sophie_control::arming::ArmingInhibit;
 use sophie_control::params::Params;
-use sophie_tasks::mavlink::signing::Record;
-use sophie_tasks::parameters::{load, report};
+use sophie_tasks::ground_station::mavlink::signing::Record;
 use sophie_tasks::ports::{Loaded, Storage, StorageError};
+use sophie_tasks::storage::parameters::{load, report};
 
 use crate::rig::Rig;
 

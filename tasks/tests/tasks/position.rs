@@ -5,7 +5,7 @@ use sophie_control::maths::vector::{Quat, Vec3};
 use sophie_mavlink::inputs::pose::{ExternalPose, Pose};
 use sophie_tasks::deadline::TaskId;
 use sophie_tasks::links::{Attitude, Links};
-use sophie_tasks::position;
+use sophie_tasks::navigation::position;
 
 use crate::rig::Rig;
 

@@ -3,8 +3,8 @@
 use embassy_time::{Duration, Instant};
 use sophie_tasks::deadline::TaskId;
 use sophie_tasks::links::{Attitude, Links, MixOutput};
-use sophie_tasks::supervisor;
-use sophie_tasks::timing::Run;
+use sophie_tasks::schedule::timing::Run;
+use sophie_tasks::supervision::supervisor;
 
 use crate::rig::Rig;
 use sophie_fakes::{FakeMemory, FakeWatchdog};

@@ -1,7 +1,7 @@
 //! Records of runs.
 
 use embassy_time::{Duration, Instant};
-use sophie_tasks::timing::{Quantity, Record, Run, Timing};
+use sophie_tasks::schedule::timing::{Quantity, Record, Run, Timing};
 
 fn run(late: u64, end: u64, deadline: u64, skipped: u32) -> Run {
     let at = |us: u64| Instant::from_micros(1_000_000 + us);

@@ -6,12 +6,12 @@ use sophie_control::mode::Mode;
 use sophie_fakes::FakeLine;
 use sophie_mavlink::dialect::{HEARTBEAT_DATA, PARAM_REQUEST_LIST_DATA, PARAM_SET_DATA, SERIAL_CONTROL_DATA};
 use sophie_mavlink::signing::Stored;
+use sophie_tasks::console::one_of::OneOf;
+use sophie_tasks::console::terminals::Served;
 use sophie_tasks::deadline::TaskId;
+use sophie_tasks::ground_station::console_pipe::Shell;
+use sophie_tasks::ground_station::mavlink::{self, Lines};
 use sophie_tasks::links::{Links, Status as Commander};
-use sophie_tasks::mavlink::{self, Lines};
-use sophie_tasks::one_of::OneOf;
-use sophie_tasks::shell::Shell;
-use sophie_tasks::terminals::Served;
 use sophie_tasks::usb::{self, Identity, Memory, Port};
 use sophie_tasks::{console, ports};
 

@@ -371,7 +371,7 @@ mod tests {
             .map(|row| Listed {
                 name: row.name.to_owned(),
                 value: Decimal(row.default).to_string(),
-                allowed: sophie_tasks::parameters::Allowed(row).to_string(),
+                allowed: sophie_tasks::storage::parameters::Allowed(row).to_string(),
                 changed: false,
             })
             .collect();

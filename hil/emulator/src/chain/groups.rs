@@ -7,8 +7,8 @@ const GROUPS: [(&str, &[&str]); 11] = [
     (
         "deadline records",
         &[
-            "sophie_tasks::timing::",
-            "sophie_tasks::histogram::",
+            "sophie_tasks::schedule::timing::",
+            "sophie_tasks::schedule::histogram::",
             "sophie_tasks::deadline::",
             "Links>::record",
         ],
@@ -31,16 +31,16 @@ const GROUPS: [(&str, &[&str]); 11] = [
         "tasks, with what is inlined",
         &[
             "TaskStorage<",
-            "sophie_tasks::control::",
-            "sophie_tasks::mixer::",
-            "sophie_tasks::motors::",
+            "sophie_tasks::flight::control::",
+            "sophie_tasks::flight::mixer::",
+            "sophie_tasks::flight::motors::",
         ],
     ),
     (
         "links",
         &[
             "sophie_tasks::links::",
-            "sophie_tasks::last_value::",
+            "sophie_tasks::links::last_value::",
             "embassy_sync::watch::",
             "multi_waker::",
             "embassy_sync::signal::",
@@ -109,13 +109,16 @@ mod tests {
                 "<embassy_executor::raw::TaskStorage<sophie_flight::tasks::__imu_task::__imu_task_inner_function::{closure#0}>>::poll",
                 "tasks, with what is inlined",
             ),
-            ("<sophie_tasks::timing::Record>::add", "deadline records"),
+            (
+                "<sophie_tasks::schedule::timing::Record>::add",
+                "deadline records",
+            ),
             ("<sophie_tasks::links::Links>::record", "deadline records"),
             (
                 "<sophie_tasks::links::Link<sophie_control::chain::setpoint::Setpoint>>::latest",
                 "links",
             ),
-            ("<sophie_tasks::last_value::LastValue<u8>>::send", "links"),
+            ("<sophie_tasks::links::last_value::LastValue<u8>>::send", "links"),
             (
                 "<sophie_boards::stm32::escs::EscTimer<u8>>::write",
                 "frame: encoding, timer",

@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 
-use super::*;
+use crate::start::retained_state::*;
 
 fn held() -> RetainedState {
     RetainedState {

@@ -14,7 +14,7 @@ use sophie_control::gripper::contact_pressure::{Fsr, FsrScale};
 use crate::deadline::{FixedRate, TaskId};
 use crate::links::{Contact, Links};
 use crate::ports::Analog;
-use crate::silence::SilenceWatch;
+use crate::supervision::silence::SilenceWatch;
 
 /// Time without a conversion before a report.
 pub const SILENCE: Duration = Duration::from_millis(100);

@@ -8,9 +8,9 @@ use sophie_control::mode::{Inputs, Mode, ModeLogic, Motion, Outputs};
 use sophie_control::navigation::flow_range::SightLimit;
 
 use crate::deadline::{FixedRate, Level, TaskId};
-use crate::flow_limit::FlowLimit;
 use crate::links::{Links, Status};
-use crate::warning::Warning;
+use crate::navigation::flow_limit::FlowLimit;
+use crate::pilot::warning::Warning;
 
 /// Smallest infill flown in the paper, %.
 const INFILL_FLOWN: f32 = 6.0;

@@ -13,7 +13,7 @@
 //! No force is sent before one is known: at power-up closed arms are held by the servos' gears until a pulse opens
 //! them.
 
-use crate::retained_state::RetainedState;
+use crate::start::retained_state::RetainedState;
 use embassy_time::Instant;
 use sophie_control::allocation::wrench::PerArm;
 use sophie_control::gripper::retained_grip::GripMemory;

@@ -16,7 +16,7 @@ use sophie_control::params::Params;
 use crate::deadline::{FixedRate, TaskId};
 use crate::links::{ArmAngles, Links, Stamped};
 use crate::ports::ArmImus;
-use crate::silence::SilenceWatch;
+use crate::supervision::silence::SilenceWatch;
 
 /// Time without a reading before a report.
 pub const SILENCE: Duration = Duration::from_secs(1);
@@ -108,7 +108,7 @@ fn arm_tilt(q: Quat, gravity: Vec3, side: f32) -> Option<f32> {
 mod tests {
     use sophie_control::maths::scalar::{GRAVITY, deg};
 
-    use super::*;
+    use crate::perching::arms::*;
 
     /// Reading of a sensor on an arm tilted by `tilt`, on a body at `q`.
     fn seen(q: Quat, tilt: f32, side: f32) -> Vec3 {

@@ -6,8 +6,8 @@ use sophie_control::navigation::flow_range_sample::{Flow, GroundView, Range};
 use sophie_fakes::{BrokenLine, FakeLine};
 use sophie_tasks::deadline::TaskId;
 use sophie_tasks::links::{Attitude, Links};
+use sophie_tasks::navigation::{flow_range, position};
 use sophie_tasks::ports::GroundDecoder;
-use sophie_tasks::{ground, position};
 
 use crate::rig::Rig;
 
@@ -41,7 +41,7 @@ fn what_the_module_says_is_published_at_once_and_what_is_no_frame_is_not() {
     let mut rig = Rig::new();
     let line = FakeLine::default();
     rig.time
-        .spawn(ground::run(rig.links, line.clone(), Decimetres::default()));
+        .spawn(flow_range::run(rig.links, line.clone(), Decimetres::default()));
     rig.run(10);
     line.put(&[0, 0]);
     rig.run(10);
@@ -61,7 +61,7 @@ fn a_dead_line_does_not_take_the_processor() {
     let mut rig = Rig::new();
     let line = BrokenLine::default();
     rig.time
-        .spawn(ground::run(rig.links, line.clone(), Decimetres::default()));
+        .spawn(flow_range::run(rig.links, line.clone(), Decimetres::default()));
     rig.run(1000);
     assert_eq!(rig.links.timing(TaskId::Ground).runs, 0);
     assert!(rig.links.ground.latest().is_none());

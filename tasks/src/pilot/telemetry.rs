@@ -129,7 +129,7 @@ fn encode<P: CrsfPacket>(packet: Option<P>) -> Option<Frame> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::pilot::telemetry::*;
 
     #[test]
     fn the_text_of_every_mode_can_be_read_back() {

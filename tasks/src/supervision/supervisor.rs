@@ -9,8 +9,8 @@ use embassy_time::{Duration, Instant};
 use crate::deadline::{FixedRate, Level, TaskId};
 use crate::links::Links;
 use crate::ports::{Retain, Watchdog};
-use crate::retained_store::RetainedStore;
 use crate::schedule::Watch;
+use crate::supervision::retained_store::RetainedStore;
 
 const WINDOW: u8 = 10;
 /// Time from power-up for drivers to start.

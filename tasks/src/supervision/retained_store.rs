@@ -3,7 +3,7 @@
 //! It is at most 30 ms old (a servo's frame and a run), in which a winding servo turns 0.2 rad. A stale or missing
 //! message changes nothing.
 
-use crate::retained_state::RetainedState;
+use crate::start::retained_state::RetainedState;
 use sophie_control::allocation::wrench::PerArm;
 use sophie_control::attitude::mounting::Mounting;
 use sophie_control::gripper::force_per_thrust;

@@ -6,7 +6,7 @@
 
 use embassy_time::{Duration, Instant};
 
-use crate::histogram::Histogram;
+use crate::schedule::histogram::Histogram;
 
 /// One run of a task.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
