@@ -2,9 +2,7 @@
 
 mod chip;
 mod flight;
-pub(crate) mod line;
 mod pace;
-pub(crate) mod stored;
 mod udp;
 
 use std::cell::Cell;
@@ -13,11 +11,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use self::chip::ThisChip;
 pub use self::flight::LiveFlight;
-use self::line::{Line, LinePort};
 pub use self::pace::Pace;
-use self::stored::{Memory, Port};
 pub use self::udp::Udp;
 use crate::clock::VirtualTime;
+use crate::devices::line::{Line, LinePort};
+use crate::devices::storage::{Memory, Port};
 use sophie_control::params::Params;
 use sophie_tasks::links::Links;
 pub use sophie_tasks::mavlink::signing::Key;

@@ -12,7 +12,7 @@ use sophie_control::tendon::Reel;
 use sophie_control::thrust_curve::ThrustCurve;
 use sophie_control::wrench::PerArm;
 use sophie_drivers::sbus;
-use sophie_sim::crsf::Telemetry;
+use sophie_sim::devices::crsf::Telemetry;
 use sophie_sim::flight::aircraft::{Aircraft, Belief, Reset, Said};
 use sophie_sim::plant::{Actuators, Plant};
 use sophie_sim::scenario::Scenario;
@@ -522,7 +522,7 @@ mod tests {
             roll: 0.5,
             ..Sticks::default()
         };
-        let read = sticks(RcProtocol::Crsf, &sophie_sim::crsf::rc_frame(&sent)).unwrap();
+        let read = sticks(RcProtocol::Crsf, &sophie_sim::devices::crsf::rc_frame(&sent)).unwrap();
         assert!((read.roll - 0.5).abs() < 0.02);
         assert!(sticks(RcProtocol::Crsf, &[1, 2, 3]).is_none());
         let frame = sbus::Frame {

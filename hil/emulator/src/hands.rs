@@ -9,7 +9,7 @@ use sophie_control::motor_map::at_rotors;
 use sophie_control::params::MotorMap;
 use sophie_control::rc::Sticks;
 use sophie_control::wrench::PerArm;
-use sophie_sim::crsf;
+use sophie_sim::devices::crsf;
 use sophie_sim::plant::Plant;
 
 use crate::wires::Pins;

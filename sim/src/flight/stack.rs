@@ -17,14 +17,14 @@ use sophie_tasks::retained_state::Words;
 use sophie_tasks::start::{Start, StartCause};
 
 use super::aircraft::{Aircraft, Belief, Reset, Said};
-use super::below::Below;
-use super::companion::Companion;
-use crate::aim;
 use crate::board::{Board, Port};
 use crate::clock::VirtualTime;
+use crate::devices::companion::Companion;
+use crate::devices::flow_module::Below;
 use crate::live::Live;
 use crate::plant::Plant;
 use crate::scenario::{PositionSensor, Scenario};
+use crate::target_angles;
 
 /// The step of a reset that no step of the mission made.
 const NO_STEP: usize = usize::MAX;
@@ -249,7 +249,7 @@ impl Aircraft for Stack {
             .unwrap_or_default();
         // The wanted heading arrives relative to the present one.
         let target = links.target.latest().map(|v| {
-            let [roll, pitch, ahead] = aim::angles(v.value);
+            let [roll, pitch, ahead] = target_angles::angles(v.value);
             let heading = math::wrap_pi(estimate.2 + ahead as f32);
             [roll, pitch, f64::from(heading)]
         });

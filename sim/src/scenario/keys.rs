@@ -8,7 +8,7 @@ use sophie_mixers::Variant;
 
 use super::faults;
 use super::{Assist, BarometerFault, FlowFault, PoseFault, PositionSensor, Scenario, ServoProfile};
-use crate::sbus;
+use crate::devices::sbus;
 
 /// One key.
 pub struct Key {

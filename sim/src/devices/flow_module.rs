@@ -8,7 +8,7 @@ use sophie_tasks::ground;
 use sophie_tasks::links::Links;
 
 use crate::clock::VirtualTime;
-use crate::live::line::{Line, LinePort};
+use crate::devices::line::{Line, LinePort};
 use crate::plant::Plant;
 use crate::scenario::Scenario;
 use crate::sensors::flow::FlowModule;

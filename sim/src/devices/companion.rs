@@ -11,9 +11,9 @@ use sophie_tasks::mavlink::signing::Stored;
 use sophie_tasks::shell::Shell;
 
 use crate::clock::VirtualTime;
+use crate::devices::line::{Line, LinePort};
+use crate::devices::storage::{Memory, Port};
 use crate::live::Live;
-use crate::live::line::{Line, LinePort};
-use crate::live::stored::{Memory, Port};
 use crate::plant::Plant;
 use crate::scenario::Scenario;
 use crate::sensors::pose::{Measured, PoseSource};
