@@ -21,10 +21,10 @@ use sophie_tasks::telemetry::parse_mode_text;
 use uf_crsf::{CrsfParser, Packet};
 
 use crate::below::Module;
+use crate::bench_operator::Hands;
 use crate::elf::Firmware;
 use crate::emulator::{Emulator, Settings};
 use crate::esc::SILENCE;
-use crate::hands::Hands;
 use crate::log::{Line, Log};
 use crate::plan::Plan;
 use crate::sensors::Sensors;
