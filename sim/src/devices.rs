@@ -4,5 +4,6 @@ pub(crate) mod companion;
 pub mod crsf;
 pub mod flow_module;
 pub(crate) mod line;
+pub(crate) mod mavlink_server;
 pub mod sbus;
 pub(crate) mod storage;

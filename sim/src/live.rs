@@ -14,14 +14,14 @@ pub use self::flight::LiveFlight;
 pub use self::pace::Pace;
 pub use self::udp::Udp;
 use crate::clock::VirtualTime;
-use crate::devices::line::{Line, LinePort};
+use crate::devices::line::Line;
+use crate::devices::mavlink_server;
 use crate::devices::storage::{Memory, Port};
 use sophie_control::params::Params;
+use sophie_tasks::console;
 use sophie_tasks::links::Links;
 pub use sophie_tasks::mavlink::signing::Key;
 use sophie_tasks::mavlink::signing::Record;
-use sophie_tasks::shell::Shell;
-use sophie_tasks::{console, mavlink};
 
 /// What ends a flight before its mission is over, in the report.
 const STOPPED: &str = "stopped from outside";
@@ -74,22 +74,8 @@ impl Live {
                 signing: Cell::new(key.map(Record::fresh)),
             }))
         });
-        let (line, port) = (self.line, LinePort(self.line));
-        let lines = mavlink::Lines {
-            inputs: [port],
-            outputs: [port],
-            bytes_per_second: [BYTES_PER_SECOND],
-        };
-        // As every other part of the board: for one start.
-        let shell: &'static Shell = Box::leak(Box::default());
-        time.spawn(mavlink::run(
-            links,
-            lines,
-            shell,
-            Port(stored),
-            || line.restart(),
-            stored.key(),
-        ));
+        let line = self.line;
+        let shell = mavlink_server::spawn(time, links, line, BYTES_PER_SECOND, stored, || line.restart());
         let chip = ThisChip(line);
         time.spawn(console::run(
             links,

@@ -12,7 +12,6 @@
 pub const SPEEDS: std::ops::RangeInclusive<f64> = 0.25..=1.0;
 
 pub mod arguments;
-pub mod below;
 pub mod bench_operator;
 pub mod board_kind;
 mod boards;

@@ -1,4 +1,4 @@
-//! The module below the vehicle on the board's serial line, and the task that reads it.
+//! The flow and range module below the vehicle, and its serial line to the board.
 
 use std::cell::Cell;
 
@@ -7,81 +7,101 @@ use sophie_drivers::ground_module::GroundModule;
 use sophie_tasks::ground;
 use sophie_tasks::links::Links;
 
+use super::line::{Line, LinePort};
 use crate::clock::VirtualTime;
-use crate::devices::line::{Line, LinePort};
 use crate::plant::Plant;
-use crate::scenario::Scenario;
+use crate::scenario::{PositionSensor, Scenario, Sensors};
 use crate::sensors::flow::FlowModule;
 use crate::streams::Streams;
 
-/// The module and its line.
-pub struct Below {
+/// The module of a scenario: sees the plant each millisecond and sends frames.
+pub struct FlowSender {
     streams: Streams,
-    lens: DVec3,
-    failure: (crate::scenario::FlowFault, f64, f64),
-    /// Frames a second, and the step of its ranges, m.
-    sending: (Option<f64>, Option<f64>),
-    /// `None` before the first millisecond, which shows where the pipe is.
+    sensors: Sensors,
+    /// `None` until the first millisecond gives the position of the pipe.
     module: Option<FlowModule>,
+}
+
+impl FlowSender {
+    /// The module of `scenario`, whose seed sets its errors; `None` if the scenario has another position sensor.
+    #[must_use]
+    pub fn of(scenario: &Scenario) -> Option<Self> {
+        (scenario.sensors.position == PositionSensor::Flow).then(|| Self {
+            streams: scenario.streams(),
+            sensors: scenario.sensors,
+            module: None,
+        })
+    }
+
+    /// Samples the plant. Call it each millisecond.
+    pub fn step(&mut self, plant: &Plant) {
+        let s = self.sensors;
+        let new = || {
+            let module = FlowModule::new(self.streams, *plant.pipe(), s.lens());
+            let module = module.sending(s.flow_rate, s.range_step);
+            module.failing(s.flow_fault, s.pose_fails_at, s.pose_fails_for)
+        };
+        self.module.get_or_insert_with(new).step(plant.pose());
+    }
+
+    /// The oldest frame that is complete on the line `us` µs after power-up.
+    pub fn take(&mut self, us: u64) -> Option<Vec<u8>> {
+        self.module.as_mut()?.take(us)
+    }
+}
+
+/// The module on a line of the simulated board.
+pub(crate) struct FlowLine {
+    sender: FlowSender,
     line: &'static Line,
-    place: DVec3,
-    /// From the origin of the estimate to that of the world, m, as it was with the estimate's first position.
+    position: DVec3,
+    /// World position of the estimate's origin, m, fixed at the estimate's first position.
     origin: Cell<Option<DVec3>>,
 }
 
-impl Below {
-    /// The module of `scenario`, whose seed gives its errors.
-    pub fn new(scenario: &Scenario) -> Self {
-        let s = &scenario.sensors;
+impl FlowLine {
+    /// The line of `sender`.
+    pub fn new(sender: FlowSender) -> Self {
         Self {
-            streams: scenario.streams(),
-            lens: s.lens(),
-            failure: (s.flow_fault, s.pose_fails_at, s.pose_fails_for),
-            sending: (s.flow_rate, s.range_step),
-            module: None,
+            sender,
             line: Box::leak(Box::new(Line::new())),
-            place: DVec3::ZERO,
+            position: DVec3::ZERO,
             origin: Cell::new(None),
         }
     }
 
-    /// Spawns the board's task.
+    /// Spawns the task that reads the line.
     pub fn spawn(&self, time: &VirtualTime, links: &'static Links) {
         let decoder = GroundModule::from_params(&links.params);
         time.spawn(ground::run(links, LinePort(self.line), decoder));
     }
 
-    /// Looks down, each millisecond.
-    pub fn look(&mut self, plant: &Plant) {
-        let (fault, at, seconds) = self.failure;
-        let (rate, step) = self.sending;
-        let new = || {
-            let module = FlowModule::new(self.streams, *plant.pipe(), self.lens);
-            module.sending(rate, step).failing(fault, at, seconds)
-        };
-        self.module.get_or_insert_with(new).step(plant.pose());
-        self.place = plant.pose().position;
+    /// Samples the plant. Call it each millisecond.
+    pub fn step(&mut self, plant: &Plant) {
+        self.sender.step(plant);
+        self.position = plant.pose().position;
     }
 
-    /// An estimated position as one in the world: what it is off there is what it has drifted by since its first.
+    /// An estimated position in world axes, m. Its error is the drift since the first estimate; a call with `None`
+    /// forgets the origin.
     pub fn in_world(&self, position: Option<DVec3>) -> Option<DVec3> {
         let Some(position) = position else {
             self.origin.set(None);
             return None;
         };
-        let origin = self.origin.get().unwrap_or(self.place - position);
+        let origin = self.origin.get().unwrap_or(self.position - position);
         self.origin.set(Some(origin));
         Some(origin + position)
     }
 
-    /// Sends what is due `us` µs after power-up.
-    pub fn speak(&mut self, us: u64) {
-        while let Some(bytes) = self.module.as_mut().and_then(|module| module.take(us)) {
+    /// Puts the frames due `us` µs after power-up on the line.
+    pub fn send(&mut self, us: u64) {
+        while let Some(bytes) = self.sender.take(us) {
             self.line.receive(&bytes);
         }
     }
 
-    /// Loses what is on the line, as at a reset of the board.
+    /// Discards the bytes on the line, as a reset of the board does.
     pub fn reset(&self) {
         self.line.clear();
     }
