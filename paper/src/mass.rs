@@ -2,7 +2,7 @@
 
 use sophie_control::params::Params;
 use sophie_sim::plant::GRAVITY;
-use sophie_sim::plant::arm::TIP_MASS;
+use sophie_sim::plant::hinged::link::TIP_MASS;
 
 use super::model::{Class, Comparison, Section, Table, num};
 use super::printed::Printed;

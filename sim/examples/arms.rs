@@ -3,10 +3,10 @@
 
 #![allow(clippy::print_stdout, reason = "the table is what it is for")]
 
-use sophie_sim::plant::arm::ArmSpec;
 use sophie_sim::plant::beam::rest::{DAMPING, SlowArm, pipe_under};
 use sophie_sim::plant::beam::{BeamSpec, Masses, TENDON_LEVER};
 use sophie_sim::plant::body::BodySpec;
+use sophie_sim::plant::hinged::link::ArmSpec;
 
 /// Grip pressure, Pa.
 const GRIP: f64 = 950.0;

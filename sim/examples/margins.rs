@@ -11,11 +11,11 @@ use sophie_control::params::Params;
 use sophie_sim::check::loops::{
     Hovering, Laws, Margins, Place, Response, margins, margins_of, resting_margins, slide,
 };
-use sophie_sim::flight_level::{Rig, level, vehicle};
 use sophie_sim::mixers::Variant::{self, Flexible, Rigid};
 use sophie_sim::parallel;
 use sophie_sim::scenario::Scenario;
 use sophie_sim::streams::Streams;
+use sophie_sim::test_stands::flight_level::{Rig, level, vehicle};
 
 /// Arms tried, beside those that are as the stack takes them.
 const ARMS: u64 = 40;

@@ -6,9 +6,9 @@
 use sophie_control::allocation::wrench::Configuration::{self, A, B};
 use sophie_control::mode::Mode;
 use sophie_sim::flight::fly;
-use sophie_sim::flight_level::{Rig, level, vehicle};
 use sophie_sim::mixers::Variant::{self, Flexible, Frozen, Paper, Rigid};
 use sophie_sim::record::{Sample, Silent};
+use sophie_sim::test_stands::flight_level::{Rig, level, vehicle};
 
 const SEEDS: u64 = 10;
 

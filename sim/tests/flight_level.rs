@@ -1,9 +1,9 @@
 //! The flight level on the soft vehicle, by allocation.
 
 use sophie_control::allocation::wrench::Configuration::{A, B};
-use sophie_sim::flight_level::{Maneuver, Rig, level, vehicle};
 use sophie_sim::mixers::Variant::{Flexible, Frozen, Paper, Rigid};
 use sophie_sim::scenario::Scenario;
+use sophie_sim::test_stands::flight_level::{Maneuver, Rig, level, vehicle};
 
 /// 15 s with the paper's roll to 25° and back.
 fn doublet(t: f64) -> Maneuver {

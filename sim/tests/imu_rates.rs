@@ -2,8 +2,8 @@
 
 use sophie_control::allocation::mixer::Flexible;
 use sophie_control::allocation::wrench::Configuration;
-use sophie_sim::flight_level::{Maneuver, Rig, vehicle};
 use sophie_sim::mixers::Variant;
+use sophie_sim::test_stands::flight_level::{Maneuver, Rig, vehicle};
 use sophie_tasks::deadline::TaskId;
 
 /// 10° to the right for 2 s, and back.

@@ -12,9 +12,9 @@ use sophie_control::params::{ImuMounting, Params};
 use sophie_drivers::param_store::ParamStore;
 use sophie_fakes::{FakeChip, FakeImu, FakeLine, Flash};
 use sophie_sim::clock::VirtualTime;
-use sophie_sim::flight_level::{Errors, Rig, level, vehicle};
 use sophie_sim::mixers::Variant;
 use sophie_sim::sensors::imu::Misfit;
+use sophie_sim::test_stands::flight_level::{Errors, Rig, level, vehicle};
 use sophie_tasks::links::Links;
 use sophie_tasks::ports::{ImuReading, PortError, SerialOutput};
 use sophie_tasks::{

@@ -2,8 +2,8 @@
 
 use sophie_control::allocation::wrench::Configuration;
 use sophie_control::params::{MotorMap, Params};
-use sophie_sim::flight_level::{Errors, Rig, level, vehicle};
 use sophie_sim::mixers::Variant;
+use sophie_sim::test_stands::flight_level::{Errors, Rig, level, vehicle};
 
 /// Outputs 1 and 2 changed places, and 3 and 4.
 const WIRED: MotorMap = MotorMap::M2143;

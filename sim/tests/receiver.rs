@@ -8,7 +8,7 @@ use sophie_drivers::crsf::Decoder;
 use sophie_fakes::{Answer, BrokenLine, FakeLine, links};
 use sophie_sim::board::{Board, Port};
 use sophie_sim::clock::VirtualTime;
-use sophie_sim::crsf::{channel_frame, rc_frame};
+use sophie_sim::devices::crsf::{channel_frame, rc_frame};
 use sophie_sim::streams::Streams;
 use sophie_tasks::links::{Links, RcState};
 

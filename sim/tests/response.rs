@@ -4,12 +4,12 @@
 use sophie_control::gripper::grip::ArmState;
 use sophie_control::gripper::grip_fault::GripFault;
 use sophie_control::pilot::rc::ArmChoice;
-use sophie_sim::arm_bench::{BenchArm, Closing, try_grip};
 use sophie_sim::flight::fly;
 use sophie_sim::parallel;
 use sophie_sim::record::Silent;
 use sophie_sim::scenario::{Scenario, ServoProfile, Step};
 use sophie_sim::sensors::fsr::FsrBreak;
+use sophie_sim::test_stands::arm_bench::{BenchArm, Closing, try_grip};
 
 /// True response over the assumed one.
 const RESPONSES: [f32; 5] = [0.5, 0.71, 1.0, 1.41, 2.0];

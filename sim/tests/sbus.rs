@@ -10,7 +10,7 @@ use sophie_control::pilot::rc::Sticks;
 use sophie_drivers::rc_decoder::Decoder;
 use sophie_drivers::sbus::Frame;
 use sophie_fakes::FakeLine;
-use sophie_sim::crsf::rc_frame;
+use sophie_sim::devices::crsf::rc_frame;
 use sophie_sim::flight::fly;
 use sophie_sim::record::Silent;
 use sophie_sim::scenario::{Overrides, Scenario};

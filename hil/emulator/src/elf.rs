@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use defmt_decoder::Table;
 use object::{Architecture, Object, ObjectSection, ObjectSymbol};
 
-use crate::boards::EmulatedBoard;
+use crate::board_kind::EmulatedBoard;
 use crate::chain::Window;
 
 /// Bytes of the largest image, with its debug information.

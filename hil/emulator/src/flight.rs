@@ -4,9 +4,9 @@ use sophie_sim::flight::{fly_with, stand_with};
 use sophie_sim::record::{FlightRecord, Observer};
 use sophie_sim::scenario::Scenario;
 
-use crate::bench::{Bench, Finished, Setup};
+use crate::bench_operator::Hands;
+use crate::closed_loop::{Bench, Finished, Setup};
 use crate::elf::Firmware;
-use crate::hands::Hands;
 use crate::log;
 use crate::wires::Gap;
 use crate::{flyable, gaps};

@@ -12,10 +12,12 @@
 pub const SPEEDS: std::ops::RangeInclusive<f64> = 0.25..=1.0;
 
 pub mod arguments;
-pub mod below;
-pub mod bench;
-pub mod boards;
+pub mod bench_operator;
+pub mod board_kind;
+mod boards;
 pub mod chain;
+mod chips;
+pub mod closed_loop;
 pub mod compare;
 pub mod elf;
 pub mod emulator;
@@ -23,10 +25,10 @@ pub mod esc;
 pub mod flight;
 pub mod flyable;
 pub mod gaps;
-pub mod hands;
 pub mod loader;
 pub mod log;
 pub mod plan;
+mod processor;
 pub mod sensors;
 pub mod silicon;
 pub mod stored;

@@ -3,7 +3,7 @@
 
 use object::{Object, ObjectSection};
 
-use crate::boards::Kind;
+use crate::board_kind::Kind;
 use crate::elf::{Firmware, Loader};
 
 /// Flash of every emulated chip outside firmware and parameters.

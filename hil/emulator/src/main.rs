@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use clap::{Parser, ValueEnum};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
-use sophie_emulator::bench::Setup;
+use sophie_emulator::closed_loop::Setup;
 use sophie_emulator::compare;
 use sophie_emulator::elf::Firmware;
 use sophie_emulator::flight::{self, Flight};
@@ -22,7 +22,7 @@ use sophie_emulator::plan::{Plan, Trouble};
 use sophie_emulator::silicon;
 use sophie_emulator::terminal::{Sockets, Terminal};
 use sophie_emulator::wires::{BoardFault, Gap};
-use sophie_emulator::{arguments, boards};
+use sophie_emulator::{arguments, board_kind};
 use sophie_report::terminal::console::{self, Console};
 use sophie_report::terminal::live::Lines;
 use sophie_report::terminal::output::OutDir;
@@ -106,7 +106,7 @@ fn main() -> ExitCode {
 }
 
 fn run(args: &Args) -> Result<bool, String> {
-    let board = boards::find(&args.board)?;
+    let board = board_kind::find(&args.board)?;
     arguments::check_speed(args.speed)?;
     let scenario = arguments::scenario(args.scenario.as_deref(), args.seed)?;
     let firmware = Firmware::read(&args.elf, board)?;

@@ -10,7 +10,7 @@ use sophie_sim::sensors::barometer::Barometer;
 use sophie_sim::sensors::fsr::{FsrBreak, FsrSensor};
 use sophie_sim::sensors::imu::Imu;
 
-use crate::hands::InHands;
+use crate::bench_operator::InHands;
 use crate::wires::Wires;
 
 /// Converter reference, V, and full scale, counts.

@@ -6,7 +6,7 @@ use sophie_control::params::Params;
 use sophie_drivers::param_store::ParamStore;
 use sophie_tasks::ports::Storage;
 
-use crate::boards::Kind;
+use crate::board_kind::Kind;
 
 /// Erased flash with words of `WORD` bytes and sectors of `SECTOR`.
 struct Sectors<const WORD: usize, const SECTOR: usize>(Vec<u8>);

@@ -1,7 +1,7 @@
 //! Fig. 10, and Table IV among all closings.
 
 use sophie_report::units::kgcm;
-use sophie_sim::arm_bench::BenchSample;
+use sophie_sim::test_stands::arm_bench::BenchSample;
 
 use super::super::model::{Axis, Chart, Look, Section, Series};
 use super::super::printed::Printed;

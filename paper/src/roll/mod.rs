@@ -166,7 +166,7 @@ fn conclude(s: &mut Section, p: &Printed, flights: &Flights) {
          they carry {} kg at their tips, because the arm that is pushed up has to push its motor up, and swings; the printed {printed:.1}° take massless arms of ζ {:.2}. A table of Δα \
          in a fast roll does not identify the static gain K: mass and damping of the arm are in it too. A bench identifies \
          it (sophie fit-arm).",
-        sophie_sim::plant::arm::TIP_MASS,
+        sophie_sim::plant::hinged::link::TIP_MASS,
         fitted.damping()
     ));
     let worst = p.table_3.iter().filter_map(|row| {

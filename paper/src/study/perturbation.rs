@@ -3,9 +3,9 @@
 use glam::{DQuat, DVec3};
 use sophie_control::allocation::wrench::PerArm;
 
-use sophie_sim::plant::arm::{Arm, ArmSpec};
 use sophie_sim::plant::body::{Body, BodySpec, Load};
 use sophie_sim::plant::contact::Pose;
+use sophie_sim::plant::hinged::link::{Arm, ArmSpec};
 use sophie_sim::plant::rotor::{Rotor, RotorSpec};
 use sophie_sim::plant::{GRAVITY, STEP};
 
@@ -39,8 +39,8 @@ impl Trial {
             arm.tilt = 0.0;
             arm.integrate(0.0, 0.0);
             if self.gain_k > 0.0 {
-                let inertia =
-                    sophie_sim::plant::arm::TIP_MASS * sophie_sim::plant::contact::ARM_LENGTH.powi(2);
+                let inertia = sophie_sim::plant::hinged::link::TIP_MASS
+                    * sophie_sim::plant::contact::ARM_LENGTH.powi(2);
                 for _ in 0..(REST / STEP) as usize {
                     arm.load(thrust, 0.0, DVec3::new(0.0, 0.0, GRAVITY), false);
                     arm.integrate(STEP, arm.generalised / inertia);

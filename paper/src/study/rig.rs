@@ -2,11 +2,11 @@
 
 use glam::DVec3;
 use sophie_control::allocation::wrench::PerArm;
-use sophie_sim::aim;
-use sophie_sim::flight_level::{HeightHold, Rig};
 use sophie_sim::mixers::Mixer;
 use sophie_sim::plant::GRAVITY;
 use sophie_sim::scenario::Scenario;
+use sophie_sim::target_angles;
+use sophie_sim::test_stands::flight_level::{HeightHold, Rig};
 use sophie_tasks::links::Setpoint;
 
 use super::allocation::Studied;
@@ -94,7 +94,7 @@ fn lost(rig: &Rig, heading: Option<f64>) -> bool {
 fn moment(rig: &Rig, t: f64, heading: f64) -> Moment {
     let wide = |v: PerArm<f32>| v.map(f64::from);
     let mix = rig.links.mix.latest().map(|m| m.value).unwrap_or_default();
-    let target = rig.links.target.latest().map(|v| aim::angles(v.value));
+    let target = rig.links.target.latest().map(|v| target_angles::angles(v.value));
     let measured = rig.links.tilts().values();
     Moment {
         t,

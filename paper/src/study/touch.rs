@@ -9,7 +9,7 @@ use glam::{DQuat, DVec3};
 use sophie_control::mode::{Mode, Reason};
 use sophie_control::pilot::rc::Sticks;
 
-use sophie_sim::crsf::{FRAME_HZ, rc_frame};
+use sophie_sim::devices::crsf::{FRAME_HZ, rc_frame};
 use sophie_sim::flight::aircraft::Aircraft;
 use sophie_sim::flight::stack::Stack;
 use sophie_sim::plant::Plant;

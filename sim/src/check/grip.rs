@@ -4,13 +4,13 @@ use sophie_control::gripper::Config;
 use sophie_control::gripper::grip::ArmState;
 
 use super::row::{Limit, Row};
-use crate::arm_bench::{BenchArm, Tried, try_grip};
 use crate::pilot::throttle_on_pipe;
 use crate::plant::beam::rest::{DAMPING, SlowArm, pipe_under};
 use crate::plant::beam::{BeamSpec, Masses, TENDON_LEVER};
 use crate::plant::tendon::ServoSpec;
 use crate::plant::{arm_spec, beam_spec};
 use crate::scenario::{ArmBending, Scenario, Step};
+use crate::test_stands::arm_bench::{BenchArm, Tried, try_grip};
 
 /// Closing throttle of a mission that names none: a scenario file's default.
 const THROTTLE: f64 = 0.3;
@@ -117,9 +117,9 @@ pub fn needed(scenario: &Scenario, arm: usize, thrust: f64, target: f64) -> Opti
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::arm_bench::{Closing, close};
     use crate::plant::tendon::TendonSpec;
     use crate::scenario::ServoProfile;
+    use crate::test_stands::arm_bench::{Closing, close};
 
     #[test]
     fn the_force_needed_is_what_a_closing_arm_takes() {

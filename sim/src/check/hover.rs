@@ -3,9 +3,9 @@
 use sophie_control::allocation::effectiveness::{Effectiveness, Geometry};
 use sophie_control::allocation::wrench::PerArm;
 
-use crate::plant::arm::ArmSpec;
 use crate::plant::beam::BeamSpec;
 use crate::plant::contact::{ARM_LENGTH, ARM_X};
+use crate::plant::hinged::link::ArmSpec;
 use crate::plant::{GRAVITY, arm_spec, beam_spec};
 use crate::scenario::{Scenario, Vehicle};
 

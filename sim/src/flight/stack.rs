@@ -17,14 +17,14 @@ use sophie_tasks::start::retained_state::Words;
 use sophie_tasks::start::{Start, StartCause};
 
 use super::aircraft::{Aircraft, Belief, Reset, Said};
-use super::below::Below;
-use super::companion::Companion;
-use crate::aim;
 use crate::board::{Board, Port};
 use crate::clock::VirtualTime;
+use crate::devices::companion::Companion;
+use crate::devices::flow_module::{FlowLine, FlowSender};
 use crate::live::Live;
 use crate::plant::Plant;
 use crate::scenario::{PositionSensor, Scenario};
+use crate::target_angles;
 
 /// The step of a reset that no step of the mission made.
 const NO_STEP: usize = usize::MAX;
@@ -47,12 +47,12 @@ pub struct Stack {
     noise: Pcg64Mcg,
     /// Real time and MAVLink clients; `None` in pure virtual time.
     live: Option<Live>,
-    /// The computer that sends poses; `None` where there is none.
+    /// The computer that sends poses; `None` without it.
     companion: Option<Companion>,
     /// The board has a barometer.
     barometer: bool,
-    /// The module below the vehicle; `None` where there is none.
-    below: Option<Below>,
+    /// The flow module's line; `None` without the module.
+    flow_module: Option<FlowLine>,
 }
 
 impl Stack {
@@ -76,7 +76,7 @@ impl Stack {
         }
         let companion = match scenario.sensors.position {
             PositionSensor::None | PositionSensor::Flow => None,
-            PositionSensor::Pose => Some(Companion::new(scenario, live.as_ref())),
+            PositionSensor::Pose => Some(Companion::new(scenario, live.as_ref().map(Live::line))),
         };
         let mut stack = Self {
             running: None,
@@ -92,7 +92,7 @@ impl Stack {
             live,
             companion,
             barometer: scenario.sensors.barometer,
-            below: (scenario.sensors.position == PositionSensor::Flow).then(|| Below::new(scenario)),
+            flow_module: FlowSender::of(scenario).map(FlowLine::new),
         };
         stack.spawn(0);
         stack
@@ -117,8 +117,8 @@ impl Stack {
         time.spawn(sophie_tasks::perching::servos::run(links, Port(board)));
         let decoder = Decoder::from_params(&links.params);
         time.spawn(sophie_tasks::pilot::rc::run(links, Port(board), decoder));
-        if let Some(below) = &self.below {
-            below.spawn(&time, links);
+        if let Some(module) = &self.flow_module {
+            module.spawn(&time, links);
         }
         time.spawn(sophie_tasks::pilot::commander::run(links));
         time.spawn(sophie_tasks::navigation::position::run(links));
@@ -146,17 +146,17 @@ impl Stack {
     /// The estimated position as one in the true axes.
     fn position(&self) -> Option<[f64; 3]> {
         let position = self.links.position.fresh().map(|e| e.position);
-        match &self.below {
-            Some(below) => {
+        match &self.flow_module {
+            Some(module) => {
                 let position = position.map(|p| DVec3::from_array(p.to_array().map(f64::from)));
-                below.in_world(position).map(|p| p.to_array())
+                module.in_world(position).map(|p| p.to_array())
             }
             None => self.in_world(position?),
         }
     }
 
-    /// Range and flow of the module below, each unless it is older than the link allows.
-    fn seen_below(&self) -> (Option<f64>, Option<[f64; 2]>) {
+    /// Range, m, and flow, rad/s, of the flow module; `None` if older than the link allows.
+    fn range_and_flow(&self) -> (Option<f64>, Option<[f64; 2]>) {
         let ground = &self.links.ground;
         let Some(Stamped { at, value: seen }) = ground.latest() else {
             return (None, None);
@@ -185,10 +185,10 @@ impl Aircraft for Stack {
     fn step_world(&mut self, plant: &mut Plant) {
         self.board.step_world(plant);
         if let Some(companion) = &mut self.companion {
-            companion.look(plant);
+            companion.step(plant);
         }
-        if let Some(below) = &mut self.below {
-            below.look(plant);
+        if let Some(module) = &mut self.flow_module {
+            module.step(plant);
         }
     }
 
@@ -205,10 +205,10 @@ impl Aircraft for Stack {
             live.begin(us)?;
         }
         if let (Some(companion), Some((_, start))) = (&mut self.companion, &self.running) {
-            companion.speak(us, *start);
+            companion.send(us, *start);
         }
-        if let Some(below) = &mut self.below {
-            below.speak(us);
+        if let Some(module) = &mut self.flow_module {
+            module.send(us);
         }
         if let Some((time, start)) = &self.running {
             time.run_until(us.saturating_sub(*start));
@@ -253,7 +253,7 @@ impl Aircraft for Stack {
             .unwrap_or_default();
         // The wanted heading arrives relative to the present one.
         let target = links.target.latest().map(|v| {
-            let [roll, pitch, ahead] = aim::angles(v.value);
+            let [roll, pitch, ahead] = target_angles::angles(v.value);
             let heading = scalar::wrap_pi(estimate.2 + ahead as f32);
             [roll, pitch, f64::from(heading)]
         });
@@ -266,7 +266,7 @@ impl Aircraft for Stack {
             .tendons
             .latest()
             .map_or([0.0; 4], |order| order.value.forces().arms.map(|arm| arm.force));
-        let (range, flow) = self.seen_below();
+        let (range, flow) = self.range_and_flow();
         Belief {
             attitude: [estimate.0, estimate.1, estimate.2].map(f64::from),
             setpoint: target.filter(|_| mix.running).unwrap_or([f64::NAN; 3]),
@@ -301,8 +301,8 @@ impl Aircraft for Stack {
         if let Some(companion) = &self.companion {
             companion.reset();
         }
-        if let Some(below) = &self.below {
-            below.reset();
+        if let Some(module) = &self.flow_module {
+            module.reset();
         }
         if cause.loses_memory() {
             let noise: [Words; 2] = core::array::from_fn(|_| core::array::from_fn(|_| self.noise.random()));

@@ -172,8 +172,8 @@ impl Body {
 mod tests {
     use glam::DQuat;
 
-    use super::super::arm::{Arm, ArmSpec, TIP, TIP_MASS};
     use super::super::contact::ARM_LENGTH;
+    use super::super::hinged::link::{Arm, ArmSpec, TIP, TIP_MASS};
     use super::super::{GRAVITY, STEP};
     use super::*;
 

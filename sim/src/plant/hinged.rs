@@ -1,8 +1,10 @@
 //! The arm on one hinge with its contacts.
 
+pub mod link;
+
 use glam::DVec3;
 
-use super::arm::{Arm, ArmSpec};
+use self::link::{Arm, ArmSpec};
 use super::body::Load;
 use super::contact::{ArmSkin, ArmTip, Pose, STATIONS};
 use super::flexible::{Acceleration, Carried, Carrier, Drive, Flexible, Nearby};

@@ -11,9 +11,9 @@ use super::{
     ArmBending, Assist, Assumed, Expect, Faults, Overrides, Pilot, Scenario, Sensors, ServoProfile, Step,
     Vehicle, World, read_steps,
 };
-use crate::plant::arm::TABLE_1;
 use crate::plant::body::BodySpec;
 use crate::plant::esc::EscSpec;
+use crate::plant::hinged::link::TABLE_1;
 use crate::plant::rotor::RotorSpec;
 
 /// The default mission, every key at its default.

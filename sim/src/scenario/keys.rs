@@ -6,8 +6,9 @@ use sophie_control::allocation::wrench::{Configuration, PerArm};
 use sophie_control::pilot::rc::ArmChoice;
 use sophie_mixers::Variant;
 
-use super::{Assist, BarometerFault, FlowFault, PoseFault, PositionSensor, Scenario, ServoProfile, faults};
-use crate::sbus;
+use super::faults;
+use super::{Assist, BarometerFault, FlowFault, PoseFault, PositionSensor, Scenario, ServoProfile};
+use crate::devices::sbus;
 
 /// One key.
 pub struct Key {

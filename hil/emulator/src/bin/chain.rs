@@ -6,9 +6,9 @@
 use std::path::Path;
 use std::process::ExitCode;
 
-use sophie_emulator::bench::Setup;
-use sophie_emulator::boards;
+use sophie_emulator::board_kind;
 use sophie_emulator::chain::{Functions, Window};
+use sophie_emulator::closed_loop::Setup;
 use sophie_emulator::elf::Firmware;
 use sophie_emulator::flight::{self, Flight};
 use sophie_emulator::plan::Plan;
@@ -52,7 +52,7 @@ fn count(arguments: &[String]) -> Result<bool, String> {
             ));
         }
     };
-    let mut firmware = Firmware::read(Path::new(elf), boards::find(board)?)?;
+    let mut firmware = Firmware::read(Path::new(elf), board_kind::find(board)?)?;
     firmware.count = Some(Window {
         from_ms: HOVERS,
         steps,

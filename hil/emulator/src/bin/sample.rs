@@ -8,12 +8,12 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
-use sophie_emulator::bench::Setup;
+use sophie_emulator::closed_loop::Setup;
 use sophie_emulator::elf::Firmware;
 use sophie_emulator::flight::{self, Flight};
 use sophie_emulator::plan::Plan;
 use sophie_emulator::terminal::Sockets;
-use sophie_emulator::{arguments, boards, compare};
+use sophie_emulator::{arguments, board_kind, compare};
 use sophie_report::terminal::complain;
 use sophie_sim::parallel;
 use sophie_sim::record::{FlightRecord, Silent};
@@ -69,7 +69,7 @@ fn main() -> ExitCode {
 }
 
 fn run(args: &Args) -> Result<bool, String> {
-    let board = boards::find(&args.board)?;
+    let board = board_kind::find(&args.board)?;
     arguments::check_speed(args.speed)?;
     let scenarios = args
         .seeds

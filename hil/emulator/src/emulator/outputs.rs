@@ -3,8 +3,8 @@
 use rigless::session::Session;
 use rigless::time::VirtualNanos;
 
-use super::board::Wired;
-use super::chip::Chip;
+use crate::boards::wired::Wired;
+use crate::processor::chip::Chip;
 use crate::wires::Output;
 
 /// Checked at each write to a port's register.

@@ -9,16 +9,16 @@ use rigless::session::Session;
 use rigless::soc::Width;
 use rigless::time::{NO_DEADLINE, VirtualNanos};
 
-use super::board::Wired;
-use super::chip::Chip;
-use super::chips::icm42688p::Sample;
-use super::h743::{H743, MATEK};
-use super::pads::At;
-use super::rtt::Rtt;
 use super::{MS, gaps};
-use crate::boards;
+use crate::board_kind;
+use crate::boards::h743::{H743, MATEK};
+use crate::boards::wired::Wired;
+use crate::chips::icm42688p::Sample;
 use crate::elf::Firmware;
 use crate::log::{Line, Log};
+use crate::processor::chip::Chip;
+use crate::processor::pads::At;
+use crate::processor::rtt::Rtt;
 use crate::suite::{self, Test};
 use crate::wires::Gap;
 
@@ -89,7 +89,7 @@ pub struct Ended {
 /// # Errors
 /// One line: what is wrong with the file.
 pub fn read(path: &Path) -> Result<Firmware, String> {
-    Firmware::read(path, boards::find(MATEK.name)?)
+    Firmware::read(path, board_kind::find(MATEK.name)?)
 }
 
 /// Runs `test` from power-on on a rig with `defect`.

@@ -9,9 +9,9 @@ use sophie_console::bringup::{self, STEPS};
 use sophie_console::port::PortName;
 use sophie_console::session::Session;
 use sophie_control::params::MotorMap;
-use sophie_emulator::bench::Setup;
+use sophie_emulator::bench_operator::Hands;
+use sophie_emulator::closed_loop::Setup;
 use sophie_emulator::flight::Stood;
-use sophie_emulator::hands::Hands;
 use sophie_emulator::terminal::Sockets;
 use sophie_emulator::wires::BoardFault;
 use sophie_sim::sensors::fsr;
@@ -70,7 +70,7 @@ fn walk(folder: &Folder, builder: impl FnOnce(Hands) -> Builder) -> Walked {
             .and_then(|mut session| bringup::run(&mut session, &mut builder, &protocol, &[]));
         (builder, all_passed)
     });
-    let firmware = Firmware::read(image(), boards::find("matek-h743").unwrap()).unwrap();
+    let firmware = Firmware::read(image(), board_kind::find("matek-h743").unwrap()).unwrap();
     let setup = Setup {
         speed: 1.0,
         plan: Plan::new([(0, Trouble::Board(BoardFault::FactoryOptions))]),

@@ -12,7 +12,7 @@ const STEPS: usize = 40;
 
 /// Requires at most `most` instructions per step from sensor transfer to motor frame, and a function for each.
 fn executes(image: &Path, board: &str, most: u64) {
-    let mut firmware = Firmware::read(image, boards::find(board).unwrap()).unwrap();
+    let mut firmware = Firmware::read(image, board_kind::find(board).unwrap()).unwrap();
     firmware.count = Some(Window {
         from_ms: (AIRBORNE * 1e3) as u64,
         steps: STEPS,

@@ -4,7 +4,7 @@ use std::io::{Read, Write};
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
 use std::time::Duration;
 
-use sophie_emulator::bench::Setup;
+use sophie_emulator::closed_loop::Setup;
 use sophie_emulator::terminal::{Sockets, Terminal};
 use sophie_emulator::wires::BoardFault;
 
@@ -98,7 +98,7 @@ pub(super) fn wake(user: &mut TcpStream) {
 fn a_parameter_set_and_saved_at_the_console_is_in_force_after_the_restart() {
     let (heard_at, telemetry) = terminal("--telemetry");
     let mut listener = TcpStream::connect((Ipv4Addr::LOCALHOST, heard_at)).unwrap();
-    let firmware = Firmware::read(image(), boards::find("matek-h743").unwrap()).unwrap();
+    let firmware = Firmware::read(image(), board_kind::find("matek-h743").unwrap()).unwrap();
     let session = |user: &mut TcpStream| {
         let before = volts(user);
         type_in(user, "set infill 8\r", "in force after save");
@@ -138,7 +138,7 @@ fn a_parameter_set_and_saved_at_the_console_is_in_force_after_the_restart() {
 
 /// On a new chip the level is set at the console once; the next start finds it.
 fn the_brown_out_level_is_set(image: &Path, board: &str) {
-    let firmware = Firmware::read(image, boards::find(board).unwrap()).unwrap();
+    let firmware = Firmware::read(image, board_kind::find(board).unwrap()).unwrap();
     let session = |user: &mut TcpStream| {
         let before = type_in(user, "brownout\r", "nothing else is changed");
         type_in(user, "brownout set\r", "restarting");
@@ -186,7 +186,7 @@ fn so_is_that_of_the_small_board_whose_encoding_is_the_opposite() {
 
 /// `dfu` restarts into the chip's loader, once: before the clocks, with its vector table.
 fn the_loader_is_entered(image: &Path, board: &str) {
-    let mut firmware = Firmware::read(image, boards::find(board).unwrap()).unwrap();
+    let mut firmware = Firmware::read(image, board_kind::find(board).unwrap()).unwrap();
     firmware.with_the_chips_loader().unwrap();
     let session = |user: &mut TcpStream| {
         while !type_in(user, "status\r", "up for").contains("DISARMED") {}
@@ -216,7 +216,7 @@ fn so_is_that_of_the_small_board() {
 
 #[test]
 fn a_motor_a_servo_live_numbers_and_the_self_test_are_tried_at_the_console() {
-    let firmware = Firmware::read(small_image(), boards::find("f405").unwrap()).unwrap();
+    let firmware = Firmware::read(small_image(), board_kind::find("f405").unwrap()).unwrap();
     let session = |user: &mut TcpStream| {
         while !type_in(user, "status\r", "up for").contains("DISARMED") {}
         type_in(

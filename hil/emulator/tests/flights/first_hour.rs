@@ -3,7 +3,7 @@
 use std::io::{Read, Write};
 use std::net::{Ipv4Addr, TcpStream};
 
-use sophie_emulator::bench::Setup;
+use sophie_emulator::closed_loop::Setup;
 use sophie_emulator::terminal::Sockets;
 use sophie_emulator::wires::BoardFault;
 
@@ -31,7 +31,7 @@ fn the_commands_of_the_page_have_the_answers_of_the_page_and_lead_to_the_first_h
         }
         script.len()
     });
-    let firmware = Firmware::read(image(), boards::find("matek-h743").unwrap()).unwrap();
+    let firmware = Firmware::read(image(), board_kind::find("matek-h743").unwrap()).unwrap();
     // A new board: no level set, nothing stored but the bench's level calibration.
     let mut scenario = unmarked(hop());
     scenario.steps.insert(0, Step::RadioOff { seconds: RADIO_OFF });

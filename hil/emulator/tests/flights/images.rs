@@ -3,7 +3,7 @@ use super::*;
 fn refused(name: &str, bytes: &[u8]) -> String {
     let path = std::env::temp_dir().join(format!("sophie-image-{}-{name}", std::process::id()));
     std::fs::write(&path, bytes).unwrap();
-    let board = boards::find("matek-h743").unwrap();
+    let board = board_kind::find("matek-h743").unwrap();
     let complaint = Firmware::read(&path, board).err().unwrap_or_default();
     std::fs::remove_file(&path).unwrap();
     assert!(
@@ -18,7 +18,7 @@ fn what_is_no_image_of_the_board_is_refused_in_one_line() {
     assert!(refused("text", b"no program").contains("is no ELF file"));
     let host = std::fs::read(std::env::current_exe().unwrap()).unwrap();
     assert!(refused("host", &host).contains("not for a 32-bit Arm"));
-    let board = boards::find("matek-h743").unwrap();
+    let board = board_kind::find("matek-h743").unwrap();
     let missing = Firmware::read(Path::new("/nowhere/image.elf"), board)
         .err()
         .unwrap();
@@ -48,11 +48,11 @@ fn what_is_no_image_of_the_board_is_refused_in_one_line() {
 
 #[test]
 fn an_image_of_another_board_is_refused() {
-    let complaint = Firmware::read(small_image(), boards::find("matek-h743").unwrap())
+    let complaint = Firmware::read(small_image(), board_kind::find("matek-h743").unwrap())
         .err()
         .unwrap();
     assert!(complaint.contains("where an STM32H743 has no RAM"), "{complaint}");
-    let complaint = Firmware::read(image(), boards::find("f405").unwrap())
+    let complaint = Firmware::read(image(), board_kind::find("f405").unwrap())
         .err()
         .unwrap();
     assert!(
@@ -64,7 +64,7 @@ fn an_image_of_another_board_is_refused() {
 #[test]
 fn an_image_that_a_loader_jumps_to_takes_its_vectors_from_its_own_table() {
     for (path, board) in [(image(), "matek-h743"), (small_image(), "f405")] {
-        let mut firmware = Firmware::read(path, boards::find(board).unwrap()).unwrap();
+        let mut firmware = Firmware::read(path, board_kind::find(board).unwrap()).unwrap();
         firmware.behind_a_loader().unwrap();
         let flight = fly_image(&firmware, &hover(5.0), 1.0, &[]);
         let log = log(&flight);

@@ -29,8 +29,8 @@ use std::process::Command;
 use std::sync::OnceLock;
 
 use sophie_control::params::ServoMarks;
-use sophie_emulator::bench::Setup;
-use sophie_emulator::boards;
+use sophie_emulator::board_kind;
+use sophie_emulator::closed_loop::Setup;
 use sophie_emulator::elf::Firmware;
 use sophie_emulator::flight::{self, Flight};
 use sophie_emulator::plan::{Plan, Trouble};
@@ -111,13 +111,13 @@ fn unmarked(mut scenario: Scenario) -> Scenario {
 
 /// On the H743; `troubles` with times in s.
 fn fly(scenario: &Scenario, speed: f64, troubles: &[(f64, Trouble)]) -> Flight {
-    let firmware = Firmware::read(image(), boards::find("matek-h743").unwrap()).unwrap();
+    let firmware = Firmware::read(image(), board_kind::find("matek-h743").unwrap()).unwrap();
     fly_image(&firmware, scenario, speed, troubles)
 }
 
 /// On the F405.
 fn fly_small(scenario: &Scenario, troubles: &[(f64, Trouble)]) -> Flight {
-    let firmware = Firmware::read(small_image(), boards::find("f405").unwrap()).unwrap();
+    let firmware = Firmware::read(small_image(), board_kind::find("f405").unwrap()).unwrap();
     fly_image(&firmware, scenario, 1.0, troubles)
 }
 

@@ -5,7 +5,7 @@ use std::net::{Ipv4Addr, TcpStream};
 
 use serde_json::Value;
 use sophie_control::params::Params;
-use sophie_emulator::bench::Setup;
+use sophie_emulator::closed_loop::Setup;
 use sophie_emulator::terminal::{Sockets, Terminal};
 
 use super::console::terminal;
@@ -71,7 +71,7 @@ fn flood(port: u16) {
 
 /// Flies a hop on `board` without and with a flood on the MAVLink line.
 fn a_flood_moves_nothing(board: &str, image: &Path) {
-    let firmware = Firmware::read(image, boards::find(board).unwrap()).unwrap();
+    let firmware = Firmware::read(image, board_kind::find(board).unwrap()).unwrap();
     let quiet = fly_with_client(&firmware, &hop(), true, None);
     let (port, client) = terminal("--mavlink");
     let client_thread = std::thread::spawn(move || flood(port));
@@ -125,7 +125,7 @@ fn nor_of_the_reference_board() {
 /// that printed.
 fn stand_with(client: impl FnOnce(u16) -> Value + Send + 'static) -> Value {
     clients::python();
-    let firmware = Firmware::read(image(), boards::find("matek-h743").unwrap()).unwrap();
+    let firmware = Firmware::read(image(), board_kind::find("matek-h743").unwrap()).unwrap();
     let (port, line) = terminal("--mavlink");
     let client = std::thread::spawn(move || client(port));
     let setup = Setup {
@@ -245,7 +245,7 @@ fn mavproxy_loads_restarts_and_saves_the_parameters_of_the_reference_board() {
 #[ignore = "minutes of emulated flight, and MAVSDK: .ci/campaign flies it"]
 fn mavsdk_arms_where_the_pilots_switch_is_on_and_grabs_in_the_air_alone() {
     clients::python();
-    let firmware = Firmware::read(image(), boards::find("matek-h743").unwrap()).unwrap();
+    let firmware = Firmware::read(image(), board_kind::find("matek-h743").unwrap()).unwrap();
     let (port, line) = terminal("--mavlink");
     let client = std::thread::spawn(move || {
         clients::run(

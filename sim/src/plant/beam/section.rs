@@ -4,8 +4,8 @@
 //! c1 T L²/2 + c2 T² L³/3; Eq. 1's A T + B T² therefore needs c1 = 2A/L², c2 = 3B/L³. A taper e(ξ) divides the curvature. As Eq. 1 is measured with the arm's
 //! weight on it, the moment counts from what weight alone does on a level bench.
 
-use super::super::arm::ArmSpec;
 use super::super::contact::ARM_LENGTH;
+use super::super::hinged::link::ArmSpec;
 use super::masses::{MIDDLE, Masses};
 use super::twist::TwistSpec;
 use super::{PerTerm, TERMS};

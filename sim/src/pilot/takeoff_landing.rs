@@ -2,7 +2,7 @@
 
 use sophie_control::mode::Mode;
 
-use super::itself::NEAR_SPEED;
+use super::autonomous::NEAR_SPEED;
 use super::mission::{Mission, Phase, Progress, View};
 use super::stick_dynamics::StickTarget;
 use crate::scenario::Assist;

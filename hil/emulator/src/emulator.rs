@@ -3,22 +3,9 @@
 //! The emulator's core has its own thread and calls back at each stop, where it waits for the next millisecond's
 //! [`Wires`]. The threads take turns, so a run is deterministic.
 
-mod board;
-mod chip;
-mod chips;
-mod clock_stretch;
 pub mod conformance;
-mod count;
-mod edge_probe;
-mod f405;
-mod h743;
-mod ignore_dma;
 mod outputs;
-mod pads;
 pub mod rig;
-mod rtt;
-mod serial;
-mod usb;
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -34,20 +21,21 @@ use sophie_control::allocation::wrench::PerArm;
 use sophie_control::params::{ArmBusSpeed, FlowPort, Params};
 use sophie_sim::plant::esc::EscSpec;
 
-use self::board::Wired;
-use self::chip::{Chip, Clock, Options};
-use self::chips::icm42688p::Sample;
-use self::chips::line::Line;
-use self::count::{Counter, Marks};
-use self::f405::F405;
-use self::h743::H743;
 use self::outputs::Outputs;
-use self::pads::Pads;
-use self::rtt::Rtt;
-use crate::boards::Kind;
+use crate::board_kind::Kind;
+use crate::boards::f405::{self, F405};
+use crate::boards::h743::{self, H743};
+use crate::boards::wired::Wired;
 use crate::chain::Counted;
+use crate::chips::icm42688p::Sample;
+use crate::chips::line::Line;
 use crate::elf::Firmware;
 use crate::esc::{self, Esc};
+use crate::processor::chip::{Chip, Clock, Options};
+use crate::processor::count::{Counter, Marks};
+use crate::processor::pads::Pads;
+use crate::processor::rtt::Rtt;
+use crate::processor::serial;
 use crate::stored;
 use crate::wires::{BoardFault, Digest, FarEnd, Gap, Hung, Latency, Pins, Reads, Run, Wires};
 

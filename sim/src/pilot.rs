@@ -5,11 +5,10 @@
 //! leaves him are channel frames of the radio. He knows nothing else, and the flight stack learns nothing of him but
 //! those bytes.
 
-mod air;
-mod ground;
+mod assisted;
+mod autonomous;
+mod free_flight;
 mod guidance;
-mod held;
-mod itself;
 mod limits;
 mod mission;
 mod perception;
@@ -17,6 +16,7 @@ mod perch;
 mod radio;
 mod referee;
 mod stick_dynamics;
+mod takeoff_landing;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]
@@ -34,7 +34,7 @@ use self::perception::Perception;
 pub use self::perch::throttle_on_pipe;
 use self::referee::Referee;
 use self::stick_dynamics::{StickDynamics, StickTarget};
-use crate::crsf::{FRAME_HZ, Frame, Telemetry, rc_frame};
+use crate::devices::crsf::{FRAME_HZ, Frame, Telemetry, rc_frame};
 use crate::record::Outcome;
 use crate::scenario::{Scenario, Step};
 

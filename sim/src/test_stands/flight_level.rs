@@ -1,6 +1,5 @@
 //! The flight level alone under given setpoints.
 
-use crate::aim;
 use crate::board::{Board, Port};
 use crate::clock::VirtualTime;
 use crate::mixers::{Mixer, Variant};
@@ -8,6 +7,7 @@ use crate::plant::Plant;
 use crate::plant::contact::Pose;
 use crate::scenario::Scenario;
 use crate::sensors::imu::Misfit;
+use crate::target_angles;
 use embassy_time::Instant;
 use sophie_control::allocation::mixer::Allocation;
 use sophie_control::allocation::wrench::Configuration;
@@ -243,7 +243,7 @@ impl Judged {
     fn add(&mut self, rig: &Rig) {
         let [roll, pitch, yaw] = rig.plant.euler();
         let target = rig.links.target.latest();
-        let off = roll - target.map_or(0.0, |v| aim::angles(v.value)[0]);
+        let off = roll - target.map_or(0.0, |v| target_angles::angles(v.value)[0]);
         for (worst, angle) in self.worst.iter_mut().zip([off, pitch, yaw]) {
             *worst = worst.max(angle.abs());
         }

@@ -2,7 +2,7 @@
 
 use sophie_control::mode::{Mode, Reason};
 
-use super::held::CENTRE;
+use super::assisted::CENTRE;
 use super::mission::{Mission, Phase, Progress, View};
 use super::stick_dynamics::StickTarget;
 use crate::scenario::Step;

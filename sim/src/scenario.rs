@@ -252,7 +252,7 @@ pub struct Sensors {
     pub barometer: bool,
     /// How it fails then.
     pub barometer_fault: BarometerFault,
-    /// Sensors that answer in the slots behind each frame of an SBUS receiver, 0 to [`crate::sbus::SLOTS`]; 0: none has slots.
+    /// Sensors that answer in the slots behind each frame of an SBUS receiver, 0 to [`crate::devices::sbus::SLOTS`]; 0: none has slots.
     pub sbus_slots: f64,
 }
 

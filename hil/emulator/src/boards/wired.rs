@@ -7,18 +7,18 @@ use rigless::snapshot::{Error, Reader, Store, Writer};
 use rigless::time::VirtualNanos;
 use sophie_control::params::ArmBusSpeed;
 
-use super::chip::{Chip, Options};
-use super::chips::bno055::Bno055;
-use super::chips::dps310::Barometer;
-use super::chips::icm42688p::Imu;
-use super::chips::line::Line;
-use super::edge_probe::Edge;
-use super::pads::{At, Pads};
-use super::serial::Setup;
+use crate::chips::bno055::Bno055;
+use crate::chips::dps310::Barometer;
+use crate::chips::icm42688p::Imu;
+use crate::chips::line::Line;
+use crate::processor::chip::{Chip, Options};
+use crate::processor::edge_probe::Edge;
+use crate::processor::pads::{At, Pads};
+use crate::processor::serial::Setup;
 
 #[derive(Debug)]
 pub struct Wired<C> {
-    pub(super) chip: C,
+    pub(crate) chip: C,
     pads: &'static Pads,
     core: rigless::emulator::CoreSpec,
     dividers: [f64; 4],

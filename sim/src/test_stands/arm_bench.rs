@@ -12,13 +12,13 @@ use sophie_control::gripper::tendon::{Drive, Reel, TendonDrive};
 use sophie_control::gripper::{ArmGripper, ArmInput, Config, Pressure};
 use sophie_control::params::Params;
 
-use crate::plant::arm::ArmSpec;
 use crate::plant::beam::rest::pipe_under;
 use crate::plant::beam::{BeamArm, BeamSpec, Masses};
 use crate::plant::body::{BodySpec, Load};
 use crate::plant::contact::{Pipe, Pose};
 use crate::plant::flexible::{Acceleration, Carrier, Drive as Driven, Flexible, Nearby};
 use crate::plant::hinged::HingedArm;
+use crate::plant::hinged::link::ArmSpec;
 use crate::plant::tendon::{ServoSpec, Tendon, TendonSpec};
 use crate::plant::{GRAVITY, STEP};
 use crate::scenario::ArmBending;

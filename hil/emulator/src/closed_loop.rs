@@ -1,6 +1,7 @@
 //! The emulated board as the aircraft of a flight.
 
 use std::collections::{BTreeMap, VecDeque};
+use std::iter;
 
 use sophie_control::allocation::motor_map::at_rotors;
 use sophie_control::allocation::thrust_curve::ThrustCurve;
@@ -12,7 +13,8 @@ use sophie_control::mode::Mode;
 use sophie_control::params::{FlowPort, Params, RcProtocol};
 use sophie_control::pilot::rc::Sticks;
 use sophie_drivers::sbus;
-use sophie_sim::crsf::Telemetry;
+use sophie_sim::devices::crsf::Telemetry;
+use sophie_sim::devices::flow_module::FlowSender;
 use sophie_sim::flight::aircraft::{Aircraft, Belief, Reset, Said};
 use sophie_sim::plant::{Actuators, Plant};
 use sophie_sim::scenario::Scenario;
@@ -20,11 +22,10 @@ use sophie_tasks::pilot::telemetry::parse_mode_text;
 use sophie_tasks::start::StartCause;
 use uf_crsf::{CrsfParser, Packet};
 
-use crate::below::Module;
+use crate::bench_operator::Hands;
 use crate::elf::Firmware;
 use crate::emulator::{Emulator, Settings};
 use crate::esc::SILENCE;
-use crate::hands::Hands;
 use crate::log::{Line, Log};
 use crate::plan::Plan;
 use crate::sensors::Sensors;
@@ -42,7 +43,7 @@ pub struct Bench<'a> {
     firmware: &'a Firmware,
     settings: Settings,
     sensors: Sensors,
-    below: Option<Module>,
+    flow_module: Option<FlowSender>,
     /// `None`: the vehicle is left to itself.
     hands: Option<Hands>,
     plan: Plan,
@@ -131,13 +132,13 @@ impl<'a> Bench<'a> {
         let Setup { speed, plan, sockets } = setup;
         let sensors = Sensors::new(scenario);
         let [accel_bias_x, accel_bias_y, accel_bias_z] = sensors.calibration;
-        let below = Module::of(scenario);
+        let flow_module = FlowSender::of(scenario);
         let params = Params {
             accel_bias_x,
             accel_bias_y,
             accel_bias_z,
             // The simulated board has its module's task without it.
-            flow_port: below
+            flow_port: flow_module
                 .as_ref()
                 .map_or(scenario.params.flow_port, |_| FlowPort::Msp),
             ..scenario.params
@@ -151,7 +152,7 @@ impl<'a> Bench<'a> {
                 esc: scenario.vehicle.esc,
             },
             sensors,
-            below,
+            flow_module,
             hands: None,
             plan,
             wires: Wires::default(),
@@ -301,9 +302,10 @@ impl Aircraft for Bench<'_> {
         }
         self.sensors
             .step(plant, &actuators, held.as_ref(), &mut self.wires);
-        if let Some(below) = &mut self.below {
-            below.look(plant);
-            self.wires.ground = below.speaks(self.pins.ms * 1000);
+        if let Some(module) = &mut self.flow_module {
+            module.step(plant);
+            let frames = iter::from_fn(|| module.take(self.pins.ms * 1000));
+            self.wires.ground = frames.flatten().collect();
         }
         self.watched.tilt = plant.tilt();
         self.watched.voltage = plant.battery_voltage();
@@ -522,7 +524,7 @@ mod tests {
             roll: 0.5,
             ..Sticks::default()
         };
-        let read = sticks(RcProtocol::Crsf, &sophie_sim::crsf::rc_frame(&sent)).unwrap();
+        let read = sticks(RcProtocol::Crsf, &sophie_sim::devices::crsf::rc_frame(&sent)).unwrap();
         assert!((read.roll - 0.5).abs() < 0.02);
         assert!(sticks(RcProtocol::Crsf, &[1, 2, 3]).is_none());
         let frame = sbus::Frame {

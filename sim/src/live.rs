@@ -2,9 +2,7 @@
 
 mod chip;
 mod flight;
-pub(crate) mod line;
 mod pace;
-pub(crate) mod stored;
 mod udp;
 
 use std::cell::Cell;
@@ -13,17 +11,17 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use self::chip::ThisChip;
 pub use self::flight::LiveFlight;
-use self::line::{Line, LinePort};
 pub use self::pace::Pace;
-use self::stored::{Memory, Port};
 pub use self::udp::Udp;
 use crate::clock::VirtualTime;
+use crate::devices::line::Line;
+use crate::devices::mavlink_server;
+use crate::devices::storage::{Memory, Port};
 use sophie_control::params::Params;
-use sophie_tasks::ground_station::console_pipe::Shell;
+use sophie_tasks::console;
 pub use sophie_tasks::ground_station::mavlink::signing::Key;
 use sophie_tasks::ground_station::mavlink::signing::Record;
 use sophie_tasks::links::Links;
-use sophie_tasks::{console, ground_station::mavlink};
 
 /// What ends a flight before its mission is over, in the report.
 const STOPPED: &str = "stopped from outside";
@@ -76,22 +74,8 @@ impl Live {
                 signing: Cell::new(key.map(Record::fresh)),
             }))
         });
-        let (line, port) = (self.line, LinePort(self.line));
-        let lines = mavlink::Lines {
-            inputs: [port],
-            outputs: [port],
-            bytes_per_second: [BYTES_PER_SECOND],
-        };
-        // As every other part of the board: for one start.
-        let shell: &'static Shell = Box::leak(Box::default());
-        time.spawn(mavlink::run(
-            links,
-            lines,
-            shell,
-            Port(stored),
-            || line.restart(),
-            stored.key(),
-        ));
+        let line = self.line;
+        let shell = mavlink_server::spawn(time, links, line, BYTES_PER_SECOND, stored, || line.restart());
         let chip = ThisChip(line);
         time.spawn(console::run(
             links,

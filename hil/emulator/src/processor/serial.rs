@@ -5,7 +5,7 @@ use std::fmt::{self, Display, Formatter};
 
 use sophie_control::params::RcProtocol;
 
-use crate::boards::Kind;
+use crate::board_kind::Kind;
 
 /// Tolerance of an asynchronous line.
 const RATE_ERROR: f64 = 0.02;

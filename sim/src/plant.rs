@@ -4,7 +4,6 @@
 //! Semi-implicit Euler at 2 kHz: the fastest contact and arm modes are below 50 Hz. Body axes FRD, world NED. Shares
 //! with the flight stack only constants of the hardware.
 
-pub mod arm;
 pub mod battery;
 pub mod beam;
 pub mod body;
@@ -22,7 +21,6 @@ pub mod tendon;
 use glam::{DQuat, DVec3};
 use sophie_control::allocation::wrench::PerArm;
 
-use self::arm::{ArmPrint, ArmSpec, TIP};
 use self::battery::Battery;
 use self::beam::{BeamArm, BeamSpec, Masses};
 use self::body::{Body, BodyState, Load};
@@ -30,6 +28,7 @@ use self::contact::{Belly, Pipe, Pose, Surface};
 use self::flexible::{Carrier, Drive, Flexible, Nearby};
 use self::gust::Gust;
 use self::hinged::HingedArm;
+use self::hinged::link::{ArmPrint, ArmSpec, TIP};
 use self::rotor::Rotor;
 use self::servo_power::MG996R;
 use self::tendon::{ServoSpec, Tendon, TendonSpec};

@@ -7,9 +7,9 @@ mod statics;
 
 use glam::DVec3;
 
-use super::super::arm::{ArmPrint, ArmSpec};
 use super::super::body::{Body, BodySpec, Load};
 use super::super::flexible::{Acceleration, Carrier, Drive, Flexible, Nearby};
+use super::super::hinged::link::{ArmPrint, ArmSpec};
 use super::super::{GRAVITY, STEP};
 use super::{BeamArm, BeamSpec, Masses};
 

@@ -5,7 +5,7 @@ use glam::DVec2;
 use sophie_control::mode::Mode;
 use sophie_control::position_hold::{CLIMB_MAX, SPEED_MAX};
 
-use super::air::{REACHED, REACHED_SPEED};
+use super::free_flight::{REACHED, REACHED_SPEED};
 use super::mission::{Mission, Phase, Progress, View};
 use super::stick_dynamics::StickTarget;
 

@@ -9,7 +9,7 @@ use sophie_control::allocation::wrench::PerArm;
 use sophie_control::calibration::Face;
 use sophie_control::params::MotorMap;
 use sophie_control::pilot::rc::Sticks;
-use sophie_sim::crsf;
+use sophie_sim::devices::crsf;
 use sophie_sim::plant::Plant;
 
 use crate::wires::Pins;

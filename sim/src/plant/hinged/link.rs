@@ -7,11 +7,11 @@
 use glam::DVec3;
 use sophie_control::allocation::wrench::{FORE, SIDE};
 
-use super::GRAVITY;
-use super::body::{ArmPoint, Load};
-use super::contact::{ARM_LENGTH, ARM_X, BELLY_Z, HINGE_Z};
-use super::flexible::{Acceleration, Carried, Carrier};
-use super::mass_matrix::MassMatrix;
+use crate::plant::GRAVITY;
+use crate::plant::body::{ArmPoint, Load};
+use crate::plant::contact::{ARM_LENGTH, ARM_X, BELLY_Z, HINGE_Z};
+use crate::plant::flexible::{Acceleration, Carried, Carrier};
+use crate::plant::mass_matrix::MassMatrix;
 
 /// Motor, propeller and the arm's share, kg (assumed; gives 5 Hz in hover).
 pub const TIP_MASS: f64 = 0.077;
@@ -276,8 +276,8 @@ impl Carried for Arm {
 
 #[cfg(test)]
 mod tests {
-    use super::super::STEP;
     use super::*;
+    use crate::plant::STEP;
 
     fn spec() -> ArmSpec {
         ArmSpec::new(6.9, 7.75, 1.0, 0.0, 0.15)

@@ -262,7 +262,7 @@ fn a_vehicle_that_loads_can_be_stepped() {
                 // Mostly near the paper's: others rarely rise with thrust.
                 Kind::PerArm(..) if key.name.ends_with("coefficients") && draw % 8 != 0 => {
                     let mut near = |x: f64| x * rng.random_range(0.2..3.0);
-                    format!("{:?}", crate::plant::arm::TABLE_1.map(&mut near))
+                    format!("{:?}", crate::plant::hinged::link::TABLE_1.map(&mut near))
                 }
                 Kind::Number(range, _) => format!("{:?}", any(range)),
                 Kind::PerArm(range, _) => format!("{:?}", [(); 4].map(|()| any(range))),

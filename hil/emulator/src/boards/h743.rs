@@ -29,18 +29,18 @@ use sophie_control::params::ArmBusSpeed;
 
 use self::i2c::EagerI2c;
 use self::watchdog::Watchdog;
-use super::chip::{CRYSTAL_READY, Chip, Clock, Options, PLL_LOCKED, same_on_this_part};
-use super::chips::bno055::Bno055;
-use super::chips::dps310::Barometer;
-use super::chips::icm42688p::Imu;
-use super::chips::line::Line;
-use super::clock_stretch::ClockStretch;
-use super::count::Marks;
-use super::edge_probe::{Edge, EdgeProbe};
-use super::ignore_dma::IgnoreDma;
-use super::pads::{AnalogPad, At, Pads, ServoPin, TimerPins};
-use super::serial::Setup;
-use super::usb::UsbCore;
+use crate::chips::bno055::Bno055;
+use crate::chips::dps310::Barometer;
+use crate::chips::icm42688p::Imu;
+use crate::chips::line::Line;
+use crate::processor::chip::{CRYSTAL_READY, Chip, Clock, Options, PLL_LOCKED, same_on_this_part};
+use crate::processor::clock_stretch::ClockStretch;
+use crate::processor::count::Marks;
+use crate::processor::edge_probe::{Edge, EdgeProbe};
+use crate::processor::ignore_dma::IgnoreDma;
+use crate::processor::pads::{AnalogPad, At, Pads, ServoPin, TimerPins};
+use crate::processor::serial::Setup;
+use crate::processor::usb::UsbCore;
 
 /// Supply and converter reference, mV.
 const SUPPLY: u32 = 3300;

@@ -8,13 +8,13 @@ use rigless::mcu::Mcu;
 use rigless::time::VirtualNanos;
 use sophie_control::params::ArmBusSpeed;
 
-use super::chips::bno055::Bno055;
-use super::chips::dps310::Barometer;
-use super::chips::icm42688p::Imu;
-use super::chips::line::Line;
 use super::edge_probe::Edge;
 use super::pads::{At, Pads, ServoPin};
 use super::serial::Setup;
+use crate::chips::bno055::Bno055;
+use crate::chips::dps310::Barometer;
+use crate::chips::icm42688p::Imu;
+use crate::chips::line::Line;
 
 /// Contents of the option bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -242,4 +242,4 @@ macro_rules! same_on_this_part {
     };
 }
 
-pub(super) use same_on_this_part;
+pub(crate) use same_on_this_part;

@@ -1,12 +1,10 @@
 //! Flies a scenario: world, board, tasks and pilot in lockstep under virtual time.
 
 pub mod aircraft;
-mod below;
-mod companion;
+mod failure_detail;
 mod judge;
 mod recorder;
 pub mod stack;
-mod why;
 
 use std::time::Instant as WallInstant;
 
@@ -17,10 +15,10 @@ use self::aircraft::Aircraft;
 use self::judge::Judge;
 use self::recorder::{Ending, Recorder};
 use self::stack::Stack;
+use crate::devices::sbus::Receiver;
 use crate::pilot::{Pilot, PilotOutput, Seen};
 use crate::plant::Plant;
 use crate::record::{FlightRecord, Observer, Outcome};
-use crate::sbus::Receiver;
 use crate::scenario::{Scenario, Step};
 
 /// Milliseconds between two calls of [`Observer::progress`].
@@ -167,7 +165,7 @@ impl<A: Aircraft> World<A> {
         }
         if !outcome.accomplished {
             let step = scenario.steps.get(began.0);
-            outcome.reason += &why::detail(scenario, step, recorder.samples(), &outcome.reason);
+            outcome.reason += &failure_detail::detail(scenario, step, recorder.samples(), &outcome.reason);
         }
         let ending = Ending {
             outcome,

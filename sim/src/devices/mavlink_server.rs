@@ -1,0 +1,37 @@
+//! The simulated board's MAVLink server on a line.
+
+use sophie_tasks::ground_station::console_pipe::Shell;
+use sophie_tasks::ground_station::mavlink;
+use sophie_tasks::links::Links;
+
+use super::line::{Line, LinePort};
+use super::storage::{Memory, Port};
+use crate::clock::VirtualTime;
+
+/// Spawns the server on `line` for one start of the board. It sends at most `bytes_per_second`, stores parameters and
+/// key in `memory`, and calls `restart` if a client orders a restart. Returns the pipe to the console.
+pub(crate) fn spawn(
+    time: &VirtualTime,
+    links: &'static Links,
+    line: &'static Line,
+    bytes_per_second: u32,
+    memory: &'static Memory,
+    restart: impl FnMut() + 'static,
+) -> &'static Shell {
+    let port = LinePort(line);
+    let lines = mavlink::Lines {
+        inputs: [port],
+        outputs: [port],
+        bytes_per_second: [bytes_per_second],
+    };
+    let shell: &'static Shell = Box::leak(Box::default());
+    time.spawn(mavlink::run(
+        links,
+        lines,
+        shell,
+        Port(memory),
+        restart,
+        memory.key(),
+    ));
+    shell
+}
