@@ -16,8 +16,8 @@ use self::pose::{ExternalPose, Pose};
 use crate::dialect::{
     DISTANCE_SENSOR_DATA, LANDING_TARGET_DATA, OPTICAL_FLOW_RAD_DATA, SET_ATTITUDE_TARGET_DATA,
 };
-use crate::frame::SYSTEM;
-use crate::requests::Peer;
+use crate::wire::frame::SYSTEM;
+use crate::wire::requests::Peer;
 use sophie_control::ground::{Flow, GroundView, Range};
 use sophie_control::params::{FlowPort, Params};
 use sophie_control::target::PipeTarget;

@@ -13,7 +13,6 @@
     clippy::panic
 )]
 
-pub mod budget;
 #[allow(
     missing_docs,
     non_camel_case_types,
@@ -24,21 +23,13 @@ pub mod budget;
     reason = "generated"
 )]
 pub mod dialect;
-pub mod files;
-pub mod frame;
-pub mod ftp;
 pub mod inputs;
-pub mod messages;
-pub mod parameters;
-pub mod parser;
-pub mod requests;
 pub mod server;
-pub mod signing;
-pub mod sorter;
-pub mod streams;
-pub mod texts;
+pub mod services;
 pub mod vehicle;
+pub mod wire;
 
-pub use self::server::{Order, Requests, Server};
-pub use self::signing::Signing;
+pub use self::server::{Order, Server};
+pub use self::services::commands::orders::Requests;
 pub use self::vehicle::{Answers, Condition, Vehicle};
+pub use self::wire::signing::Signing;

@@ -42,7 +42,7 @@ use sophie_control::wrench::PerArm;
 use sophie_mavlink::inputs::Counts;
 pub use sophie_mavlink::inputs::attitude::OffboardAttitude;
 pub use sophie_mavlink::inputs::pose::ExternalPose;
-use sophie_mavlink::signing::{Refused, Signing, Stored};
+use sophie_mavlink::wire::signing::{Refused, Signing, Stored};
 
 use crate::histogram::Histogram;
 use crate::last_value::{LastValue, Receiver};

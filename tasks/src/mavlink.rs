@@ -19,10 +19,10 @@ use sophie_control::motor_pulses::MotorPulses;
 use sophie_control::params::Params;
 use sophie_control::tendon::Reel;
 use sophie_control::wrench::PerArm;
-use sophie_mavlink::frame::LONGEST;
 use sophie_mavlink::inputs::Inputs;
-pub use sophie_mavlink::signing;
-use sophie_mavlink::signing::Stored;
+use sophie_mavlink::wire::frame::LONGEST;
+pub use sophie_mavlink::wire::signing;
+use sophie_mavlink::wire::signing::Stored;
 use sophie_mavlink::{Answers, Condition, Order, Requests, Server, Signing, Vehicle};
 
 use crate::deadline::{FixedRate, TaskId, Tick};

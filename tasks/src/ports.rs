@@ -9,7 +9,7 @@ use sophie_control::ground::GroundView;
 use sophie_control::params::Params;
 use sophie_control::vector::Vec3;
 use sophie_control::wrench::PerArm;
-use sophie_mavlink::signing::{Record, Stored};
+use sophie_mavlink::wire::signing::{Record, Stored};
 
 use crate::links::RcState;
 use crate::retained_state::Words;

@@ -12,7 +12,7 @@ use sophie_control::params::{MotorProtocol, Params};
 use sophie_control::rc::{ArmChoice, StickMode, Sticks};
 use sophie_control::vector::{Quat, Vec3};
 use sophie_mavlink::Vehicle;
-use sophie_mavlink::messages::*;
+use sophie_mavlink::services::telemetry::*;
 
 use sophie_mavlink::dialect::*;
 

@@ -10,7 +10,7 @@ use sophie_mavlink::dialect::*;
 use crate::station::{Station, frame, frame_from, vehicle};
 
 fn id(name: &str) -> mavlink_core::types::CharArray<16> {
-    sophie_mavlink::messages::text::<16>(name).into()
+    sophie_mavlink::services::telemetry::text::<16>(name).into()
 }
 
 fn set(station: &mut Station, name: &str, value: f32) {

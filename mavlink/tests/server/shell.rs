@@ -2,7 +2,7 @@
 
 use mavlink_core::MessageData;
 use sophie_mavlink::dialect::{HEARTBEAT_DATA, SERIAL_CONTROL_DATA};
-use sophie_mavlink::server::shell::{CHUNK, HANG_UP, TYPED};
+use sophie_mavlink::services::shell::{CHUNK, HANG_UP, TYPED};
 
 use crate::station::{PLENTY, Station, frame, frame_from};
 

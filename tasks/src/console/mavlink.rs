@@ -2,7 +2,7 @@
 
 use sophie_control::arming::ArmingInhibit;
 use sophie_mavlink::inputs::Counts;
-use sophie_mavlink::signing::{Key, Record, Refused, Stored};
+use sophie_mavlink::wire::signing::{Key, Record, Refused, Stored};
 
 use super::Console;
 use crate::links::{LineState, SigningState};

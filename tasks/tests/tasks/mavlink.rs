@@ -13,7 +13,7 @@ use sophie_mavlink::dialect::{
     COMMAND_LONG_DATA, HEARTBEAT_DATA, ODOMETRY_DATA, PARAM_SET_DATA, SERIAL_CONTROL_DATA,
     SET_ATTITUDE_TARGET_DATA,
 };
-use sophie_mavlink::signing::{Key, Record, Refused, Signing, Stored};
+use sophie_mavlink::wire::signing::{Key, Record, Refused, Signing, Stored};
 use sophie_tasks::console;
 use sophie_tasks::links::{LineState, Links, SigningState, Status};
 use sophie_tasks::mavlink::{self, Lines};

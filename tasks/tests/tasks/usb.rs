@@ -5,7 +5,7 @@ use mavlink_core::{MAVLinkV1MessageRaw, MAVLinkV2MessageRaw, MavHeader, MessageD
 use sophie_control::mode::Mode;
 use sophie_fakes::FakeLine;
 use sophie_mavlink::dialect::{HEARTBEAT_DATA, PARAM_REQUEST_LIST_DATA, PARAM_SET_DATA, SERIAL_CONTROL_DATA};
-use sophie_mavlink::signing::Stored;
+use sophie_mavlink::wire::signing::Stored;
 use sophie_tasks::deadline::TaskId;
 use sophie_tasks::links::{Links, Status as Commander};
 use sophie_tasks::mavlink::{self, Lines};

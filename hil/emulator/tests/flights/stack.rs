@@ -10,8 +10,8 @@ use sophie_emulator::bench::Setup;
 use sophie_emulator::silicon;
 use sophie_emulator::terminal::Sockets;
 use sophie_mavlink::dialect::{FILE_TRANSFER_PROTOCOL_DATA, HEARTBEAT_DATA, PARAM_REQUEST_LIST_DATA};
-use sophie_mavlink::frame::Encoder;
-use sophie_mavlink::ftp::PAYLOAD;
+use sophie_mavlink::services::ftp::PAYLOAD;
+use sophie_mavlink::wire::frame::Encoder;
 use sophie_sim::scenario::World;
 
 use super::console::terminal;

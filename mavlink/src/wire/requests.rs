@@ -3,7 +3,7 @@
 use mavlink_core::{MavlinkVersion, MessageData};
 
 use crate::dialect::*;
-use crate::frame::{COMPONENT, Frame, SYSTEM};
+use crate::wire::frame::{COMPONENT, Frame, SYSTEM};
 
 /// Who asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -8,7 +8,7 @@
 use sha2::{Digest, Sha256};
 
 use crate::dialect::HEARTBEAT_DATA;
-use crate::frame::{Frame, SIGNATURE};
+use crate::wire::frame::{Frame, SIGNATURE};
 use mavlink_core::MessageData;
 
 /// Bytes of the signature proper, the last of a frame.

@@ -5,7 +5,7 @@
 use mavlink_core::MessageData;
 
 use crate::dialect::*;
-use crate::frame::OVERHEAD;
+use crate::wire::frame::OVERHEAD;
 
 /// A message that is sent again and again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

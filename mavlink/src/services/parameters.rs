@@ -6,7 +6,7 @@
 use sophie_control::params::{ParamError, Params};
 
 use crate::dialect::{MavParamType, PARAM_VALUE_DATA};
-use crate::messages::text;
+use crate::services::telemetry::text;
 
 /// Time from the last change to storing, µs.
 const SETTLE: u64 = 1_000_000;

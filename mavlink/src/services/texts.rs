@@ -7,7 +7,7 @@ use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
 use sophie_control::mode::{Mode, Reason};
 
 use crate::dialect::{MavSeverity, STATUSTEXT_DATA};
-use crate::messages::text;
+use crate::services::telemetry::text;
 use crate::vehicle::{Condition, Vehicle};
 
 /// Longest text of one message.
