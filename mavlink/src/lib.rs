@@ -4,8 +4,6 @@
 //! (`sophie_tasks::mavlink`) fills in the [`vehicle::Vehicle`] and moves the bytes. `docs/mavlink.md` has the messages.
 
 #![no_std]
-// The generated messages ask for features of the generator's own crate, which there are not here.
-#![allow(unexpected_cfgs)]
 #![deny(
     clippy::indexing_slicing,
     clippy::unwrap_used,
@@ -13,16 +11,6 @@
     clippy::panic
 )]
 
-#[allow(
-    missing_docs,
-    non_camel_case_types,
-    clippy::all,
-    clippy::panic,
-    clippy::indexing_slicing,
-    clippy::unwrap_used,
-    reason = "generated"
-)]
-pub mod dialect;
 pub mod inputs;
 pub mod server;
 pub mod services;

@@ -6,7 +6,6 @@ use mavlink_core::MessageData;
 use sophie_control::mode::Mode;
 use sophie_control::params::Params;
 
-use crate::dialect::*;
 use crate::inputs::Inputs;
 use crate::inputs::pose::Pose;
 use crate::services::Services;
@@ -20,6 +19,7 @@ use crate::wire::frame::{Encoder, Frame};
 use crate::wire::parser::Parser;
 use crate::wire::requests::{Peer, Request, request};
 use crate::wire::signing::Signing;
+use sophie_dialect::*;
 
 /// Silence of all others after which the next heartbeat is someone new's, µs.
 const FORGOTTEN: u64 = 5_000_000;
@@ -178,8 +178,7 @@ impl Server {
             | Request::Mocap(_)
             | Request::Flow(_)
             | Request::Range(_)
-            | Request::Target(_)
-            | Request::Attitude(_) => (),
+            | Request::PipeTarget(_) => (),
             Request::Command(command) => {
                 if let Some(reply) = self.services.command(command, from, now, vehicle) {
                     self.services.acknowledge(command.number, from, reply.result, 0);
@@ -254,8 +253,7 @@ fn measured(inputs: &mut Inputs, said: &Request, from: Peer, now: u64) -> bool {
         Request::Mocap(m) => inputs.pose(Pose::mocap(m), ATT_POS_MOCAP_DATA::ID, m.time_usec, from, now),
         Request::Flow(m) => inputs.flow(m, from, now),
         Request::Range(m) => inputs.range(m, from, now),
-        Request::Target(m) => inputs.target(m, from, now),
-        Request::Attitude(m) => inputs.attitude(m, from, now),
+        Request::PipeTarget(m) => inputs.target(m, from, now),
         _ => false,
     }
 }

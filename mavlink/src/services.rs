@@ -22,8 +22,8 @@ use self::parameters::Parameters;
 use self::shell::Shell;
 use self::streams::Schedule;
 use self::texts::Texts;
-use crate::dialect::MavResult;
 use crate::wire::requests::Peer;
+use sophie_dialect::MavResult;
 
 /// Answers that wait at most. An answer that finds no room is dropped; its station asks again.
 const ANSWERS: usize = 12;

@@ -40,7 +40,6 @@ pub use sophie_control::setpoint::{ClampCommand, Setpoint};
 pub use sophie_control::target::PipeTarget;
 use sophie_control::wrench::PerArm;
 use sophie_mavlink::inputs::Counts;
-pub use sophie_mavlink::inputs::attitude::OffboardAttitude;
 pub use sophie_mavlink::inputs::pose::ExternalPose;
 use sophie_mavlink::wire::signing::{Refused, Signing, Stored};
 
@@ -434,8 +433,6 @@ links! {
     pipe_target: PipeTarget, Mavlink to "commander", stale after 1500 ms;
     /// What of pose, flow, range and air pressure is wrong and left out, as long as it is.
     position_fault: Fault, Position to "commander, console", stale after 50 ms;
-    /// The attitude that another computer wishes, as it sends it; nothing flies by it.
-    offboard: OffboardAttitude, Mavlink to "console", stale after 500 ms;
     /// What the MAVLink line is like.
     mavlink: LineState, Mavlink to "console", stale after 200 ms;
     /// What a ground station orders beside the pilot, renewed until it is answered; an order is obeyed once.

@@ -340,9 +340,6 @@ fn publish(links: &Links, inputs: &mut Inputs, now: u64) {
     if let Some(view) = inputs.take_ground() {
         links.ground.send(Instant::from_micros(now), view);
     }
-    if let Some((at, attitude)) = inputs.take_attitude() {
-        links.offboard.send(Instant::from_micros(at), attitude);
-    }
 }
 
 /// Stores the bound of signing's times again where little is left of it; arming is refused meanwhile.

@@ -4,7 +4,6 @@ use mavlink_core::MessageData;
 use sophie_control::mode::Mode;
 
 use super::Server;
-use crate::dialect::*;
 use crate::inputs::Inputs;
 use crate::services::answer::Answer;
 use crate::services::files::{GENERAL_CRC, GENERAL_URI};
@@ -14,6 +13,7 @@ use crate::vehicle::Vehicle;
 use crate::wire::budget::RESERVE;
 use crate::wire::frame::{Encoder, SIGNATURE};
 use crate::wire::signing::{Refused, Signing};
+use sophie_dialect::*;
 
 impl Server {
     /// The next frame that is due and within the budget at `now`, µs since the start.

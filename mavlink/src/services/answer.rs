@@ -1,9 +1,9 @@
 //! Answers to those who asked, kept until there is room on the line.
 
-use crate::dialect::*;
 use crate::services::parameters::Place;
 use crate::services::streams::{STREAMS, frame_bytes};
 use crate::wire::requests::Peer;
+use sophie_dialect::*;
 
 /// What is to be said to someone who asked.
 #[derive(Clone, Debug, PartialEq)]

@@ -8,10 +8,10 @@ mod restart;
 
 pub use self::obeyed::{OBEYED, Obeyed, When};
 use super::answer::Answer;
-use crate::dialect::*;
 use crate::services::Services;
 use crate::vehicle::Vehicle;
 use crate::wire::requests::{Command, Peer};
+use sophie_dialect::*;
 
 /// What a command is answered with.
 pub(crate) struct Reply {

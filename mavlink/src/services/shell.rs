@@ -2,8 +2,8 @@
 
 use heapless::Vec;
 
-use crate::dialect::{SERIAL_CONTROL_DATA, SerialControlDev, SerialControlFlag};
 use crate::wire::requests::Peer;
+use sophie_dialect::{SERIAL_CONTROL_DATA, SerialControlDev, SerialControlFlag};
 
 /// Bytes of one message.
 pub const CHUNK: usize = 70;

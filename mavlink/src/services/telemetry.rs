@@ -11,8 +11,8 @@ use sophie_control::mode::Mode;
 use sophie_control::rc::{ArmChoice, StickMode, Sticks};
 use sophie_control::wrench::PerArm;
 
-use crate::dialect::*;
 use crate::vehicle::Vehicle;
+use sophie_dialect::*;
 
 /// The version of the protocol in every heartbeat.
 const MAVLINK_VERSION: u8 = 3;

@@ -1,11 +1,11 @@
-//! What others may ask: the messages that are taken, and commands in one shape.
+//! Requests: the messages that are taken, and the content of each.
 
 use mavlink_core::{MavlinkVersion, MessageData};
 
-use crate::dialect::*;
 use crate::wire::frame::{COMPONENT, Frame, SYSTEM};
+use sophie_dialect::*;
 
-/// Who asked.
+/// The sender of a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Peer {
     /// Its system.
@@ -19,80 +19,49 @@ pub struct Peer {
 pub struct Command {
     /// Its number.
     pub number: u16,
-    /// Its parameters, NaN for one that is not given: none of those that are obeyed uses a place on earth.
+    /// Its parameters; NaN where the sender gives no value. No command uses a place on earth.
     pub params: [f32; 7],
 }
 
-/// What a frame asks.
-#[derive(Clone, Debug, PartialEq)]
-#[allow(
-    clippy::large_enum_variant,
-    reason = "one at a time, on the stack, where nothing can be allocated"
-)]
-pub enum Request {
-    /// Someone is there.
-    Heartbeat,
-    /// To be answered with the same.
-    Ping(PING_DATA),
-    /// To be answered with the vehicle's time.
-    Timesync(TIMESYNC_DATA),
-    /// A command.
-    Command(Command),
-    /// All parameters.
-    ParamList,
-    /// One parameter.
-    ParamRead(PARAM_REQUEST_READ_DATA),
-    /// A parameter's new value.
-    ParamSet(PARAM_SET_DATA),
-    /// A pose from outside.
-    Odometry(ODOMETRY_DATA),
-    /// The same.
-    Vision(VISION_POSITION_ESTIMATE_DATA),
-    /// The same.
-    Mocap(ATT_POS_MOCAP_DATA),
-    /// Optical flow.
-    Flow(OPTICAL_FLOW_RAD_DATA),
-    /// A range.
-    Range(DISTANCE_SENSOR_DATA),
-    /// Where the pipe is.
-    Target(LANDING_TARGET_DATA),
-    /// An attitude that is wished for.
-    Attitude(SET_ATTITUDE_TARGET_DATA),
-    /// A key for signing, which is left unread.
-    SetupSigning,
-    /// A request for a file.
-    File(FILE_TRANSFER_PROTOCOL_DATA),
-    /// What is typed into the console, or said by one.
-    Serial(SERIAL_CONTROL_DATA),
+impl Command {
+    const fn long(m: &COMMAND_LONG_DATA) -> Self {
+        Self {
+            number: m.command,
+            params: [
+                m.param1, m.param2, m.param3, m.param4, m.param5, m.param6, m.param7,
+            ],
+        }
+    }
+
+    const fn int(m: &COMMAND_INT_DATA) -> Self {
+        const fn given(whole: i32) -> f32 {
+            match whole {
+                i32::MAX => f32::NAN,
+                whole => whole as f32,
+            }
+        }
+        Self {
+            number: m.command,
+            params: [
+                m.param1,
+                m.param2,
+                m.param3,
+                m.param4,
+                given(m.x),
+                given(m.y),
+                m.z,
+            ],
+        }
+    }
 }
 
-/// What the checksum of message `id` begins with; `None` for those that are not taken.
-pub const fn crc_extra(id: u32) -> Option<u8> {
-    Some(match id {
-        HEARTBEAT_DATA::ID => HEARTBEAT_DATA::EXTRA_CRC,
-        PING_DATA::ID => PING_DATA::EXTRA_CRC,
-        TIMESYNC_DATA::ID => TIMESYNC_DATA::EXTRA_CRC,
-        COMMAND_LONG_DATA::ID => COMMAND_LONG_DATA::EXTRA_CRC,
-        COMMAND_INT_DATA::ID => COMMAND_INT_DATA::EXTRA_CRC,
-        PARAM_REQUEST_LIST_DATA::ID => PARAM_REQUEST_LIST_DATA::EXTRA_CRC,
-        PARAM_REQUEST_READ_DATA::ID => PARAM_REQUEST_READ_DATA::EXTRA_CRC,
-        PARAM_SET_DATA::ID => PARAM_SET_DATA::EXTRA_CRC,
-        FILE_TRANSFER_PROTOCOL_DATA::ID => FILE_TRANSFER_PROTOCOL_DATA::EXTRA_CRC,
-        SETUP_SIGNING_DATA::ID => SETUP_SIGNING_DATA::EXTRA_CRC,
-        SERIAL_CONTROL_DATA::ID => SERIAL_CONTROL_DATA::EXTRA_CRC,
-        ODOMETRY_DATA::ID => ODOMETRY_DATA::EXTRA_CRC,
-        VISION_POSITION_ESTIMATE_DATA::ID => VISION_POSITION_ESTIMATE_DATA::EXTRA_CRC,
-        ATT_POS_MOCAP_DATA::ID => ATT_POS_MOCAP_DATA::EXTRA_CRC,
-        OPTICAL_FLOW_RAD_DATA::ID => OPTICAL_FLOW_RAD_DATA::EXTRA_CRC,
-        DISTANCE_SENSOR_DATA::ID => DISTANCE_SENSOR_DATA::EXTRA_CRC,
-        LANDING_TARGET_DATA::ID => LANDING_TARGET_DATA::EXTRA_CRC,
-        SET_ATTITUDE_TARGET_DATA::ID => SET_ATTITUDE_TARGET_DATA::EXTRA_CRC,
-        _ => return None,
-    })
-}
+/// The system and the component that a message is for; 0 stands for all.
+type Target = (u8, u8);
 
-/// For this vehicle, or for all; 0 stands for all.
-const fn for_here(system: u8, component: u8) -> bool {
+/// The target of a message that has no field for it.
+const ALL: Target = (0, 0);
+
+const fn is_for_here((system, component): Target) -> bool {
     (system == 0 || system == SYSTEM) && (component == 0 || component == COMPONENT)
 }
 
@@ -100,82 +69,117 @@ fn message<M: MessageData>(frame: &Frame<'_>) -> Option<M> {
     M::deser(MavlinkVersion::V2, frame.payload).ok()
 }
 
-/// What `frame` asks of this vehicle; `None` for what is not for it, or cannot be read.
+/// One row a request: its variant, then for each message that makes it the target and the request. A row makes the variant, the
+/// checksum's start and the decoder, so that no message can lack one of the three.
+macro_rules! messages {
+    ($(
+        $(#[$doc:meta])*
+        $variant:ident $(($content:ty))? { $($message:ident as $read:pat => $target:expr, $request:expr;)+ }
+    )*) => {
+        /// What a frame asks for.
+        #[derive(Clone, Debug, PartialEq)]
+        #[allow(
+            clippy::large_enum_variant,
+            reason = "one at a time, on the stack: nothing can be allocated"
+        )]
+        pub enum Request {
+            $($(#[$doc])* $variant $(($content))?,)*
+        }
+
+        /// The byte that the checksum of message `id` starts with; `None` for a message that is not taken.
+        pub const fn crc_extra(id: u32) -> Option<u8> {
+            Some(match id {
+                $($($message::ID => $message::EXTRA_CRC,)+)*
+                _ => return None,
+            })
+        }
+
+        /// The target and the request of a frame; `None` if the message is not taken or cannot be decoded.
+        fn read(frame: &Frame<'_>) -> Option<(Target, Request)> {
+            Some(match frame.id {
+                $($($message::ID => {
+                    let $read: $message = message(frame)?;
+                    ($target, $request)
+                })+)*
+                _ => return None,
+            })
+        }
+    };
+}
+
+messages! {
+    /// Another component is alive.
+    Heartbeat {
+        HEARTBEAT_DATA as _ => ALL, Request::Heartbeat;
+    }
+    /// The answer repeats the content.
+    Ping(PING_DATA) {
+        PING_DATA as m => (m.target_system, m.target_component), Request::Ping(m);
+    }
+    /// The answer adds the vehicle's time.
+    Timesync(TIMESYNC_DATA) {
+        TIMESYNC_DATA as m => (m.target_system, m.target_component), Request::Timesync(m);
+    }
+    /// A command.
+    Command(Command) {
+        COMMAND_LONG_DATA as m => (m.target_system, m.target_component), Request::Command(Command::long(&m));
+        COMMAND_INT_DATA as m => (m.target_system, m.target_component), Request::Command(Command::int(&m));
+    }
+    /// All parameters.
+    ParamList {
+        PARAM_REQUEST_LIST_DATA as m => (m.target_system, m.target_component), Request::ParamList;
+    }
+    /// One parameter.
+    ParamRead(PARAM_REQUEST_READ_DATA) {
+        PARAM_REQUEST_READ_DATA as m => (m.target_system, m.target_component), Request::ParamRead(m);
+    }
+    /// A parameter's new value.
+    ParamSet(PARAM_SET_DATA) {
+        PARAM_SET_DATA as m => (m.target_system, m.target_component), Request::ParamSet(m);
+    }
+    /// An external pose with covariance and resets.
+    Odometry(ODOMETRY_DATA) {
+        ODOMETRY_DATA as m => ALL, Request::Odometry(m);
+    }
+    /// An external pose of a camera aboard.
+    Vision(VISION_POSITION_ESTIMATE_DATA) {
+        VISION_POSITION_ESTIMATE_DATA as m => ALL, Request::Vision(m);
+    }
+    /// An external pose of a motion-capture system.
+    Mocap(ATT_POS_MOCAP_DATA) {
+        ATT_POS_MOCAP_DATA as m => ALL, Request::Mocap(m);
+    }
+    /// Optical flow.
+    Flow(OPTICAL_FLOW_RAD_DATA) {
+        OPTICAL_FLOW_RAD_DATA as m => ALL, Request::Flow(m);
+    }
+    /// A range.
+    Range(DISTANCE_SENSOR_DATA) {
+        DISTANCE_SENSOR_DATA as m => ALL, Request::Range(m);
+    }
+    /// The place of the pipe.
+    PipeTarget(LANDING_TARGET_DATA) {
+        LANDING_TARGET_DATA as m => ALL, Request::PipeTarget(m);
+    }
+    /// A new signing key. The request does not carry it: a key is set at the console alone.
+    SetupSigning {
+        SETUP_SIGNING_DATA as m => (m.target_system, m.target_component), Request::SetupSigning;
+    }
+    /// A request for a file.
+    File(FILE_TRANSFER_PROTOCOL_DATA) {
+        FILE_TRANSFER_PROTOCOL_DATA as m => (m.target_system, m.target_component), Request::File(m);
+    }
+    /// Bytes for the console.
+    Serial(SERIAL_CONTROL_DATA) {
+        SERIAL_CONTROL_DATA as m => (m.target_system, m.target_component), Request::Serial(m);
+    }
+}
+
+/// The request in `frame`; `None` if it is for another vehicle, is this vehicle's own frame, or cannot be decoded.
 pub fn request(frame: &Frame<'_>) -> Option<Request> {
     if frame.system == SYSTEM && frame.component == COMPONENT {
-        // Its own, come back.
         return None;
     }
-    let (system, component, request) = match frame.id {
-        HEARTBEAT_DATA::ID => (0, 0, Request::Heartbeat),
-        PING_DATA::ID => {
-            let m: PING_DATA = message(frame)?;
-            (m.target_system, m.target_component, Request::Ping(m))
-        }
-        TIMESYNC_DATA::ID => {
-            let m: TIMESYNC_DATA = message(frame)?;
-            (m.target_system, m.target_component, Request::Timesync(m))
-        }
-        COMMAND_LONG_DATA::ID => {
-            let m: COMMAND_LONG_DATA = message(frame)?;
-            let params = [
-                m.param1, m.param2, m.param3, m.param4, m.param5, m.param6, m.param7,
-            ];
-            let command = Command {
-                number: m.command,
-                params,
-            };
-            (m.target_system, m.target_component, Request::Command(command))
-        }
-        COMMAND_INT_DATA::ID => {
-            let m: COMMAND_INT_DATA = message(frame)?;
-            let [x, y] = [m.x, m.y].map(|whole| match whole {
-                i32::MAX => f32::NAN,
-                whole => whole as f32,
-            });
-            let params = [m.param1, m.param2, m.param3, m.param4, x, y, m.z];
-            let command = Command {
-                number: m.command,
-                params,
-            };
-            (m.target_system, m.target_component, Request::Command(command))
-        }
-        PARAM_REQUEST_LIST_DATA::ID => {
-            let m: PARAM_REQUEST_LIST_DATA = message(frame)?;
-            (m.target_system, m.target_component, Request::ParamList)
-        }
-        PARAM_REQUEST_READ_DATA::ID => {
-            let m: PARAM_REQUEST_READ_DATA = message(frame)?;
-            (m.target_system, m.target_component, Request::ParamRead(m))
-        }
-        PARAM_SET_DATA::ID => {
-            let m: PARAM_SET_DATA = message(frame)?;
-            (m.target_system, m.target_component, Request::ParamSet(m))
-        }
-        ODOMETRY_DATA::ID => (0, 0, Request::Odometry(message(frame)?)),
-        VISION_POSITION_ESTIMATE_DATA::ID => (0, 0, Request::Vision(message(frame)?)),
-        ATT_POS_MOCAP_DATA::ID => (0, 0, Request::Mocap(message(frame)?)),
-        OPTICAL_FLOW_RAD_DATA::ID => (0, 0, Request::Flow(message(frame)?)),
-        DISTANCE_SENSOR_DATA::ID => (0, 0, Request::Range(message(frame)?)),
-        LANDING_TARGET_DATA::ID => (0, 0, Request::Target(message(frame)?)),
-        SET_ATTITUDE_TARGET_DATA::ID => {
-            let m: SET_ATTITUDE_TARGET_DATA = message(frame)?;
-            (m.target_system, m.target_component, Request::Attitude(m))
-        }
-        SETUP_SIGNING_DATA::ID => {
-            // Zeros at the end are left out, and there may be none but those.
-            let at = |place: usize| frame.payload.get(place).copied().unwrap_or_default();
-            (at(8), at(9), Request::SetupSigning)
-        }
-        FILE_TRANSFER_PROTOCOL_DATA::ID => {
-            let m: FILE_TRANSFER_PROTOCOL_DATA = message(frame)?;
-            (m.target_system, m.target_component, Request::File(m))
-        }
-        SERIAL_CONTROL_DATA::ID => {
-            let m: SERIAL_CONTROL_DATA = message(frame)?;
-            (m.target_system, m.target_component, Request::Serial(m))
-        }
-        _ => return None,
-    };
-    for_here(system, component).then_some(request)
+    let (target, request) = read(frame)?;
+    is_for_here(target).then_some(request)
 }

@@ -5,7 +5,7 @@
 use std::fmt::Write;
 
 use sophie_control::mode::Mode;
-use sophie_mavlink::dialect::*;
+use sophie_dialect::*;
 use sophie_mavlink::services::streams::{STREAMS, Stream};
 
 use crate::page::hold;

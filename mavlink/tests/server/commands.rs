@@ -7,8 +7,8 @@ use std::fmt::Write;
 
 use num_traits::FromPrimitive;
 use sophie_control::mode::Mode;
+use sophie_dialect::*;
 use sophie_mavlink::Order;
-use sophie_mavlink::dialect::*;
 use sophie_mavlink::services::commands::{OBEYED, Obeyed, When};
 
 use crate::page::hold;

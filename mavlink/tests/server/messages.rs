@@ -14,7 +14,7 @@ use sophie_control::vector::{Quat, Vec3};
 use sophie_mavlink::Vehicle;
 use sophie_mavlink::services::telemetry::*;
 
-use sophie_mavlink::dialect::*;
+use sophie_dialect::*;
 
 use crate::station::{Station, vehicle};
 

@@ -7,7 +7,7 @@ use sophie_control::params::Params;
 use sophie_control::rc::Sticks;
 use sophie_control::remote::RemoteRequest;
 use sophie_control::setpoint::Setpoint;
-use sophie_mavlink::dialect::*;
+use sophie_dialect::*;
 use sophie_mavlink::{Answers, Condition, Requests};
 
 use crate::station::{Station, frame, frame_from};

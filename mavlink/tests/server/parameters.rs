@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use sophie_control::mode::Mode;
 use sophie_control::params::Params;
+use sophie_dialect::*;
 use sophie_mavlink::Order;
-use sophie_mavlink::dialect::*;
 
 use crate::station::{Station, frame, frame_from, vehicle};
 

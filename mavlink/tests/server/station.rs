@@ -5,7 +5,7 @@ use sophie_control::chain::Attitude;
 use sophie_control::mode::Mode;
 use sophie_control::params::Params;
 use sophie_control::vector::{Quat, Vec3};
-use sophie_mavlink::dialect::{COMMAND_ACK_DATA, COMMAND_LONG_DATA, MavCmd, STATUSTEXT_DATA};
+use sophie_dialect::{COMMAND_ACK_DATA, COMMAND_LONG_DATA, MavCmd, STATUSTEXT_DATA};
 use sophie_mavlink::inputs::Inputs;
 use sophie_mavlink::wire::signing::Stored;
 use sophie_mavlink::{Condition, Order, Server, Signing, Vehicle};

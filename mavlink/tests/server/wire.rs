@@ -1,7 +1,7 @@
 //! What arrives: whole, cut, garbled, not for here, and too much.
 
 use proptest::prelude::*;
-use sophie_mavlink::dialect::*;
+use sophie_dialect::*;
 use sophie_mavlink::wire::parser::Parser;
 use sophie_mavlink::wire::requests::{Request, request};
 

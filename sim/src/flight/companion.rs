@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use glam::{DQuat, DVec3};
 use mavlink_core::{MAVLinkV2MessageRaw, MavHeader, MessageData};
-use sophie_mavlink::dialect::{ATT_POS_MOCAP_DATA, LANDING_TARGET_DATA};
+use sophie_dialect::{ATT_POS_MOCAP_DATA, LANDING_TARGET_DATA};
 use sophie_tasks::links::Links;
 use sophie_tasks::mavlink;
 use sophie_tasks::mavlink::signing::Stored;

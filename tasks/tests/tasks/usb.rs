@@ -3,8 +3,8 @@
 use embassy_usb::driver::{Direction, EndpointType, Event};
 use mavlink_core::{MAVLinkV1MessageRaw, MAVLinkV2MessageRaw, MavHeader, MessageData};
 use sophie_control::mode::Mode;
+use sophie_dialect::{HEARTBEAT_DATA, PARAM_REQUEST_LIST_DATA, PARAM_SET_DATA, SERIAL_CONTROL_DATA};
 use sophie_fakes::FakeLine;
-use sophie_mavlink::dialect::{HEARTBEAT_DATA, PARAM_REQUEST_LIST_DATA, PARAM_SET_DATA, SERIAL_CONTROL_DATA};
 use sophie_mavlink::wire::signing::Stored;
 use sophie_tasks::deadline::TaskId;
 use sophie_tasks::links::{Links, Status as Commander};

@@ -11,7 +11,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use mavlink_core::{MavlinkVersion, MessageData};
-use sophie_mavlink::dialect::{
+use sophie_dialect::{
     HEARTBEAT_DATA, MavAutopilot, MavType, SERIAL_CONTROL_DATA, SerialControlDev, SerialControlFlag,
 };
 use sophie_mavlink::services::shell::CHUNK;

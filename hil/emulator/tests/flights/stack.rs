@@ -6,10 +6,10 @@ use std::time::Duration;
 
 use mavlink_core::MessageData;
 use serde::Deserialize;
+use sophie_dialect::{FILE_TRANSFER_PROTOCOL_DATA, HEARTBEAT_DATA, PARAM_REQUEST_LIST_DATA};
 use sophie_emulator::bench::Setup;
 use sophie_emulator::silicon;
 use sophie_emulator::terminal::Sockets;
-use sophie_mavlink::dialect::{FILE_TRANSFER_PROTOCOL_DATA, HEARTBEAT_DATA, PARAM_REQUEST_LIST_DATA};
 use sophie_mavlink::services::ftp::PAYLOAD;
 use sophie_mavlink::wire::frame::Encoder;
 use sophie_sim::scenario::World;

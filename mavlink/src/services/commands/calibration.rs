@@ -9,11 +9,11 @@ use sophie_control::decimal::Decimal;
 use sophie_control::vector::Vec3;
 
 use super::{or_zero, whole};
-use crate::dialect::*;
 use crate::services::Services;
 use crate::services::answer::Answer;
 use crate::vehicle::Vehicle;
 use crate::wire::requests::{Command, Peer};
+use sophie_dialect::*;
 
 /// Length of one rest, µs: 125 samples at the rate of the task.
 const REST: u64 = 2_500_000;

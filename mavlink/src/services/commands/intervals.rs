@@ -4,10 +4,10 @@ use mavlink_core::MessageData;
 use sophie_control::mode::Mode;
 
 use super::{Reply, or_zero, whole};
-use crate::dialect::*;
 use crate::services::Services;
 use crate::services::answer::Answer;
 use crate::services::streams::{PERIOD_MIN_US, STREAMS};
+use sophie_dialect::*;
 
 /// Longest interval, µs, 35 minutes: what MESSAGE_INTERVAL can say.
 const PERIOD_MAX_US: u32 = i32::MAX as u32;

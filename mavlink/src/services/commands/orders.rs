@@ -6,10 +6,10 @@ use sophie_control::bench::{
 use sophie_control::remote::{RemoteOrder, RemoteRefusal, RemoteRequest};
 
 use super::{or_zero, whole};
-use crate::dialect::*;
 use crate::services::Services;
 use crate::vehicle::Vehicle;
 use crate::wire::requests::{Command, Peer};
+use sophie_dialect::*;
 
 /// Time that the commander has to answer, µs: fifty of its periods.
 const COMMANDER: u64 = 500_000;

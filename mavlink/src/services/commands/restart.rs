@@ -1,9 +1,9 @@
 //! Restarting, and storing the parameters.
 
 use super::whole;
-use crate::dialect::*;
 use crate::services::Services;
 use crate::vehicle::Vehicle;
+use sophie_dialect::*;
 
 /// Time from the answer to a restart, µs: for the answer to get out.
 const LAST_WORDS: u64 = 300_000;
