@@ -16,7 +16,7 @@ use sophie_control::mode::{Mode, Reason};
 use sophie_control::params::Params;
 use sophie_control::pilot::rc::{ArmChoice, StickMode, Sticks};
 use sophie_mavlink::inputs::Inputs;
-use sophie_mavlink::signing::Stored;
+use sophie_mavlink::wire::signing::Stored;
 use sophie_mavlink::{Condition, Order, Server, Signing, Vehicle};
 
 /// The period of the task that serves a line.

@@ -4,24 +4,20 @@
 //! Each input has one source at a time: two that alternate would have two origins, mountings or pipes. What is refused changes
 //! nothing.
 
-pub mod attitude;
 pub mod clock;
 pub mod ground;
 pub mod pose;
 pub mod target;
 
-use self::attitude::OffboardAttitude;
 use self::clock::{AGE_MAX, Clocks, Stamp, Time};
 use self::pose::{ExternalPose, Pose};
-use crate::dialect::{
-    DISTANCE_SENSOR_DATA, LANDING_TARGET_DATA, OPTICAL_FLOW_RAD_DATA, SET_ATTITUDE_TARGET_DATA,
-};
-use crate::frame::SYSTEM;
-use crate::requests::Peer;
+use crate::wire::frame::SYSTEM;
+use crate::wire::requests::Peer;
 use sophie_control::approach::pipe_target::PipeTarget;
 use sophie_control::maths::vector::{Quat, Vec3};
 use sophie_control::navigation::flow_range_sample::{Flow, GroundView, Range};
 use sophie_control::params::{FlowPort, Params};
+use sophie_dialect::{DISTANCE_SENSOR_DATA, LANDING_TARGET_DATA, OPTICAL_FLOW_RAD_DATA};
 
 /// Squared length of a quaternion may be off by this much: senders round, and do not always normalise.
 const QUATERNION_TOLERANCE: f32 = 0.02;
@@ -54,8 +50,6 @@ pub struct Counts {
     pub views: u32,
     /// Places of the pipe taken.
     pub targets: u32,
-    /// Attitudes taken.
-    pub attitudes: u32,
     /// Refused for their senders' system.
     pub system: u32,
     /// Refused beside another source.
@@ -75,11 +69,10 @@ enum Input {
     Flow,
     Range,
     Target,
-    Attitude,
 }
 
 /// How many these are.
-const INPUTS: usize = 5;
+const INPUTS: usize = 4;
 
 /// Where an input comes from: its sender, and which of that sender's sensors or messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -128,7 +121,6 @@ pub struct Inputs {
     /// Resets of the newest pose, and what they are more than its source's: another source is a reset as well.
     resets: u8,
     more_resets: u8,
-    attitude: Option<(u64, OffboardAttitude)>,
     target: Option<PipeTarget>,
     ground: GroundView,
     /// Something of it has come since it was taken.
@@ -147,7 +139,6 @@ impl Inputs {
             pose: None,
             resets: 0,
             more_resets: 0,
-            attitude: None,
             target: None,
             ground: GroundView::default(),
             seen: false,
@@ -172,9 +163,8 @@ impl Inputs {
             stamp,
             now,
         } = arrival;
-        // An attitude is addressed to this vehicle, as a command is.
         let system = source.peer.system;
-        if input != Input::Attitude && system != SYSTEM && (system == 0 || system != self.other_system) {
+        if system != SYSTEM && (system == 0 || system != self.other_system) {
             return Err(Refusal::System);
         }
         sound?;
@@ -334,26 +324,6 @@ impl Inputs {
         asks
     }
 
-    /// Takes an attitude, as [`Self::pose`] takes a pose.
-    pub(crate) fn attitude(&mut self, m: &SET_ATTITUDE_TARGET_DATA, from: Peer, now: u64) -> bool {
-        let attitude = OffboardAttitude::of(m);
-        let arrival = Arrival {
-            input: Input::Attitude,
-            source: Source {
-                peer: from,
-                sensor: 0,
-            },
-            stamp: Stamp::Millis(m.time_boot_ms),
-            now,
-        };
-        let (time, asks) = self.take(&arrival, attitude.map(|_| ()));
-        if let (Some(time), Ok(attitude)) = (time, attitude) {
-            count(&mut self.counts.attitudes);
-            self.attitude = Some((time.at, attitude));
-        }
-        asks
-    }
-
     const fn saw(&mut self) {
         count(&mut self.counts.views);
         self.seen = true;
@@ -372,11 +342,6 @@ impl Inputs {
     /// The place of the pipe that has come since the last call.
     pub const fn take_target(&mut self) -> Option<PipeTarget> {
         self.target.take()
-    }
-
-    /// The attitude that has come since the last call, and when it was wished, µs since the start.
-    pub const fn take_attitude(&mut self) -> Option<(u64, OffboardAttitude)> {
-        self.attitude.take()
     }
 
     const fn refuse(&mut self, refusal: Refusal) {

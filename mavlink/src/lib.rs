@@ -5,8 +5,6 @@
 //! the messages.
 
 #![no_std]
-// The generated messages ask for features of the generator's own crate, which there are not here.
-#![allow(unexpected_cfgs)]
 #![deny(
     clippy::indexing_slicing,
     clippy::unwrap_used,
@@ -14,32 +12,13 @@
     clippy::panic
 )]
 
-pub mod budget;
-#[allow(
-    missing_docs,
-    non_camel_case_types,
-    clippy::all,
-    clippy::panic,
-    clippy::indexing_slicing,
-    clippy::unwrap_used,
-    reason = "generated"
-)]
-pub mod dialect;
-pub mod files;
-pub mod frame;
-pub mod ftp;
 pub mod inputs;
-pub mod messages;
-pub mod parameters;
-pub mod parser;
-pub mod requests;
 pub mod server;
-pub mod signing;
-pub mod sorter;
-pub mod streams;
-pub mod texts;
+pub mod services;
 pub mod vehicle;
+pub mod wire;
 
-pub use self::server::{Order, Requests, Server};
-pub use self::signing::Signing;
+pub use self::server::{Order, Server};
+pub use self::services::commands::orders::Requests;
 pub use self::vehicle::{Answers, Condition, Vehicle};
+pub use self::wire::signing::Signing;

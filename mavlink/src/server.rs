@@ -1,38 +1,26 @@
 //! The server of one link: what arrives becomes answers and orders, what is due becomes frames.
 
-mod answer;
-mod commands;
 mod send;
-pub mod shell;
 
-use heapless::Deque;
 use mavlink_core::MessageData;
 use sophie_control::mode::Mode;
 use sophie_control::params::Params;
 
-use self::answer::Answer;
-use self::commands::calibration::Calibration;
-use self::commands::orders::Orders;
-pub use self::commands::orders::Requests;
-pub use self::commands::{OBEYED, Obeyed, When};
-use self::shell::Shell;
-use crate::budget::Budget;
-use crate::dialect::*;
-use crate::files::FILES;
-use crate::frame::{Encoder, Frame};
-use crate::ftp::Ftp;
 use crate::inputs::Inputs;
 use crate::inputs::pose::Pose;
-use crate::parameters::{Parameters, Place, Refused};
-use crate::parser::Parser;
-use crate::requests::{Peer, Request, request};
-use crate::signing::Signing;
-use crate::streams::Schedule;
-use crate::texts::Texts;
+use crate::services::Services;
+use crate::services::answer::Answer;
+use crate::services::commands::orders::Requests;
+use crate::services::parameters::{Place, Refused};
+use crate::services::shell::Shell;
 use crate::vehicle::Vehicle;
+use crate::wire::budget::Budget;
+use crate::wire::frame::{Encoder, Frame};
+use crate::wire::parser::Parser;
+use crate::wire::requests::{Peer, Request, request};
+use crate::wire::signing::Signing;
+use sophie_dialect::*;
 
-/// Answers that wait at most. What does not fit is dropped, and asked for again by who wanted it.
-const ANSWERS: usize = 12;
 /// Silence of all others after which the next heartbeat is someone new's, µs.
 const FORGOTTEN: u64 = 5_000_000;
 
@@ -52,20 +40,10 @@ pub struct Server {
     parser: Parser,
     encoder: Encoder,
     budget: Budget,
-    schedule: Schedule,
-    texts: Texts,
-    parameters: Parameters,
-    answers: Deque<Answer, ANSWERS>,
-    ftp: Ftp,
-    shell: Shell,
+    services: Services,
     mode: Option<Mode>,
     /// When another's heartbeat came last, µs.
     heard_at: Option<u64>,
-    restart_at: Option<u64>,
-    /// Storing was asked for by a command.
-    store_now: bool,
-    orders: Orders,
-    calibration: Option<Calibration>,
 }
 
 impl Server {
@@ -76,18 +54,9 @@ impl Server {
             parser: Parser::new(),
             encoder: Encoder::new(),
             budget: Budget::new(bytes_per_second),
-            schedule: Schedule::new(),
-            texts: Texts::new(),
-            parameters: Parameters::new(params),
-            answers: Deque::new(),
-            ftp: Ftp::new(&FILES),
-            shell: Shell::new(),
+            services: Services::new(params),
             mode: None,
             heard_at: None,
-            restart_at: None,
-            store_now: false,
-            orders: Orders::new(),
-            calibration: None,
         }
     }
 
@@ -100,7 +69,7 @@ impl Server {
 
     /// Takes over `params`, which were set or stored on another line.
     pub const fn follow(&mut self, params: &Params) {
-        self.parameters.follow(params);
+        self.services.parameters.follow(params);
     }
 
     /// Takes `bytes` that arrived at `now`, µs since the start, as far as `signing` lets it. What others measured goes into the
@@ -129,29 +98,35 @@ impl Server {
 
     /// What is to be done at `now`, µs since the start.
     pub fn order(&mut self, now: u64, vehicle: &Vehicle) -> Option<Order> {
-        self.go_on_calibrating(now, vehicle);
-        self.shell.expire(now);
-        if self.restart_at.is_some_and(|at| now >= at) {
-            self.restart_at = None;
+        self.services.continue_calibration(now, vehicle);
+        self.services.shell.expire(now);
+        if self.services.restart_at.is_some_and(|at| now >= at) {
+            self.services.restart_at = None;
             return vehicle.at_rest().then_some(Order::Restart);
         }
-        let store = core::mem::take(&mut self.store_now) | self.parameters.to_store(vehicle.at_rest(), now);
+        let asked = core::mem::take(&mut self.services.store_now);
+        let store = asked | self.services.parameters.to_store(vehicle.at_rest(), now);
         store.then_some(Order::Store)
+    }
+
+    /// What is to be sent to the commander at `now`, µs since the start, given what it has answered.
+    pub fn requests(&mut self, now: u64, vehicle: &Vehicle) -> Requests {
+        self.services.requests(now, vehicle)
     }
 
     /// The parameters as they are to be stored.
     pub const fn params(&self) -> &Params {
-        self.parameters.copy()
+        self.services.parameters.copy()
     }
 
     /// Takes what became of [`Order::Store`].
     pub fn stored(&mut self, result: Result<(), &'static str>) {
         match result {
-            Ok(()) => self.texts.say(
+            Ok(()) => self.services.texts.say(
                 MavSeverity::MAV_SEVERITY_NOTICE,
                 format_args!("parameters stored: in force after a restart"),
             ),
-            Err(why) => self.texts.say(
+            Err(why) => self.services.texts.say(
                 MavSeverity::MAV_SEVERITY_ERROR,
                 format_args!("parameters not stored: {why}"),
             ),
@@ -160,39 +135,26 @@ impl Server {
 
     /// The console's far end.
     pub const fn shell(&mut self) -> &mut Shell {
-        &mut self.shell
-    }
-
-    fn acknowledge(&mut self, command: u16, to: Peer, result: MavResult, progress: u8) {
-        self.answer(Answer::Ack {
-            command,
-            result,
-            progress,
-            to,
-        });
-    }
-
-    fn answer(&mut self, answer: Answer) {
-        let _ = self.answers.push_back(answer);
+        &mut self.services.shell
     }
 
     fn obey(&mut self, asked: &Request, from: Peer, now: u64, vehicle: &Vehicle, inputs: &mut Inputs) {
         if measured(inputs, asked, from, now) {
-            self.answer(Answer::AskTime(from));
+            self.services.answer(Answer::AskTime(from));
         }
         match asked {
             Request::Heartbeat => {
                 let new = self.heard_at.is_none_or(|at| now.saturating_sub(at) > FORGOTTEN);
                 self.heard_at = Some(now);
-                self.shell.hear(from, now);
+                self.services.shell.hear(from, now);
                 if new {
-                    self.texts.repeat();
+                    self.services.texts.repeat();
                 }
             }
             Request::Ping(ping) => {
                 // An answer to another's is left alone.
                 if ping.target_system == 0 && ping.target_component == 0 {
-                    self.answer(Answer::Ping(PING_DATA {
+                    self.services.answer(Answer::Ping(PING_DATA {
                         target_system: from.system,
                         target_component: from.component,
                         ..ping.clone()
@@ -201,7 +163,7 @@ impl Server {
             }
             Request::Timesync(sync) => {
                 if sync.tc1 == 0 {
-                    self.answer(Answer::Timesync(TIMESYNC_DATA {
+                    self.services.answer(Answer::Timesync(TIMESYNC_DATA {
                         tc1: i64::try_from(now.saturating_mul(1000)).unwrap_or(i64::MAX),
                         ts1: sync.ts1,
                         target_system: from.system,
@@ -216,52 +178,64 @@ impl Server {
             | Request::Mocap(_)
             | Request::Flow(_)
             | Request::Range(_)
-            | Request::Target(_)
-            | Request::Attitude(_) => (),
+            | Request::PipeTarget(_) => (),
             Request::Command(command) => {
-                if let Some(reply) = self.command(command, from, now, vehicle) {
-                    self.acknowledge(command.number, from, reply.result, 0);
+                if let Some(reply) = self.services.command(command, from, now, vehicle) {
+                    self.services.acknowledge(command.number, from, reply.result, 0);
                     if let Some(answer) = reply.then {
-                        self.answer(answer);
+                        self.services.answer(answer);
                     }
                 }
             }
-            Request::ParamList => self.parameters.list(),
+            Request::ParamList => self.services.parameters.list(),
             Request::ParamRead(read) => {
-                let found = self.parameters.find(&read.param_id, read.param_index);
+                let found = self.services.parameters.find(&read.param_id, read.param_index);
                 self.parameter(found, Ok(()));
             }
             Request::ParamSet(set) => {
-                let found = self.parameters.find(&set.param_id, -1);
+                let found = self.services.parameters.find(&set.param_id, -1);
                 let result = found.and_then(|place| {
-                    self.parameters
-                        .set(place, set.param_value, set.param_type, vehicle.at_rest(), now)
+                    self.services.parameters.set(
+                        place,
+                        set.param_value,
+                        set.param_type,
+                        vehicle.at_rest(),
+                        now,
+                    )
                 });
                 self.parameter(found, result);
             }
-            Request::SetupSigning => self.texts.say(
+            Request::SetupSigning => self.services.texts.say(
                 MavSeverity::MAV_SEVERITY_WARNING,
                 format_args!("signing key refused: console only"),
             ),
-            Request::File(file) => self.ftp.ask(from, &file.payload),
-            Request::Serial(serial) => self.shell.obey(serial, from, now),
+            Request::File(file) => self.services.ftp.ask(from, &file.payload),
+            Request::Serial(serial) => self.services.shell.obey(serial, from, now),
         }
     }
 
     /// Says the value of a parameter, and why it was not set.
     fn parameter(&mut self, found: Result<Place, Refused>, result: Result<(), Refused>) {
         if let Ok(place) = found {
-            self.answer(Answer::Parameter(place));
+            self.services.answer(Answer::Parameter(place));
         }
         let severity = MavSeverity::MAV_SEVERITY_WARNING;
         match found.and(result) {
             Ok(()) => (),
-            Err(Refused::Unknown) => self.texts.say(severity, format_args!("no such parameter")),
-            Err(Refused::Armed) => self.texts.say(severity, format_args!("parameters: disarm first")),
+            Err(Refused::Unknown) => self
+                .services
+                .texts
+                .say(severity, format_args!("no such parameter")),
+            Err(Refused::Armed) => self
+                .services
+                .texts
+                .say(severity, format_args!("parameters: disarm first")),
             Err(Refused::Type) => self
+                .services
                 .texts
                 .say(severity, format_args!("parameters are of type REAL32")),
             Err(Refused::NotAllowed(name)) => self
+                .services
                 .texts
                 .say(severity, format_args!("{name}: not an allowed value")),
         }
@@ -279,8 +253,7 @@ fn measured(inputs: &mut Inputs, said: &Request, from: Peer, now: u64) -> bool {
         Request::Mocap(m) => inputs.pose(Pose::mocap(m), ATT_POS_MOCAP_DATA::ID, m.time_usec, from, now),
         Request::Flow(m) => inputs.flow(m, from, now),
         Request::Range(m) => inputs.range(m, from, now),
-        Request::Target(m) => inputs.target(m, from, now),
-        Request::Attitude(m) => inputs.attitude(m, from, now),
+        Request::PipeTarget(m) => inputs.target(m, from, now),
         _ => false,
     }
 }

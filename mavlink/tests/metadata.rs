@@ -7,7 +7,7 @@ use std::{env, fs};
 use lzma_rust2::{CheckType, XzOptions, XzReader, XzWriter};
 use serde_json::{Map, Number, Value, json};
 use sophie_control::params::{NAME_MAX, ParamInfo, Params};
-use sophie_mavlink::files::{FILES, GENERAL, PARAMETER, crc32};
+use sophie_mavlink::services::files::{FILES, GENERAL, PARAMETER, crc32};
 
 /// COMP_METADATA_TYPE_PARAMETER.
 const PARAMETER_TYPE: u32 = 1;

@@ -42,9 +42,8 @@ pub use sophie_control::pilot::bench_orders::{BenchAnswer, BenchRequest, BenchVi
 use sophie_control::pilot::rc::Sticks;
 pub use sophie_control::pilot::remote::{RemoteAnswer, RemoteRequest};
 use sophie_mavlink::inputs::Counts;
-pub use sophie_mavlink::inputs::attitude::OffboardAttitude;
 pub use sophie_mavlink::inputs::pose::ExternalPose;
-use sophie_mavlink::signing::{Refused, Signing, Stored};
+use sophie_mavlink::wire::signing::{Refused, Signing, Stored};
 
 use crate::links::last_value::{LastValue, Receiver};
 pub use crate::links::last_value::{RECEIVERS, Raw};
@@ -436,8 +435,6 @@ links! {
     pipe_target: PipeTarget, Mavlink to "commander", stale after 1500 ms;
     /// What of pose, flow, range and air pressure is wrong and left out, as long as it is.
     position_fault: Fault, Position to "commander, console", stale after 50 ms;
-    /// The attitude that another computer wishes, as it sends it; nothing flies by it.
-    offboard: OffboardAttitude, Mavlink to "console", stale after 500 ms;
     /// What the MAVLink line is like.
     mavlink: LineState, Mavlink to "console", stale after 200 ms;
     /// What a ground station orders beside the pilot, renewed until it is answered; an order is obeyed once.

@@ -1,8 +1,8 @@
-"""Sends poses and attitudes from outside over pymavlink and reads at the console, over MAVLink as well, what came of them.
+"""Sends external poses over pymavlink and reads their effect at the console, which is reached over MAVLink as well.
 
 inputs.py CONNECTION SECONDS
 
-Prints what `mavlink` and the two groups of `watch` answer, as JSON; exit status 1 when the console stays silent.
+Prints the answers of `mavlink` and `watch pose` as JSON; exit status 1 when the console stays silent.
 """
 
 import json
@@ -38,10 +38,6 @@ def vision(mav, x):
 
 def mocap(mav, x):
     mav.att_pos_mocap_send(micros(), ROLL_30, x, 0.5, -0.5, NO_COVARIANCE)
-
-
-def attitude(mav, thrust):
-    mav.set_attitude_target_send(0, 1, 1, 0, ROLL_30, 0.1, 0.0, 0.0, thrust)
 
 
 class Console:
@@ -90,10 +86,8 @@ def main() -> int:
         said[name] = console.watch("pose", 3, lambda send=send: send(line.mav, 1.5))
         # Another message is another source, which comes once the one before has been silent for two seconds.
         time.sleep(2.5)
-    said["attitude"] = console.watch("offb", 3, lambda: attitude(line.mav, 0.25))
-    # No number, and no unit quaternion.
+    # Not a number.
     vision(line.mav, NAN)
-    attitude(line.mav, NAN)
     # The counts are published at the task's next run.
     time.sleep(0.2)
     said["mavlink"] = console.ask("mavlink").splitlines()

@@ -1,7 +1,7 @@
 //! When something was measured by a sender whose clock is another: by TIMESYNC, as the standard has it.
 
 use super::{INPUTS, Refusal};
-use crate::requests::Peer;
+use crate::wire::requests::Peer;
 
 /// Time between two questions for a sender's time, µs.
 const PERIOD: u64 = 1_000_000;

@@ -3,7 +3,7 @@
 use sophie_control::navigation::flow_range_sample::{Flow, Range};
 
 use super::Refusal;
-use crate::dialect::{DISTANCE_SENSOR_DATA, OPTICAL_FLOW_RAD_DATA};
+use sophie_dialect::{DISTANCE_SENSOR_DATA, OPTICAL_FLOW_RAD_DATA};
 
 /// MAV_SENSOR_ORIENTATION: along the body's down axis.
 const DOWN: u8 = 25;

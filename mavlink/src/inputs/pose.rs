@@ -4,7 +4,7 @@ use sophie_control::maths::vector::{Quat, Vec3};
 
 pub use super::clock::TimeSource;
 use super::{Refusal, bounded, rotation};
-use crate::dialect::{ATT_POS_MOCAP_DATA, ODOMETRY_DATA, VISION_POSITION_ESTIMATE_DATA};
+use sophie_dialect::{ATT_POS_MOCAP_DATA, ODOMETRY_DATA, VISION_POSITION_ESTIMATE_DATA};
 
 /// Farthest from the origin along an axis, m: beyond it a float has steps of a millimetre.
 pub(super) const POSITION_MAX: f32 = 10_000.0;

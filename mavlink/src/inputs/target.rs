@@ -4,7 +4,7 @@ use sophie_control::approach::pipe_target::PipeTarget;
 
 use super::pose::{LOCAL_NED, POSITION_MAX};
 use super::{Refusal, bounded, rotation};
-use crate::dialect::LANDING_TARGET_DATA;
+use sophie_dialect::LANDING_TARGET_DATA;
 
 /// What LANDING_TARGET says: x, y, z of the crown where the vehicle is to sit, and q, whose x axis runs along the pipe. All
 /// zeros, or NaN in the first, is a direction that is not given. Its time is the caller's to set.

@@ -4,16 +4,16 @@ use mavlink_core::MessageData;
 use sophie_control::mode::Mode;
 
 use super::Server;
-use super::answer::Answer;
-use crate::budget::RESERVE;
-use crate::dialect::*;
-use crate::files::{GENERAL_CRC, GENERAL_URI};
-use crate::frame::{Encoder, SIGNATURE};
 use crate::inputs::Inputs;
-use crate::messages as make;
-use crate::signing::{Refused, Signing};
-use crate::streams::{STREAMS, frame_bytes};
+use crate::services::answer::Answer;
+use crate::services::files::{GENERAL_CRC, GENERAL_URI};
+use crate::services::streams::{STREAMS, frame_bytes};
+use crate::services::telemetry as make;
 use crate::vehicle::Vehicle;
+use crate::wire::budget::RESERVE;
+use crate::wire::frame::{Encoder, SIGNATURE};
+use crate::wire::signing::{Refused, Signing};
+use sophie_dialect::*;
 
 impl Server {
     /// The next frame that is due and within the budget at `now`, µs since the start.
@@ -33,8 +33,8 @@ impl Server {
         }
         if self.mode != vehicle.mode() {
             self.mode = vehicle.mode();
-            self.schedule.hurry(HEARTBEAT_DATA::ID);
-            self.schedule.hurry(CURRENT_MODE_DATA::ID);
+            self.services.schedule.hurry(HEARTBEAT_DATA::ID);
+            self.services.schedule.hurry(CURRENT_MODE_DATA::ID);
         }
         let bytes = self
             .send_heartbeat(now, vehicle)
@@ -50,7 +50,7 @@ impl Server {
 
     fn say_refused(&mut self, refused: Refused) {
         let Refused { unsigned, wrong, old } = refused;
-        self.texts.say(
+        self.services.texts.say(
             MavSeverity::MAV_SEVERITY_WARNING,
             format_args!("refused: {unsigned} unsigned, {wrong} wrong, {old} old"),
         );
@@ -59,15 +59,15 @@ impl Server {
     /// First of all: no flood of questions makes the vehicle look lost.
     fn send_heartbeat(&mut self, now: u64, vehicle: &Vehicle) -> Option<u32> {
         let room = self.budget.allows(frame_bytes::<HEARTBEAT_DATA>());
-        let due = room && self.schedule.take(HEARTBEAT_DATA::ID, now);
+        let due = room && self.services.schedule.take(HEARTBEAT_DATA::ID, now);
         due.then(|| self.encoder.encode(&make::heartbeat(vehicle)))
     }
 
     fn send_answer(&mut self, now: u64, vehicle: &Vehicle, inputs: &mut Inputs) -> Option<u32> {
-        if !self.budget.allows(self.answers.front()?.bytes()) {
+        if !self.budget.allows(self.services.answers.front()?.bytes()) {
             return None;
         }
-        let answer = self.answers.pop_front()?;
+        let answer = self.services.answers.pop_front()?;
         let encoder = &mut self.encoder;
         match answer {
             Answer::Ack {
@@ -97,7 +97,7 @@ impl Server {
                 interval_us,
                 message_id: id,
             })),
-            Answer::Parameter(place) => Some(encoder.encode(&self.parameters.value(place)?)),
+            Answer::Parameter(place) => Some(encoder.encode(&self.services.parameters.value(place)?)),
             Answer::Stream(id) => {
                 let sent = stream(encoder, id, now, vehicle);
                 self.second_battery(id, vehicle);
@@ -113,7 +113,7 @@ impl Server {
             })),
             Answer::Mode { index, all } => {
                 if all && usize::from(index) < Mode::ALL.len() {
-                    self.answer(Answer::Mode {
+                    self.services.answer(Answer::Mode {
                         index: index + 1,
                         all,
                     });
@@ -128,32 +128,32 @@ impl Server {
         if !self.budget.allows(frame_bytes::<STATUSTEXT_DATA>()) {
             return None;
         }
-        let text = self.texts.next(vehicle, notice)?;
+        let text = self.services.texts.next(vehicle, notice)?;
         Some(self.encoder.encode(&text.message()))
     }
 
     /// The console and the streams, neither of which waits for more than one frame of the other's.
     fn send_console_by_turns(&mut self, now: u64, vehicle: &Vehicle) -> Option<u32> {
-        if self.shell.waits {
+        if self.services.shell.waits {
             return self.send_console().or_else(|| self.send_stream(now, vehicle));
         }
         let stream = self.send_stream(now, vehicle);
-        self.shell.waits = stream.is_some();
+        self.services.shell.waits = stream.is_some();
         stream.or_else(|| self.send_console())
     }
 
     fn send_console(&mut self) -> Option<u32> {
-        self.shell.waits = false;
+        self.services.shell.waits = false;
         if !self.budget.allows(frame_bytes::<SERIAL_CONTROL_DATA>() + RESERVE) {
             return None;
         }
-        Some(self.encoder.encode(&self.shell.said()?))
+        Some(self.encoder.encode(&self.services.shell.said()?))
     }
 
     fn send_stream(&mut self, now: u64, vehicle: &Vehicle) -> Option<u32> {
         // Each stream at most once: none that has lost its turn is looked at again at the same time.
         for _ in 0..STREAMS.len() {
-            let due = self.schedule.next(now)?;
+            let due = self.services.schedule.next(now)?;
             if self.budget.allows(due.bytes + RESERVE) {
                 let sent = stream(&mut self.encoder, due.id, now, vehicle);
                 if sent.is_some() {
@@ -168,7 +168,7 @@ impl Server {
     /// Behind the message `id` of the flight battery the servo battery's, if one is measured.
     fn second_battery(&mut self, id: u32, vehicle: &Vehicle) {
         if id == BATTERY_STATUS_DATA::ID && vehicle.servo_battery.is_some() {
-            self.answer(Answer::ServoBattery);
+            self.services.answer(Answer::ServoBattery);
         }
     }
 
@@ -179,7 +179,7 @@ impl Server {
         {
             return None;
         }
-        let (reader, payload) = self.ftp.answer()?;
+        let (reader, payload) = self.services.ftp.answer()?;
         Some(self.encoder.encode(&FILE_TRANSFER_PROTOCOL_DATA {
             target_network: 0,
             target_system: reader.system,
@@ -192,8 +192,8 @@ impl Server {
         if !self.budget.allows(frame_bytes::<PARAM_VALUE_DATA>() + RESERVE) {
             return None;
         }
-        let place = self.parameters.listed()?;
-        Some(self.encoder.encode(&self.parameters.value(place)?))
+        let place = self.services.parameters.listed()?;
+        Some(self.encoder.encode(&self.services.parameters.value(place)?))
     }
 }
 

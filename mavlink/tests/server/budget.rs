@@ -5,8 +5,8 @@
 use std::fmt::Write;
 
 use sophie_control::mode::Mode;
-use sophie_mavlink::dialect::*;
-use sophie_mavlink::streams::{STREAMS, Stream};
+use sophie_dialect::*;
+use sophie_mavlink::services::streams::{STREAMS, Stream};
 
 use crate::page::hold;
 use crate::station::{Station, frame, vehicle};

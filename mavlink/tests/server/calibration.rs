@@ -3,8 +3,8 @@
 use sophie_control::calibration::Face;
 use sophie_control::maths::vector::Vec3;
 use sophie_control::mode::Mode;
+use sophie_dialect::*;
 use sophie_mavlink::Order;
-use sophie_mavlink::dialect::*;
 
 use crate::station::{Station, frame, vehicle};
 

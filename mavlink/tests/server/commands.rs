@@ -7,9 +7,9 @@ use std::fmt::Write;
 
 use num_traits::FromPrimitive;
 use sophie_control::mode::Mode;
+use sophie_dialect::*;
 use sophie_mavlink::Order;
-use sophie_mavlink::dialect::*;
-use sophie_mavlink::server::{OBEYED, Obeyed, When};
+use sophie_mavlink::services::commands::{OBEYED, Obeyed, When};
 
 use crate::page::hold;
 use crate::station::{Station, frame, vehicle};

@@ -1,12 +1,11 @@
-//! Poses and attitudes from outside: axes, bounds, times.
+//! Poses, flow, range and pipe from outside: axes, bounds, times.
 
 use mavlink_core::MessageData;
 use sophie_control::approach::pipe_target::PipeTarget;
 use sophie_control::maths::vector::{Quat, Vec3};
 use sophie_control::navigation::flow_range_sample::GroundView;
-use sophie_mavlink::dialect::*;
+use sophie_dialect::*;
 use sophie_mavlink::inputs::Counts;
-use sophie_mavlink::inputs::attitude::OffboardAttitude;
 use sophie_mavlink::inputs::pose::{ExternalPose, TimeSource};
 
 use crate::station::{Station, frame_by};
@@ -385,104 +384,6 @@ fn a_sender_that_keeps_the_vehicles_time_is_accepted() {
         dated(&mut station, 4_900_001),
         Some((4_900_001, TimeSource::Vehicle))
     );
-}
-
-#[test]
-fn an_attitude_has_what_its_mask_says() {
-    let wish = |m: &SET_ATTITUDE_TARGET_DATA| {
-        let mut station = Station::new();
-        station.say(&frame(m));
-        let inputs = &mut station.inputs;
-        let counts = inputs.counts();
-        assert_eq!(counts.attitudes + counts.frame + counts.value, 1);
-        inputs.take_attitude().map(|(_, attitude)| attitude)
-    };
-    let all = SET_ATTITUDE_TARGET_DATA {
-        q: [1.0, 0.0, 0.0, 0.0],
-        body_roll_rate: 1.0,
-        body_pitch_rate: -2.0,
-        body_yaw_rate: 3.0,
-        thrust: 0.5,
-        target_system: 1,
-        target_component: 1,
-        ..Default::default()
-    };
-    let whole = OffboardAttitude {
-        attitude: Some(Quat::IDENTITY),
-        rates: [Some(1.0), Some(-2.0), Some(3.0)],
-        thrust: Some(0.5),
-    };
-    assert_eq!(wish(&all), Some(whole));
-    let masked = |type_mask| SET_ATTITUDE_TARGET_DATA {
-        type_mask,
-        ..all.clone()
-    };
-    assert_eq!(
-        wish(&masked(128)),
-        Some(OffboardAttitude {
-            attitude: None,
-            ..whole
-        })
-    );
-    assert_eq!(
-        wish(&masked(64)),
-        Some(OffboardAttitude {
-            thrust: None,
-            ..whole
-        })
-    );
-    assert_eq!(
-        wish(&masked(3)),
-        Some(OffboardAttitude {
-            rates: [None, None, Some(3.0)],
-            ..whole
-        })
-    );
-    // Nothing left, a thrust vector.
-    assert_eq!((wish(&masked(199)), wish(&masked(32))), (None, None));
-    for bad in [f32::NAN, f32::INFINITY, 36.0] {
-        assert_eq!(
-            wish(&SET_ATTITUDE_TARGET_DATA {
-                body_yaw_rate: bad,
-                ..all.clone()
-            }),
-            None
-        );
-        assert_eq!(
-            wish(&SET_ATTITUDE_TARGET_DATA {
-                thrust: bad,
-                ..all.clone()
-            }),
-            None
-        );
-        assert_eq!(
-            wish(&SET_ATTITUDE_TARGET_DATA {
-                q: [bad, 0.0, 0.0, 0.0],
-                ..all.clone()
-            }),
-            None
-        );
-        // What is left open may be anything.
-        let open = SET_ATTITUDE_TARGET_DATA {
-            body_yaw_rate: bad,
-            ..masked(4)
-        };
-        assert!(wish(&open).is_some());
-    }
-    assert_eq!(
-        wish(&SET_ATTITUDE_TARGET_DATA {
-            thrust: -0.1,
-            ..all.clone()
-        }),
-        None
-    );
-    // For another vehicle.
-    let mut station = Station::new();
-    station.say(&frame(&SET_ATTITUDE_TARGET_DATA {
-        target_system: 2,
-        ..all.clone()
-    }));
-    assert_eq!(station.inputs.counts(), Counts::default());
 }
 
 /// 0.02 rad forward in 20 ms, 1.5 m over the ground, measured 4 ms before.

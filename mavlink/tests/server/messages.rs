@@ -12,9 +12,9 @@ use sophie_control::mode::{Mode, Reason};
 use sophie_control::params::{MotorProtocol, Params};
 use sophie_control::pilot::rc::{ArmChoice, StickMode, Sticks};
 use sophie_mavlink::Vehicle;
-use sophie_mavlink::messages::*;
+use sophie_mavlink::services::telemetry::*;
 
-use sophie_mavlink::dialect::*;
+use sophie_dialect::*;
 
 use crate::station::{Station, vehicle};
 

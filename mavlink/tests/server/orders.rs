@@ -7,7 +7,7 @@ use sophie_control::params::Params;
 use sophie_control::pilot::bench_orders::{BenchRequest, BenchView, PULSE_MAX_US, SPIN_TIME};
 use sophie_control::pilot::rc::Sticks;
 use sophie_control::pilot::remote::RemoteRequest;
-use sophie_mavlink::dialect::*;
+use sophie_dialect::*;
 use sophie_mavlink::{Answers, Condition, Requests};
 
 use crate::station::{Station, frame, frame_from};

@@ -4,13 +4,13 @@ use std::collections::BTreeSet;
 
 use sophie_control::mode::Mode;
 use sophie_control::params::Params;
+use sophie_dialect::*;
 use sophie_mavlink::Order;
-use sophie_mavlink::dialect::*;
 
 use crate::station::{Station, frame, frame_from, vehicle};
 
 fn id(name: &str) -> mavlink_core::types::CharArray<16> {
-    sophie_mavlink::messages::text::<16>(name).into()
+    sophie_mavlink::services::telemetry::text::<16>(name).into()
 }
 
 fn set(station: &mut Station, name: &str, value: f32) {

@@ -2,7 +2,7 @@
 
 use mavlink_core::MessageData;
 use sophie_control::params::{FlowPort, Params};
-use sophie_mavlink::dialect::*;
+use sophie_dialect::*;
 use sophie_mavlink::inputs::pose::TimeSource;
 use sophie_mavlink::inputs::{Counts, Inputs};
 
@@ -136,7 +136,6 @@ fn grown(station: &mut Station, work: impl FnOnce(&mut Station)) -> Counts {
         poses: after.poses - before.poses,
         views: after.views - before.views,
         targets: after.targets - before.targets,
-        attitudes: after.attitudes - before.attitudes,
         system: after.system - before.system,
         source: after.source - before.source,
         frame: after.frame - before.frame,
@@ -266,39 +265,6 @@ fn a_time_of_32_bits_is_aged_modulo_its_range() {
         }
         assert_eq!(station.inputs.counts().late, 0);
     }
-}
-
-#[test]
-fn an_attitude_is_dated_as_a_range_is_and_has_one_source() {
-    let mut station = begin();
-    let wish = |station: &mut Station, sender: Sender, age| {
-        let time_boot_ms = (sender.clock(station, age) / 1000) as u32;
-        let wish = SET_ATTITUDE_TARGET_DATA {
-            time_boot_ms,
-            q: [1.0, 0.0, 0.0, 0.0],
-            thrust: 0.5,
-            ..Default::default()
-        };
-        sender.say(station, &wish);
-    };
-    // A ground station: an attitude is addressed to the vehicle.
-    let station_ = Sender {
-        system: 255,
-        component: 190,
-        ahead: DATE,
-    };
-    for _ in 0..3 {
-        wish(&mut station, station_, 0);
-        pass(&mut station, &[station_]);
-    }
-    wish(&mut station, station_, 40_000);
-    let (at, _) = station.inputs.take_attitude().unwrap();
-    assert!((40_000..41_000).contains(&(station.now - at)));
-    let other = grown(&mut station, |station| wish(station, CAMERA, 0));
-    assert_eq!((other.attitudes, other.source), (0, 1));
-    station.now += 100_000;
-    let late = grown(&mut station, |station| wish(station, station_, 1_500_000));
-    assert_eq!((late.attitudes, late.late), (0, 1));
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! The console over MAVLink: what is typed, what is said, and who has it.
 
 use mavlink_core::MessageData;
-use sophie_mavlink::dialect::{HEARTBEAT_DATA, SERIAL_CONTROL_DATA};
-use sophie_mavlink::server::shell::{CHUNK, HANG_UP, TYPED};
+use sophie_dialect::{HEARTBEAT_DATA, SERIAL_CONTROL_DATA};
+use sophie_mavlink::services::shell::{CHUNK, HANG_UP, TYPED};
 
 use crate::station::{PLENTY, Station, frame, frame_from};
 

@@ -4,9 +4,9 @@ use mavlink_core::MessageData;
 use proptest::prelude::*;
 use sha2::{Digest, Sha256};
 use sophie_control::mode::Mode;
-use sophie_mavlink::dialect::*;
-use sophie_mavlink::frame::Encoder;
-use sophie_mavlink::signing::{Key, Record, Refused, Signing, Stored};
+use sophie_dialect::*;
+use sophie_mavlink::wire::frame::Encoder;
+use sophie_mavlink::wire::signing::{Key, Record, Refused, Signing, Stored};
 
 use crate::station::{PERIOD, Station, frame, vehicle};
 

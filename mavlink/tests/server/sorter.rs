@@ -1,8 +1,8 @@
 //! Text and frames on one line, told apart byte by byte.
 
 use mavlink_core::{MAVLinkV1MessageRaw, MavHeader, MessageData};
-use sophie_mavlink::dialect::{ATTITUDE_DATA, HEARTBEAT_DATA, PING_DATA};
-use sophie_mavlink::sorter::{For, Sorter, Speaks};
+use sophie_dialect::{ATTITUDE_DATA, HEARTBEAT_DATA, PING_DATA};
+use sophie_mavlink::wire::protocol_detector::{For, Sorter, Speaks};
 
 use crate::station::frame;
 

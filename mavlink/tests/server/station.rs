@@ -5,9 +5,9 @@ use sophie_control::chain::Attitude;
 use sophie_control::maths::vector::{Quat, Vec3};
 use sophie_control::mode::Mode;
 use sophie_control::params::Params;
-use sophie_mavlink::dialect::{COMMAND_ACK_DATA, COMMAND_LONG_DATA, MavCmd, STATUSTEXT_DATA};
+use sophie_dialect::{COMMAND_ACK_DATA, COMMAND_LONG_DATA, MavCmd, STATUSTEXT_DATA};
 use sophie_mavlink::inputs::Inputs;
-use sophie_mavlink::signing::Stored;
+use sophie_mavlink::wire::signing::Stored;
 use sophie_mavlink::{Condition, Order, Server, Signing, Vehicle};
 
 /// Plenty for every stream at its own rate.

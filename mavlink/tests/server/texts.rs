@@ -2,8 +2,8 @@
 
 use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
 use sophie_control::mode::{Mode, Reason};
-use sophie_mavlink::dialect::HEARTBEAT_DATA;
-use sophie_mavlink::texts::{ARMING, LONGEST};
+use sophie_dialect::HEARTBEAT_DATA;
+use sophie_mavlink::services::texts::{ARMING, LONGEST};
 
 use crate::station::{Station, frame, vehicle};
 

@@ -1,9 +1,9 @@
 //! What arrives: whole, cut, garbled, not for here, and too much.
 
 use proptest::prelude::*;
-use sophie_mavlink::dialect::*;
-use sophie_mavlink::parser::Parser;
-use sophie_mavlink::requests::{Request, request};
+use sophie_dialect::*;
+use sophie_mavlink::wire::parser::Parser;
+use sophie_mavlink::wire::requests::{Request, request};
 
 use crate::station::{Station, frame, frame_from};
 
@@ -145,7 +145,7 @@ proptest! {
             let mut bytes = vec![0xFD, payload.len() as u8, 0, 0, 0, 255, 190];
             bytes.extend(&id.to_le_bytes()[..3]);
             bytes.extend(&payload);
-            let extra = sophie_mavlink::requests::crc_extra(id).unwrap();
+            let extra = sophie_mavlink::wire::requests::crc_extra(id).unwrap();
             let sum = mavlink_core::calculate_crc(&bytes[1..], extra);
             bytes.extend(sum.to_le_bytes());
             station.say(&bytes);

@@ -2,7 +2,7 @@
 
 use sophie_control::arming::ArmingInhibit;
 use sophie_mavlink::inputs::Counts;
-use sophie_mavlink::signing::{Key, Record, Refused, Stored};
+use sophie_mavlink::wire::signing::{Key, Record, Refused, Stored};
 
 use super::Console;
 use crate::links::{LineState, SigningState};
@@ -39,7 +39,6 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
             poses,
             views,
             targets,
-            attitudes,
             system,
             source,
             frame,
@@ -48,7 +47,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         } = inputs;
         self.out
             .line(format_args!(
-                "inputs: {poses} poses, {views} of flow and range, {targets} of the pipe, {attitudes} attitudes; refused {system} system, {source} source, {frame} frame, {value} value, {late} late"
+                "inputs: {poses} poses, {views} of flow and range, {targets} of the pipe; refused {system} system, {source} source, {frame} frame, {value} value, {late} late"
             ))
             .await;
     }

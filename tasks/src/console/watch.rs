@@ -105,13 +105,6 @@ const GROUPS: [Group; 11] = [
         places: 1,
         read: air,
     },
-    Group {
-        name: "offb",
-        what: "attitude wished for: deg, deg/s, share of full thrust",
-        columns: "    roll   pitch     yaw       p       q       r  thrust",
-        places: 2,
-        read: offboard,
-    },
 ];
 
 fn sticks(links: &Links) -> Row {
@@ -230,15 +223,6 @@ fn air(links: &Links) -> Row {
         return silent(2);
     };
     [air.pascal, air.celsius].into_iter().map(Some).collect()
-}
-
-fn offboard(links: &Links) -> Row {
-    let Some(wish) = links.offboard.fresh() else {
-        return silent(7);
-    };
-    let rates = wish.rates.map(|rate| rate.map(to_deg));
-    let angles = euler(wish.attitude);
-    angles.into_iter().chain(rates).chain([wish.thrust]).collect()
 }
 
 /// Roll, pitch and yaw, deg.

@@ -2,7 +2,7 @@
 
 use embassy_sync::pipe::Pipe;
 use heapless::Vec;
-use sophie_mavlink::server::shell::CHUNK;
+use sophie_mavlink::services::shell::CHUNK;
 
 use crate::links::Raw;
 use crate::ports::{PortError, SerialInput, SerialOutput};

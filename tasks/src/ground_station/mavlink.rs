@@ -19,17 +19,17 @@ use sophie_control::arming::ArmingInhibit;
 use sophie_control::calibration::AccelFit;
 use sophie_control::gripper::tendon::Reel;
 use sophie_control::params::Params;
-use sophie_mavlink::frame::LONGEST;
 use sophie_mavlink::inputs::Inputs;
-pub use sophie_mavlink::signing;
-use sophie_mavlink::signing::Stored;
+use sophie_mavlink::wire::frame::LONGEST;
+pub use sophie_mavlink::wire::signing;
+use sophie_mavlink::wire::signing::Stored;
 use sophie_mavlink::{Answers, Condition, Order, Requests, Server, Signing, Vehicle};
 
 use crate::deadline::{FixedRate, TaskId, Tick};
-use crate::ground_station::console_pipe::Shell;
 use crate::links::{LineState, Links};
 use crate::ports::{SerialInput, SerialOutput, Storage};
-use crate::storage::storing::{self, NotNow};
+use crate::shell::Shell;
+use crate::storing::{self, NotNow};
 
 /// Bytes taken at once.
 const CHUNK: usize = 64;
@@ -339,9 +339,6 @@ fn publish(links: &Links, inputs: &mut Inputs, now: u64) {
     }
     if let Some(view) = inputs.take_ground() {
         links.ground.send(Instant::from_micros(now), view);
-    }
-    if let Some((at, attitude)) = inputs.take_attitude() {
-        links.offboard.send(Instant::from_micros(at), attitude);
     }
 }
 

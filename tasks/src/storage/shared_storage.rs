@@ -2,7 +2,7 @@
 
 use embassy_sync::mutex::Mutex;
 use sophie_control::params::Params;
-use sophie_mavlink::signing::Record;
+use sophie_mavlink::wire::signing::Record;
 
 use crate::links::Raw;
 use crate::ports::{Loaded, Storage, StorageError};

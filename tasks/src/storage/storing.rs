@@ -4,7 +4,7 @@ use embassy_time::{Duration, Instant, Timer, with_timeout};
 use sophie_control::arming::ArmingInhibit;
 use sophie_control::mode::Mode;
 use sophie_control::params::Params;
-use sophie_mavlink::signing::Record;
+use sophie_mavlink::wire::signing::Record;
 
 use crate::links::Links;
 use crate::ports::{Storage, StorageError};

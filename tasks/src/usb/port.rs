@@ -6,7 +6,7 @@ use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::pipe::Pipe;
 use embassy_time::{Duration, Instant, with_timeout};
 use heapless::Vec;
-use sophie_mavlink::sorter::{For, Sorter, Speaks};
+use sophie_mavlink::wire::protocol_detector::{For, Sorter, Speaks};
 
 use super::PACKET;
 use crate::console::CANCEL;

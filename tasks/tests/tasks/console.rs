@@ -605,7 +605,6 @@ fn the_state_of_the_mavlink_line_is_shown() {
             poses: 9,
             views: 8,
             targets: 7,
-            attitudes: 6,
             system: 5,
             source: 4,
             frame: 3,
@@ -622,6 +621,6 @@ fn the_state_of_the_mavlink_line_is_shown() {
         screen.contains("signing on\r\nrefused: 3 unsigned, 2 with a wrong signature, 1 old or repeated\r\n"),
         "{screen}"
     );
-    let inputs = "inputs: 9 poses, 8 of flow and range, 7 of the pipe, 6 attitudes; refused 5 system, 4 source, 3 frame, 2 value, 1 late\r\n";
+    let inputs = "inputs: 9 poses, 8 of flow and range, 7 of the pipe; refused 5 system, 4 source, 3 frame, 2 value, 1 late\r\n";
     assert!(screen.contains(inputs), "{screen}");
 }

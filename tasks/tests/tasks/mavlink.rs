@@ -8,12 +8,9 @@ use sophie_control::arming::ArmingInhibit;
 use sophie_control::mode::Mode;
 use sophie_control::params::Params;
 use sophie_control::pilot::remote::{RemoteAnswer, RemoteOrder, RemoteRequest};
+use sophie_dialect::{COMMAND_LONG_DATA, HEARTBEAT_DATA, ODOMETRY_DATA, PARAM_SET_DATA, SERIAL_CONTROL_DATA};
 use sophie_fakes::FakeLine;
-use sophie_mavlink::dialect::{
-    COMMAND_LONG_DATA, HEARTBEAT_DATA, ODOMETRY_DATA, PARAM_SET_DATA, SERIAL_CONTROL_DATA,
-    SET_ATTITUDE_TARGET_DATA,
-};
-use sophie_mavlink::signing::{Key, Record, Refused, Signing, Stored};
+use sophie_mavlink::wire::signing::{Key, Record, Refused, Signing, Stored};
 use sophie_tasks::console;
 use sophie_tasks::ground_station::console_pipe::Shell;
 use sophie_tasks::ground_station::mavlink::{self, Lines};
@@ -367,7 +364,7 @@ fn the_bound_is_not_written_over_a_key_that_waits_for_a_restart() {
 }
 
 #[test]
-fn poses_and_attitudes_from_outside_are_published_and_grow_old() {
+fn poses_from_outside_are_published_and_grow_old() {
     let mut bench = Bench::in_mode(Mode::Flight);
     bench.run(1000);
     let pose = ODOMETRY_DATA {
@@ -379,11 +376,6 @@ fn poses_and_attitudes_from_outside_are_published_and_grow_old() {
         ..Default::default()
     };
     bench.line.put(&frame_by(1, 197, &pose));
-    bench.say(&SET_ATTITUDE_TARGET_DATA {
-        thrust: 0.5,
-        type_mask: 7 + 128,
-        ..Default::default()
-    });
     let broken = ODOMETRY_DATA { x: f32::NAN, ..pose };
     bench.line.put(&frame_by(1, 197, &broken));
     bench.run(40);
@@ -391,13 +383,10 @@ fn poses_and_attitudes_from_outside_are_published_and_grow_old() {
     let seen = links.external_pose.latest().unwrap();
     assert_eq!(seen.at.as_micros(), 990_000);
     assert_eq!(seen.value.pose.position.x, 1.0);
-    assert_eq!(links.offboard.fresh().and_then(|wish| wish.thrust), Some(0.5));
     let inputs = links.mavlink.fresh().unwrap().inputs;
-    assert_eq!((inputs.poses, inputs.attitudes, inputs.value), (1, 1, 1));
+    assert_eq!((inputs.poses, inputs.value), (1, 1));
     bench.run(200);
-    assert!(links.external_pose.fresh().is_none() && links.offboard.fresh().is_some());
-    bench.run(400);
-    assert!(links.offboard.fresh().is_none());
+    assert!(links.external_pose.fresh().is_none());
 }
 
 #[test]

@@ -3,9 +3,9 @@
 use embassy_usb::driver::{Direction, EndpointType, Event};
 use mavlink_core::{MAVLinkV1MessageRaw, MAVLinkV2MessageRaw, MavHeader, MessageData};
 use sophie_control::mode::Mode;
+use sophie_dialect::{HEARTBEAT_DATA, PARAM_REQUEST_LIST_DATA, PARAM_SET_DATA, SERIAL_CONTROL_DATA};
 use sophie_fakes::FakeLine;
-use sophie_mavlink::dialect::{HEARTBEAT_DATA, PARAM_REQUEST_LIST_DATA, PARAM_SET_DATA, SERIAL_CONTROL_DATA};
-use sophie_mavlink::signing::Stored;
+use sophie_mavlink::wire::signing::Stored;
 use sophie_tasks::console::one_of::OneOf;
 use sophie_tasks::console::terminals::Served;
 use sophie_tasks::deadline::TaskId;

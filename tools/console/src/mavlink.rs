@@ -11,13 +11,13 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use mavlink_core::{MavlinkVersion, MessageData};
-use sophie_mavlink::dialect::{
+use sophie_dialect::{
     HEARTBEAT_DATA, MavAutopilot, MavType, SERIAL_CONTROL_DATA, SerialControlDev, SerialControlFlag,
 };
-use sophie_mavlink::frame::{COMPONENT, Encoder, Frame, SYSTEM};
-use sophie_mavlink::parser::Parser;
-use sophie_mavlink::server::shell::CHUNK;
-use sophie_mavlink::signing::{Key, Record, Signing, Stored};
+use sophie_mavlink::services::shell::CHUNK;
+use sophie_mavlink::wire::frame::{COMPONENT, Encoder, Frame, SYSTEM};
+use sophie_mavlink::wire::parser::Parser;
+use sophie_mavlink::wire::signing::{Key, Record, Signing, Stored};
 
 use crate::port::Wire;
 

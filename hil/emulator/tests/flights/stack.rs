@@ -6,12 +6,12 @@ use std::time::Duration;
 
 use mavlink_core::MessageData;
 use serde::Deserialize;
+use sophie_dialect::{FILE_TRANSFER_PROTOCOL_DATA, HEARTBEAT_DATA, PARAM_REQUEST_LIST_DATA};
 use sophie_emulator::closed_loop::Setup;
 use sophie_emulator::silicon;
 use sophie_emulator::terminal::Sockets;
-use sophie_mavlink::dialect::{FILE_TRANSFER_PROTOCOL_DATA, HEARTBEAT_DATA, PARAM_REQUEST_LIST_DATA};
-use sophie_mavlink::frame::Encoder;
-use sophie_mavlink::ftp::PAYLOAD;
+use sophie_mavlink::services::ftp::PAYLOAD;
+use sophie_mavlink::wire::frame::Encoder;
 use sophie_sim::scenario::World;
 
 use super::console::terminal;
@@ -214,7 +214,7 @@ struct Ceiling {
 
 /// Flies `board`, with whom its lines are full, onto the pipe and over a restart there.
 fn leaves_a_quarter(board: &str, image: &Path) {
-    let firmware = Firmware::read(image, board_kind::find(board).unwrap()).unwrap();
+    let firmware = Firmware::read(image, boards::find(board).unwrap()).unwrap();
     let (typed, console) = terminal("--console");
     let (asked, mavlink) = terminal("--mavlink");
     let user = std::thread::spawn(move || type_on(typed));

@@ -3,17 +3,17 @@
 use mavlink_core::MessageData;
 use sophie_control::mode::Mode;
 
-use super::super::Server;
-use super::super::answer::Answer;
 use super::{Reply, or_zero, whole};
-use crate::dialect::*;
-use crate::streams::{PERIOD_MIN_US, STREAMS};
+use crate::services::Services;
+use crate::services::answer::Answer;
+use crate::services::streams::{PERIOD_MIN_US, STREAMS};
+use sophie_dialect::*;
 
 /// Longest interval, µs, 35 minutes: what MESSAGE_INTERVAL can say.
 const PERIOD_MAX_US: u32 = i32::MAX as u32;
 const NO_NUMBER: &str = "no message has that number";
 
-impl Server {
+impl Services {
     pub(super) fn set_interval(&mut self, id: f32, interval: f32, now: u64) -> MavResult {
         let Some(id) = whole(id) else {
             return self.deny(NO_NUMBER);

@@ -6,9 +6,9 @@
 use heapless::Vec;
 use mavlink_core::{MessageData, calculate_crc};
 
-use crate::dialect::HEARTBEAT_DATA;
-use crate::frame::{OVERHEAD, SIGNATURE, SIGNED, STX};
-use crate::parser::{GAP, Parser};
+use crate::wire::frame::{OVERHEAD, SIGNATURE, SIGNED, STX};
+use crate::wire::parser::{GAP, Parser};
+use sophie_dialect::HEARTBEAT_DATA;
 
 /// First byte of a MAVLink 1 frame.
 const STX_1: u8 = 0xFE;

@@ -8,12 +8,12 @@ use sophie_control::calibration::{
 use sophie_control::maths::decimal::Decimal;
 use sophie_control::maths::vector::Vec3;
 
-use super::super::Server;
-use super::super::answer::Answer;
 use super::{or_zero, whole};
-use crate::dialect::*;
-use crate::requests::{Command, Peer};
+use crate::services::Services;
+use crate::services::answer::Answer;
 use crate::vehicle::Vehicle;
+use crate::wire::requests::{Command, Peer};
+use sophie_dialect::*;
 
 /// Length of one rest, µs: 125 samples at the rate of the task.
 const REST: u64 = 2_500_000;
@@ -52,7 +52,7 @@ enum Found {
     Accel(Vec3, Option<Vec3>),
 }
 
-impl Server {
+impl Services {
     /// Begins a calibration, or ends the one under way; `None` where it is acknowledged later.
     pub(super) fn calibrate(
         &mut self,
@@ -104,7 +104,7 @@ impl Server {
     }
 
     /// One step of the calibration under way, at each run.
-    pub(in super::super) fn go_on_calibrating(&mut self, now: u64, vehicle: &Vehicle) {
+    pub(crate) fn continue_calibration(&mut self, now: u64, vehicle: &Vehicle) {
         let Some(calibration) = &mut self.calibration else {
             return;
         };

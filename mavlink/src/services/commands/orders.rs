@@ -5,11 +5,11 @@ use sophie_control::pilot::bench_orders::{
 };
 use sophie_control::pilot::remote::{RemoteOrder, RemoteRefusal, RemoteRequest};
 
-use super::super::Server;
 use super::{or_zero, whole};
-use crate::dialect::*;
-use crate::requests::{Command, Peer};
+use crate::services::Services;
 use crate::vehicle::Vehicle;
+use crate::wire::requests::{Command, Peer};
+use sophie_dialect::*;
 
 /// Time that the commander has to answer, µs: fifty of its periods.
 const COMMANDER: u64 = 500_000;
@@ -76,7 +76,7 @@ impl Orders {
     }
 }
 
-impl Server {
+impl Services {
     /// Gives the order that `command` asks for; `None` where it is acknowledged later.
     pub(super) fn order_by(&mut self, command: &Command, from: Peer, now: u64) -> Option<MavResult> {
         let number = u32::from(command.number);

@@ -4,7 +4,7 @@ use std::vec::Vec;
 
 use proptest::prelude::*;
 
-use super::*;
+use crate::services::ftp::*;
 
 static LONG: [u8; 1000] = {
     let mut bytes = [0; 1000];

@@ -1,14 +1,14 @@
 //! Restarting, and storing the parameters.
 
-use super::super::Server;
 use super::whole;
-use crate::dialect::*;
+use crate::services::Services;
 use crate::vehicle::Vehicle;
+use sophie_dialect::*;
 
 /// Time from the answer to a restart, µs: for the answer to get out.
 const LAST_WORDS: u64 = 300_000;
 
-impl Server {
+impl Services {
     pub(super) fn reboot(&mut self, autopilot: f32, now: u64, vehicle: &Vehicle) -> MavResult {
         match whole(autopilot) {
             Some(1) if vehicle.at_rest() => {

@@ -1,6 +1,6 @@
 //! The commands that are obeyed, and when, as docs/mavlink.md lists them.
 
-use crate::dialect::MavCmd;
+use sophie_dialect::MavCmd;
 
 /// When a command is obeyed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

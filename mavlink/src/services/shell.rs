@@ -2,8 +2,8 @@
 
 use heapless::Vec;
 
-use crate::dialect::{SERIAL_CONTROL_DATA, SerialControlDev, SerialControlFlag};
-use crate::requests::Peer;
+use crate::wire::requests::Peer;
+use sophie_dialect::{SERIAL_CONTROL_DATA, SerialControlDev, SerialControlFlag};
 
 /// Bytes of one message.
 pub const CHUNK: usize = 70;
@@ -28,11 +28,11 @@ pub struct Shell {
     /// Messages so far: who reads them sees what was lost.
     count: u16,
     /// A stream has gone out since its last frame: the next one is the console's, where there is one.
-    pub(super) waits: bool,
+    pub(crate) waits: bool,
 }
 
 impl Shell {
-    pub(super) const fn new() -> Self {
+    pub(crate) const fn new() -> Self {
         Self {
             user: None,
             heard_at: 0,
@@ -44,7 +44,7 @@ impl Shell {
     }
 
     /// Takes a message. A station that types takes the console from another, whose command ends.
-    pub(super) fn obey(&mut self, serial: &SERIAL_CONTROL_DATA, from: Peer, now: u64) {
+    pub(crate) fn obey(&mut self, serial: &SERIAL_CONTROL_DATA, from: Peer, now: u64) {
         let flags = SerialControlFlag::from_bits_truncate(serial.flags.into());
         let shell = serial.device == SerialControlDev::SERIAL_CONTROL_DEV_SHELL as u8;
         if !shell || flags.contains(SerialControlFlag::SERIAL_CONTROL_FLAG_REPLY) {
@@ -68,14 +68,14 @@ impl Shell {
     }
 
     /// A heartbeat of `from` has come.
-    pub(super) fn hear(&mut self, from: Peer, now: u64) {
+    pub(crate) fn hear(&mut self, from: Peer, now: u64) {
         if self.user == Some(from) {
             self.heard_at = now;
         }
     }
 
     /// Ends the console of a station that has gone.
-    pub(super) fn expire(&mut self, now: u64) {
+    pub(crate) fn expire(&mut self, now: u64) {
         if now.saturating_sub(self.heard_at) > SILENCE {
             self.hang_up();
         }
@@ -113,7 +113,7 @@ impl Shell {
     }
 
     /// What was said, as a message.
-    pub(super) fn said(&mut self) -> Option<SERIAL_CONTROL_DATA> {
+    pub(crate) fn said(&mut self) -> Option<SERIAL_CONTROL_DATA> {
         let user = self.user?;
         if self.said.is_empty() {
             return None;

@@ -7,9 +7,9 @@
 
 use sha2::{Digest, Sha256};
 
-use crate::dialect::HEARTBEAT_DATA;
-use crate::frame::{Frame, SIGNATURE};
+use crate::wire::frame::{Frame, SIGNATURE};
 use mavlink_core::MessageData;
+use sophie_dialect::HEARTBEAT_DATA;
 
 /// Bytes of the signature proper, the last of a frame.
 const HASH: usize = 6;

@@ -1,13 +1,13 @@
 //! Answers to those who asked, kept until there is room on the line.
 
-use crate::dialect::*;
-use crate::parameters::Place;
-use crate::requests::Peer;
-use crate::streams::{STREAMS, frame_bytes};
+use crate::services::parameters::Place;
+use crate::services::streams::{STREAMS, frame_bytes};
+use crate::wire::requests::Peer;
+use sophie_dialect::*;
 
 /// What is to be said to someone who asked.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Answer {
+pub(crate) enum Answer {
     Ack {
         command: u16,
         result: MavResult,
@@ -40,7 +40,7 @@ pub(super) enum Answer {
 
 impl Answer {
     /// Length of its frame at most, bytes.
-    pub(super) fn bytes(&self) -> u32 {
+    pub(crate) fn bytes(&self) -> u32 {
         match self {
             Self::Ack { .. } => frame_bytes::<COMMAND_ACK_DATA>(),
             Self::Ping(_) => frame_bytes::<PING_DATA>(),

@@ -5,8 +5,8 @@
 
 use sophie_control::params::{ParamError, Params};
 
-use crate::dialect::{MavParamType, PARAM_VALUE_DATA};
-use crate::messages::text;
+use crate::services::telemetry::text;
+use sophie_dialect::{MavParamType, PARAM_VALUE_DATA};
 
 /// Time from the last change to storing, µs.
 const SETTLE: u64 = 1_000_000;

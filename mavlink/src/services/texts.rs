@@ -6,9 +6,9 @@ use heapless::{Deque, String};
 use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
 use sophie_control::mode::{Mode, Reason};
 
-use crate::dialect::{MavSeverity, STATUSTEXT_DATA};
-use crate::messages::text;
+use crate::services::telemetry::text;
 use crate::vehicle::{Condition, Vehicle};
+use sophie_dialect::{MavSeverity, STATUSTEXT_DATA};
 
 /// Longest text of one message.
 pub const LONGEST: usize = 50;

@@ -4,8 +4,8 @@
 
 use mavlink_core::MessageData;
 
-use crate::dialect::*;
-use crate::frame::OVERHEAD;
+use crate::wire::frame::OVERHEAD;
+use sophie_dialect::*;
 
 /// A message that is sent again and again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

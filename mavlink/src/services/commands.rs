@@ -1,23 +1,23 @@
 //! Commands, and what each is answered with.
 
-pub(super) mod calibration;
+pub(crate) mod calibration;
 mod intervals;
 mod obeyed;
-pub(super) mod orders;
+pub(crate) mod orders;
 mod restart;
 
 pub use self::obeyed::{OBEYED, Obeyed, When};
-use super::Server;
 use super::answer::Answer;
-use crate::dialect::*;
-use crate::requests::{Command, Peer};
+use crate::services::Services;
 use crate::vehicle::Vehicle;
+use crate::wire::requests::{Command, Peer};
+use sophie_dialect::*;
 
 /// What a command is answered with.
-pub(super) struct Reply {
-    pub(super) result: MavResult,
+pub(crate) struct Reply {
+    pub(crate) result: MavResult,
     /// What was asked for, behind the acknowledgement: clients wait for that first.
-    pub(super) then: Option<Answer>,
+    pub(crate) then: Option<Answer>,
 }
 
 impl From<MavResult> for Reply {
@@ -35,9 +35,9 @@ impl From<Answer> for Reply {
     }
 }
 
-impl Server {
+impl Services {
     /// Obeys a command; `None` where the answer comes later.
-    pub(super) fn command(
+    pub(crate) fn command(
         &mut self,
         command: &Command,
         from: Peer,
@@ -99,7 +99,7 @@ fn whole(value: f32) -> Option<u32> {
 /// A field that may be left out: NaN is "not given" in the standard, and means what 0 does. [`request`] makes the other
 /// spelling, `INT32_MAX` in a whole field, a NaN as well.
 ///
-/// [`request`]: crate::requests::request
+/// [`request`]: crate::wire::requests::request
 const fn or_zero(value: f32) -> f32 {
     if value.is_nan() { 0.0 } else { value }
 }

@@ -11,8 +11,8 @@ use sophie_control::maths::scalar::GRAVITY;
 use sophie_control::mode::Mode;
 use sophie_control::pilot::rc::{ArmChoice, StickMode, Sticks};
 
-use crate::dialect::*;
 use crate::vehicle::Vehicle;
+use sophie_dialect::*;
 
 /// The version of the protocol in every heartbeat.
 const MAVLINK_VERSION: u8 = 3;

@@ -1,3 +1,4 @@
+#![no_std]
 #![doc = "MAVLink sophie dialect."]
 #![doc = ""]
 #![doc = "This file was automatically generated, do not edit."]
@@ -3560,111 +3561,6 @@ impl MessageData for SETUP_SIGNING_DATA {
         }
     }
 }
-#[doc = "ID: 82"]
-#[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
-#[cfg_attr(feature = "arbitrary", derive(Arbitrary))]
-#[cfg_attr(feature = "ts-rs", derive(TS))]
-#[cfg_attr(feature = "ts-rs", ts(export))]
-pub struct SET_ATTITUDE_TARGET_DATA {
-    pub time_boot_ms: u32,
-    #[cfg_attr(feature = "serde", serde(with = "serde_arrays"))]
-    #[cfg_attr(feature = "ts-rs", ts(type = "Array<number>"))]
-    pub q: [f32; 4],
-    pub body_roll_rate: f32,
-    pub body_pitch_rate: f32,
-    pub body_yaw_rate: f32,
-    pub thrust: f32,
-    pub target_system: u8,
-    pub target_component: u8,
-    pub type_mask: u8,
-}
-impl SET_ATTITUDE_TARGET_DATA {
-    pub const ENCODED_LEN: usize = 39usize;
-    pub const DEFAULT: Self = Self {
-        time_boot_ms: 0_u32,
-        q: [0.0_f32; 4usize],
-        body_roll_rate: 0.0_f32,
-        body_pitch_rate: 0.0_f32,
-        body_yaw_rate: 0.0_f32,
-        thrust: 0.0_f32,
-        target_system: 0_u8,
-        target_component: 0_u8,
-        type_mask: 0_u8,
-    };
-    #[cfg(feature = "arbitrary")]
-    pub fn random<R: rand::Rng>(rng: &mut R) -> Self {
-        use arbitrary::{Arbitrary, Unstructured};
-        let mut buf = [0u8; 1024];
-        rng.fill_bytes(&mut buf);
-        let mut unstructured = Unstructured::new(&buf);
-        Self::arbitrary(&mut unstructured).unwrap_or_default()
-    }
-}
-impl Default for SET_ATTITUDE_TARGET_DATA {
-    fn default() -> Self {
-        Self::DEFAULT.clone()
-    }
-}
-impl MessageData for SET_ATTITUDE_TARGET_DATA {
-    type Message = MavMessage;
-    const ID: u32 = 82u32;
-    const NAME: &'static str = "SET_ATTITUDE_TARGET";
-    const EXTRA_CRC: u8 = 49u8;
-    const ENCODED_LEN: usize = 39usize;
-    fn deser(_version: MavlinkVersion, __input: &[u8]) -> Result<Self, ::mavlink_core::error::ParserError> {
-        let avail_len = __input.len();
-        let mut payload_buf;
-        let mut buf = if avail_len < Self::ENCODED_LEN {
-            payload_buf = [0; Self::ENCODED_LEN];
-            payload_buf[0..avail_len].copy_from_slice(__input);
-            Bytes::new(&payload_buf)
-        } else {
-            Bytes::new(__input)
-        };
-        let mut __struct = Self::default();
-        __struct.time_boot_ms = buf.get_u32_le()?;
-        for v in &mut __struct.q {
-            let val = buf.get_f32_le()?;
-            *v = val;
-        }
-        __struct.body_roll_rate = buf.get_f32_le()?;
-        __struct.body_pitch_rate = buf.get_f32_le()?;
-        __struct.body_yaw_rate = buf.get_f32_le()?;
-        __struct.thrust = buf.get_f32_le()?;
-        __struct.target_system = buf.get_u8()?;
-        __struct.target_component = buf.get_u8()?;
-        __struct.type_mask = buf.get_u8()?;
-        Ok(__struct)
-    }
-    fn ser(&self, version: MavlinkVersion, bytes: &mut [u8]) -> usize {
-        let mut __tmp = BytesMut::new(bytes);
-        if __tmp.remaining() < Self::ENCODED_LEN {
-            panic!(
-                "buffer is too small (need {} bytes, but got {})",
-                Self::ENCODED_LEN,
-                __tmp.remaining(),
-            )
-        }
-        __tmp.put_u32_le(self.time_boot_ms);
-        for val in &self.q {
-            __tmp.put_f32_le(*val);
-        }
-        __tmp.put_f32_le(self.body_roll_rate);
-        __tmp.put_f32_le(self.body_pitch_rate);
-        __tmp.put_f32_le(self.body_yaw_rate);
-        __tmp.put_f32_le(self.thrust);
-        __tmp.put_u8(self.target_system);
-        __tmp.put_u8(self.target_component);
-        __tmp.put_u8(self.type_mask);
-        if matches!(version, MavlinkVersion::V2) {
-            let len = __tmp.len();
-            ::mavlink_core::utils::remove_trailing_zeroes(&bytes[..len])
-        } else {
-            __tmp.len()
-        }
-    }
-}
 #[doc = "Arms and grip: front-left, rear-left, front-right, rear-right. NaN where nothing fresh is known."]
 #[doc = ""]
 #[doc = "ID: 53000"]
@@ -4284,8 +4180,6 @@ pub enum MavMessage {
     SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA),
     #[doc = "ID: 256"]
     SETUP_SIGNING(SETUP_SIGNING_DATA),
-    #[doc = "ID: 82"]
-    SET_ATTITUDE_TARGET(SET_ATTITUDE_TARGET_DATA),
     #[doc = "Arms and grip: front-left, rear-left, front-right, rear-right. NaN where nothing fresh is known."]
     #[doc = ""]
     #[doc = "ID: 53000"]
@@ -4303,8 +4197,8 @@ impl MavMessage {
     pub const fn all_ids() -> &'static [u32] {
         &[
             0u32, 1u32, 4u32, 20u32, 21u32, 22u32, 23u32, 26u32, 30u32, 31u32, 36u32, 65u32, 75u32, 76u32,
-            77u32, 82u32, 102u32, 106u32, 110u32, 111u32, 126u32, 132u32, 138u32, 147u32, 148u32, 149u32,
-            244u32, 245u32, 251u32, 253u32, 256u32, 331u32, 397u32, 435u32, 436u32, 437u32, 53000u32,
+            77u32, 102u32, 106u32, 110u32, 111u32, 126u32, 132u32, 138u32, 147u32, 148u32, 149u32, 244u32,
+            245u32, 251u32, 253u32, 256u32, 331u32, 397u32, 435u32, 436u32, 437u32, 53000u32,
         ]
     }
     pub const fn all_messages() -> &'static [(&'static str, u32)] {
@@ -4324,7 +4218,6 @@ impl MavMessage {
             (COMMAND_INT_DATA::NAME, COMMAND_INT_DATA::ID),
             (COMMAND_LONG_DATA::NAME, COMMAND_LONG_DATA::ID),
             (COMMAND_ACK_DATA::NAME, COMMAND_ACK_DATA::ID),
-            (SET_ATTITUDE_TARGET_DATA::NAME, SET_ATTITUDE_TARGET_DATA::ID),
             (
                 VISION_POSITION_ESTIMATE_DATA::NAME,
                 VISION_POSITION_ESTIMATE_DATA::ID,
@@ -4421,9 +4314,6 @@ impl Message for MavMessage {
                 SERVO_OUTPUT_RAW_DATA::deser(version, payload).map(Self::SERVO_OUTPUT_RAW)
             }
             SETUP_SIGNING_DATA::ID => SETUP_SIGNING_DATA::deser(version, payload).map(Self::SETUP_SIGNING),
-            SET_ATTITUDE_TARGET_DATA::ID => {
-                SET_ATTITUDE_TARGET_DATA::deser(version, payload).map(Self::SET_ATTITUDE_TARGET)
-            }
             SOPHIE_ARMS_DATA::ID => SOPHIE_ARMS_DATA::deser(version, payload).map(Self::SOPHIE_ARMS),
             STATUSTEXT_DATA::ID => STATUSTEXT_DATA::deser(version, payload).map(Self::STATUSTEXT),
             SYS_STATUS_DATA::ID => SYS_STATUS_DATA::deser(version, payload).map(Self::SYS_STATUS),
@@ -4467,7 +4357,6 @@ impl Message for MavMessage {
             Self::SERIAL_CONTROL(..) => SERIAL_CONTROL_DATA::NAME,
             Self::SERVO_OUTPUT_RAW(..) => SERVO_OUTPUT_RAW_DATA::NAME,
             Self::SETUP_SIGNING(..) => SETUP_SIGNING_DATA::NAME,
-            Self::SET_ATTITUDE_TARGET(..) => SET_ATTITUDE_TARGET_DATA::NAME,
             Self::SOPHIE_ARMS(..) => SOPHIE_ARMS_DATA::NAME,
             Self::STATUSTEXT(..) => STATUSTEXT_DATA::NAME,
             Self::SYS_STATUS(..) => SYS_STATUS_DATA::NAME,
@@ -4508,7 +4397,6 @@ impl Message for MavMessage {
             Self::SERIAL_CONTROL(..) => SERIAL_CONTROL_DATA::ID,
             Self::SERVO_OUTPUT_RAW(..) => SERVO_OUTPUT_RAW_DATA::ID,
             Self::SETUP_SIGNING(..) => SETUP_SIGNING_DATA::ID,
-            Self::SET_ATTITUDE_TARGET(..) => SET_ATTITUDE_TARGET_DATA::ID,
             Self::SOPHIE_ARMS(..) => SOPHIE_ARMS_DATA::ID,
             Self::STATUSTEXT(..) => STATUSTEXT_DATA::ID,
             Self::SYS_STATUS(..) => SYS_STATUS_DATA::ID,
@@ -4549,7 +4437,6 @@ impl Message for MavMessage {
             SERIAL_CONTROL_DATA::NAME => Some(SERIAL_CONTROL_DATA::ID),
             SERVO_OUTPUT_RAW_DATA::NAME => Some(SERVO_OUTPUT_RAW_DATA::ID),
             SETUP_SIGNING_DATA::NAME => Some(SETUP_SIGNING_DATA::ID),
-            SET_ATTITUDE_TARGET_DATA::NAME => Some(SET_ATTITUDE_TARGET_DATA::ID),
             SOPHIE_ARMS_DATA::NAME => Some(SOPHIE_ARMS_DATA::ID),
             STATUSTEXT_DATA::NAME => Some(STATUSTEXT_DATA::ID),
             SYS_STATUS_DATA::NAME => Some(SYS_STATUS_DATA::ID),
@@ -4597,9 +4484,6 @@ impl Message for MavMessage {
             SERIAL_CONTROL_DATA::ID => Some(Self::SERIAL_CONTROL(SERIAL_CONTROL_DATA::default())),
             SERVO_OUTPUT_RAW_DATA::ID => Some(Self::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA::default())),
             SETUP_SIGNING_DATA::ID => Some(Self::SETUP_SIGNING(SETUP_SIGNING_DATA::default())),
-            SET_ATTITUDE_TARGET_DATA::ID => {
-                Some(Self::SET_ATTITUDE_TARGET(SET_ATTITUDE_TARGET_DATA::default()))
-            }
             SOPHIE_ARMS_DATA::ID => Some(Self::SOPHIE_ARMS(SOPHIE_ARMS_DATA::default())),
             STATUSTEXT_DATA::ID => Some(Self::STATUSTEXT(STATUSTEXT_DATA::default())),
             SYS_STATUS_DATA::ID => Some(Self::SYS_STATUS(SYS_STATUS_DATA::default())),
@@ -4658,9 +4542,6 @@ impl Message for MavMessage {
             SERIAL_CONTROL_DATA::ID => Some(Self::SERIAL_CONTROL(SERIAL_CONTROL_DATA::random(rng))),
             SERVO_OUTPUT_RAW_DATA::ID => Some(Self::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA::random(rng))),
             SETUP_SIGNING_DATA::ID => Some(Self::SETUP_SIGNING(SETUP_SIGNING_DATA::random(rng))),
-            SET_ATTITUDE_TARGET_DATA::ID => {
-                Some(Self::SET_ATTITUDE_TARGET(SET_ATTITUDE_TARGET_DATA::random(rng)))
-            }
             SOPHIE_ARMS_DATA::ID => Some(Self::SOPHIE_ARMS(SOPHIE_ARMS_DATA::random(rng))),
             STATUSTEXT_DATA::ID => Some(Self::STATUSTEXT(STATUSTEXT_DATA::random(rng))),
             SYS_STATUS_DATA::ID => Some(Self::SYS_STATUS(SYS_STATUS_DATA::random(rng))),
@@ -4704,7 +4585,6 @@ impl Message for MavMessage {
             Self::SERIAL_CONTROL(body) => body.ser(version, bytes),
             Self::SERVO_OUTPUT_RAW(body) => body.ser(version, bytes),
             Self::SETUP_SIGNING(body) => body.ser(version, bytes),
-            Self::SET_ATTITUDE_TARGET(body) => body.ser(version, bytes),
             Self::SOPHIE_ARMS(body) => body.ser(version, bytes),
             Self::STATUSTEXT(body) => body.ser(version, bytes),
             Self::SYS_STATUS(body) => body.ser(version, bytes),
@@ -4745,7 +4625,6 @@ impl Message for MavMessage {
             SERIAL_CONTROL_DATA::ID => SERIAL_CONTROL_DATA::EXTRA_CRC,
             SERVO_OUTPUT_RAW_DATA::ID => SERVO_OUTPUT_RAW_DATA::EXTRA_CRC,
             SETUP_SIGNING_DATA::ID => SETUP_SIGNING_DATA::EXTRA_CRC,
-            SET_ATTITUDE_TARGET_DATA::ID => SET_ATTITUDE_TARGET_DATA::EXTRA_CRC,
             SOPHIE_ARMS_DATA::ID => SOPHIE_ARMS_DATA::EXTRA_CRC,
             STATUSTEXT_DATA::ID => STATUSTEXT_DATA::EXTRA_CRC,
             SYS_STATUS_DATA::ID => SYS_STATUS_DATA::EXTRA_CRC,
@@ -4766,7 +4645,6 @@ impl Message for MavMessage {
             Self::PING(inner) => Some(inner.target_system),
             Self::SERIAL_CONTROL(inner) => Some(inner.target_system),
             Self::SETUP_SIGNING(inner) => Some(inner.target_system),
-            Self::SET_ATTITUDE_TARGET(inner) => Some(inner.target_system),
             Self::TIMESYNC(inner) => Some(inner.target_system),
             _ => None,
         }
@@ -4783,7 +4661,6 @@ impl Message for MavMessage {
             Self::PING(inner) => Some(&mut inner.target_system),
             Self::SERIAL_CONTROL(inner) => Some(&mut inner.target_system),
             Self::SETUP_SIGNING(inner) => Some(&mut inner.target_system),
-            Self::SET_ATTITUDE_TARGET(inner) => Some(&mut inner.target_system),
             Self::TIMESYNC(inner) => Some(&mut inner.target_system),
             _ => None,
         }
@@ -4800,7 +4677,6 @@ impl Message for MavMessage {
             Self::PING(inner) => Some(inner.target_component),
             Self::SERIAL_CONTROL(inner) => Some(inner.target_component),
             Self::SETUP_SIGNING(inner) => Some(inner.target_component),
-            Self::SET_ATTITUDE_TARGET(inner) => Some(inner.target_component),
             Self::TIMESYNC(inner) => Some(inner.target_component),
             _ => None,
         }
@@ -4817,7 +4693,6 @@ impl Message for MavMessage {
             Self::PING(inner) => Some(&mut inner.target_component),
             Self::SERIAL_CONTROL(inner) => Some(&mut inner.target_component),
             Self::SETUP_SIGNING(inner) => Some(&mut inner.target_component),
-            Self::SET_ATTITUDE_TARGET(inner) => Some(&mut inner.target_component),
             Self::TIMESYNC(inner) => Some(&mut inner.target_component),
             _ => None,
         }

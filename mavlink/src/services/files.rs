@@ -14,12 +14,12 @@ pub struct File {
 /// What metadata there is, and where.
 pub const GENERAL: File = File {
     path: "general.json",
-    bytes: include_bytes!("../files/general.json"),
+    bytes: include_bytes!("../../files/general.json"),
 };
 /// Names, units, ranges, choices and texts of all parameters, compressed: 20 KB would be too much for the smallest board.
 pub const PARAMETER: File = File {
     path: "parameter.json.xz",
-    bytes: include_bytes!("../files/parameter.json.xz"),
+    bytes: include_bytes!("../../files/parameter.json.xz"),
 };
 /// All of them.
 pub static FILES: [File; 2] = [GENERAL, PARAMETER];

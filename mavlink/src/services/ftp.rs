@@ -6,8 +6,8 @@
 
 use heapless::Deque;
 
-use crate::files::{File, crc32};
-use crate::requests::Peer;
+use crate::services::files::{File, crc32};
+use crate::wire::requests::Peer;
 
 /// Bytes of the message's payload: a header and data.
 pub const PAYLOAD: usize = 251;

@@ -5,8 +5,8 @@
 use heapless::Vec;
 use mavlink_core::calculate_crc;
 
-use crate::frame::{Frame, HEADER, LONGEST, SIGNATURE, SIGNED, STX};
-use crate::requests::crc_extra;
+use crate::wire::frame::{Frame, HEADER, LONGEST, SIGNATURE, SIGNED, STX};
+use crate::wire::requests::crc_extra;
 
 /// Beginnings of frames looked at for one byte that arrives.
 const CANDIDATES: usize = 4;
