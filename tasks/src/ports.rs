@@ -12,8 +12,8 @@ use sophie_control::params::Params;
 use sophie_mavlink::wire::signing::{Record, Stored};
 
 use crate::links::RcState;
-use crate::retained_state::Words;
 use crate::stack_use::StackUse;
+use crate::start::retained_state::Words;
 
 /// Why a port gave nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,7 +40,7 @@ pub trait Imu {
     fn rate_hz(&self) -> f32;
 
     /// Waits for data-ready and reads every sample since the last call, oldest first. The future is dropped when
-    /// the part stays silent for [`crate::imu::SILENCE`], and the call made again: it must be safe to drop.
+    /// the part stays silent for [`crate::flight::imu::SILENCE`], and the call made again: it must be safe to drop.
     ///
     /// # Errors
     /// A silent or garbled sensor.
@@ -72,7 +72,7 @@ pub trait Barometer {
     /// A board that has none spawns no task for it.
     const FITTED: bool;
 
-    /// Measures once, within [`crate::barometer::READING`]: waits for it and holds no bus meanwhile.
+    /// Measures once, within [`crate::navigation::barometer::READING`]: waits for it and holds no bus meanwhile.
     ///
     /// # Errors
     /// A silent, absent or garbled part.

@@ -5,15 +5,12 @@ use std::cell::Cell;
 use glam::{DQuat, DVec3};
 use mavlink_core::{MAVLinkV2MessageRaw, MavHeader, MessageData};
 use sophie_dialect::{ATT_POS_MOCAP_DATA, LANDING_TARGET_DATA};
-use sophie_tasks::ground_station::console_pipe::Shell;
-use sophie_tasks::ground_station::mavlink;
-use sophie_tasks::ground_station::mavlink::signing::Stored;
 use sophie_tasks::links::Links;
 
+use super::line::Line;
+use super::mavlink_server;
+use super::storage::Memory;
 use crate::clock::VirtualTime;
-use crate::live::Live;
-use crate::live::line::{Line, LinePort};
-use crate::live::stored::{Memory, Port};
 use crate::plant::Plant;
 use crate::scenario::Scenario;
 use crate::sensors::pose::{Measured, PoseSource};
@@ -36,8 +33,8 @@ pub struct Companion {
 }
 
 impl Companion {
-    /// The computer of `scenario`, whose seed gives its errors. With `live` it shares the line of the clients.
-    pub fn new(scenario: &Scenario, live: Option<&Live>) -> Self {
+    /// The computer of `scenario`, whose seed sets its errors. It sends on `shared`, or on a line of its own.
+    pub fn new(scenario: &Scenario, shared: Option<&'static Line>) -> Self {
         let sensors = &scenario.sensors;
         // It knows of the pipe what the pilot does.
         let pipe = scenario.pilot.believes.pipe(&scenario.world);
@@ -47,43 +44,28 @@ impl Companion {
             source: PoseSource::new(streams)
                 .seeing(DVec3::new(north, east, -pipe.top), streams)
                 .failing(sensors.pose_fault, sensors.pose_fails_at, sensors.pose_fails_for),
-            line: live.map_or_else(|| &*Box::leak(Box::new(Line::new())), Live::line),
-            shared: live.is_some(),
+            line: shared.unwrap_or_else(|| Box::leak(Box::new(Line::new()))),
+            shared: shared.is_some(),
             sequence: 0,
         }
     }
 
-    /// Spawns the board's server on a line of its own.
+    /// Spawns the board's server on the computer's own line, where no client can order a restart.
     pub fn spawn(&self, time: &VirtualTime, links: &'static Links) {
         let memory: &'static Memory = Box::leak(Box::new(Memory {
             params: Cell::new(links.params),
             signing: Cell::new(None),
         }));
-        let port = LinePort(self.line);
-        let lines = mavlink::Lines {
-            inputs: [port],
-            outputs: [port],
-            bytes_per_second: [BYTES_PER_SECOND],
-        };
-        // The computer types nothing, and orders no restart.
-        let shell: &'static Shell = Box::leak(Box::default());
-        time.spawn(mavlink::run(
-            links,
-            lines,
-            shell,
-            Port(memory),
-            || (),
-            Stored::None,
-        ));
+        mavlink_server::spawn(time, links, self.line, BYTES_PER_SECOND, memory, || ());
     }
 
     /// Takes in where the vehicle is, each millisecond.
-    pub fn look(&mut self, plant: &Plant) {
+    pub fn step(&mut self, plant: &Plant) {
         self.source.step(plant.pose());
     }
 
     /// Sends what is due `us` µs after power-up to a board that started `start` µs after it.
-    pub fn speak(&mut self, us: u64, start: u64) {
+    pub fn send(&mut self, us: u64, start: u64) {
         while let Some(measured) = self.source.take(us) {
             if let Some(at) = measured.at_us.checked_sub(start) {
                 let pose = self.pose(&measured, at);

@@ -26,10 +26,10 @@ use sophie_mavlink::wire::signing::Stored;
 use sophie_mavlink::{Answers, Condition, Order, Requests, Server, Signing, Vehicle};
 
 use crate::deadline::{FixedRate, TaskId, Tick};
+use crate::ground_station::console_pipe::Shell;
 use crate::links::{LineState, Links};
 use crate::ports::{SerialInput, SerialOutput, Storage};
-use crate::shell::Shell;
-use crate::storing::{self, NotNow};
+use crate::storage::storing::{self, NotNow};
 
 /// Bytes taken at once.
 const CHUNK: usize = 64;

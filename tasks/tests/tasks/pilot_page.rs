@@ -3,7 +3,9 @@
 use std::fmt::Write;
 
 use sophie_control::battery::ServoSupply;
-use sophie_control::navigation::position_estimator::{Fault, PoseFault, SightFault, SightLimit};
+use sophie_control::navigation::external_pose::PoseFault;
+use sophie_control::navigation::flow_range::{SightFault, SightLimit};
+use sophie_control::navigation::position_estimator::Fault;
 use sophie_tasks::pilot::warning::Warning;
 use sophie_tasks::start::StartCause;
 

@@ -214,7 +214,7 @@ struct Ceiling {
 
 /// Flies `board`, with whom its lines are full, onto the pipe and over a restart there.
 fn leaves_a_quarter(board: &str, image: &Path) {
-    let firmware = Firmware::read(image, boards::find(board).unwrap()).unwrap();
+    let firmware = Firmware::read(image, board_kind::find(board).unwrap()).unwrap();
     let (typed, console) = terminal("--console");
     let (asked, mavlink) = terminal("--mavlink");
     let user = std::thread::spawn(move || type_on(typed));
