@@ -2,7 +2,7 @@
 
 use sophie_control::position::PoseFault as Called;
 use sophie_control::rc::ArmChoice;
-use sophie_sim::scenario::PoseFault;
+use sophie_sim::sensors::pose::PoseFault;
 
 use super::*;
 

@@ -6,7 +6,8 @@ use draw::Draw;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use sophie_control::position::{PoseFault as Called, SightFault};
-use sophie_sim::scenario::{FlowFault, PoseFault};
+use sophie_sim::sensors::flow::FlowFault;
+use sophie_sim::sensors::pose::PoseFault;
 
 use super::by_itself::mission;
 use super::*;
