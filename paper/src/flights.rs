@@ -3,8 +3,9 @@
 use crate::study::rig::{Flown, Moment, rms};
 use sophie_control::allocation::wrench::Configuration;
 use sophie_sim::mixers::Variant;
+use sophie_sim::plant::flexible::ArmBending;
 use sophie_sim::plant::tendon::assume_bending;
-use sophie_sim::scenario::{ArmBending, Scenario};
+use sophie_sim::scenario::Scenario;
 
 use super::model::{Cell, num};
 

@@ -3,8 +3,8 @@
 use sophie_report::units::kgcm;
 use sophie_sim::parallel;
 use sophie_sim::plant::servo_power::MG996R;
+use sophie_sim::plant::tendon::ServoProfile;
 use sophie_sim::plant::tendon::ServoSpec;
-use sophie_sim::scenario::ServoProfile;
 
 use super::clamp::{closing_thrust, mean_closing};
 use super::model::{Axis, Chart, Class, Comparison, Look, Series, Table, num};

@@ -95,7 +95,7 @@ impl Board {
         let mut board = Self::with(&scenario.params, scenario.streams(), &scenario.faults);
         board.esc = scenario.vehicle.esc;
         if scenario.sensors.barometer {
-            board.sensors.borrow_mut().barometer = Some(Barometer::of(scenario));
+            board.sensors.borrow_mut().barometer = Some(scenario.barometer());
         }
         board
     }
@@ -103,8 +103,14 @@ impl Board {
     fn with(params: &Params, streams: Streams, faults: &Faults) -> Self {
         let imu = Imu::new(params, streams);
         let accel_bias = imu.bench_bias().as_vec3().to_array();
-        let arms = std::array::from_fn(|arm| ArmImu::new(arm, streams).with(arm, faults));
-        let fsr = std::array::from_fn(|arm| FsrSensor::new(arm, streams).with(arm, faults));
+        let arms = std::array::from_fn(|arm| {
+            let (offset, fault) = faults.tilt(arm);
+            ArmImu::new(arm, streams).with_fault(offset, fault)
+        });
+        let fsr = std::array::from_fn(|arm| {
+            let (gain, fault) = faults.pressure(arm);
+            FsrSensor::new(arm, streams).with_fault(gain, fault)
+        });
         Self {
             imu_ready: Signal::new(),
             actuators: Cell::default(),

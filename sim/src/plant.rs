@@ -12,6 +12,7 @@ pub mod esc;
 pub mod flexible;
 pub mod gust;
 pub mod hinged;
+pub mod load;
 pub mod mass_matrix;
 pub mod propeller;
 pub mod rotor;
@@ -23,7 +24,7 @@ use sophie_control::allocation::wrench::PerArm;
 
 use self::battery::Battery;
 use self::beam::{BeamArm, BeamSpec, Masses};
-use self::body::{Body, BodyState, Load};
+use self::body::{Body, BodyState};
 use self::contact::{Belly, Pipe, Pose, Surface};
 use self::flexible::{Carrier, Drive, Flexible, Nearby};
 use self::gust::Gust;
@@ -32,7 +33,9 @@ use self::hinged::link::{ArmPrint, ArmSpec, TIP};
 use self::rotor::Rotor;
 use self::servo_power::MG996R;
 use self::tendon::{ServoSpec, Tendon, TendonSpec};
-use crate::scenario::{ArmBending, Scenario, Vehicle};
+use crate::plant::flexible::ArmBending;
+use crate::plant::load::Load;
+use crate::scenario::{Scenario, Vehicle};
 
 /// Integration step, s.
 pub const STEP: f64 = 0.5e-3;

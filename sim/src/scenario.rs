@@ -25,13 +25,19 @@ pub use steps::{STEPS, StepKind, StepNumber};
 
 use glam::DVec3;
 use sophie_control::allocation::wrench::{Configuration, PerArm};
+use sophie_control::maths::scalar::GRAVITY;
 use sophie_control::params::Params;
 use sophie_control::pilot::rc::ArmChoice;
 use sophie_tasks::start::StartCause;
 
 use crate::plant::body::BodySpec;
 use crate::plant::esc::EscSpec;
+use crate::plant::flexible::ArmBending;
 use crate::plant::rotor::RotorSpec;
+use crate::plant::tendon::ServoProfile;
+use crate::sensors::barometer::{Barometer, BarometerFault};
+use crate::sensors::flow::FlowFault;
+use crate::sensors::pose::PoseFault;
 use crate::streams::Streams;
 
 /// A flight to fly.
@@ -66,6 +72,14 @@ pub struct Scenario {
 }
 
 impl Scenario {
+    /// The vehicle's barometer with its fault, on the ground at power-up.
+    #[must_use]
+    pub fn barometer(&self) -> Barometer {
+        let s = &self.sensors;
+        let sound = Barometer::new(self.streams(), f64::from(self.params.mass * GRAVITY));
+        sound.failing(s.barometer_fault, s.pose_fails_at, s.pose_fails_for)
+    }
+
     /// The random numbers of its flight.
     #[must_use]
     pub const fn streams(&self) -> Streams {
@@ -117,24 +131,6 @@ pub struct Vehicle {
     pub rotor: RotorSpec,
     /// Motor controllers, all alike; what the stack takes them for is in its parameters alone.
     pub esc: EscSpec,
-}
-
-/// How the plant's arms bend.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ArmBending {
-    /// Rigid, on a hinge at the centre line: the paper's arm, for its tables.
-    Hinge,
-    /// Along their length.
-    Beam,
-}
-
-/// The tendon servo fitted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ServoProfile {
-    /// 35 kgcm, the paper's claim.
-    Paper,
-    /// MG996R, datasheet at 4.8 V: 9.4 kgcm.
-    Mg996r,
 }
 
 /// Air and pipe. Origin: the take-off point, on the ground, nose north.
@@ -263,74 +259,6 @@ impl Sensors {
         let [x, y, z] = self.flow_place;
         DVec3::new(x.unwrap_or(0.0), y.unwrap_or(0.0), z.unwrap_or(0.02))
     }
-}
-
-/// How a barometer fails.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum BarometerFault {
-    /// Not at all.
-    #[default]
-    None,
-    /// It says nothing.
-    Silent,
-    /// It says the same all the time.
-    Frozen,
-    /// It jumps by 2 m, back and forth.
-    Jumps,
-    /// It drifts by 1 m/s.
-    Drifts,
-}
-
-/// How a source of poses fails.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum PoseFault {
-    /// It says nothing.
-    #[default]
-    Silent,
-    /// It says the same all the time.
-    Frozen,
-    /// Its position jumps by 0.6 m, back and forth.
-    Jumps,
-    /// Its ways along its second axis are turned round.
-    Mirrored,
-    /// Its ways are 2.5 times as long.
-    Scaled,
-    /// Its heading is off by half a right angle.
-    Turned,
-    /// It no longer says where the pipe is.
-    TargetSilent,
-    /// The pipe's place jumps by 0.6 m, back and forth.
-    TargetJumps,
-    /// The pipe's place is 50 m away.
-    TargetFar,
-}
-
-/// How a module of flow and range fails.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum FlowFault {
-    /// It says nothing.
-    #[default]
-    Silent,
-    /// It sees no picture.
-    Dark,
-    /// Its flow is turned round.
-    Mirrored,
-    /// Its flow is 2.5 times as large.
-    Scaled,
-    /// Its flow stands still.
-    Frozen,
-    /// Its flow jumps by 1.5 rad/s, back and forth.
-    Jumps,
-    /// Its range says nothing.
-    RangeSilent,
-    /// Its range stands still.
-    RangeFrozen,
-    /// Its range jumps by 0.6 m, back and forth.
-    RangeJumps,
-    /// Its range is 1.6 times as long.
-    RangeLong,
-    /// Its range is 0.6 times as long.
-    RangeShort,
 }
 
 /// What measures the position.

@@ -6,8 +6,9 @@ use sophie_control::gripper::grip_fault::GripFault;
 use sophie_control::pilot::rc::ArmChoice;
 use sophie_sim::flight::fly;
 use sophie_sim::parallel;
+use sophie_sim::plant::tendon::ServoProfile;
 use sophie_sim::record::Silent;
-use sophie_sim::scenario::{Scenario, ServoProfile, Step};
+use sophie_sim::scenario::{Scenario, Step};
 use sophie_sim::sensors::fsr::FsrBreak;
 use sophie_sim::test_stands::arm_bench::{BenchArm, Closing, try_grip};
 

@@ -55,7 +55,7 @@ impl Sensors {
             arms,
             fsr,
             battery: BatteryInputs::new(streams),
-            barometer: Barometer::of(scenario),
+            barometer: scenario.barometer(),
             ms: 0,
             arm_clock: 0.0,
             gravity: [Vec3::new(0.0, 0.0, 9.806_65); 4],

@@ -4,8 +4,8 @@ use sophie_control::gripper::grip::ArmState;
 use sophie_control::params::Params;
 use sophie_report::units::kgcm;
 use sophie_sim::parallel;
+use sophie_sim::plant::tendon::ServoProfile;
 use sophie_sim::plant::tendon::ServoSpec;
-use sophie_sim::scenario::ServoProfile;
 use sophie_sim::test_stands::arm_bench::{Closed, Closing, close};
 
 use super::super::printed::Printed;

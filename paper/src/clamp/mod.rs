@@ -7,8 +7,8 @@ mod servos;
 mod table_4;
 
 use sophie_report::units::kgcm;
+use sophie_sim::plant::tendon::ServoProfile;
 use sophie_sim::plant::tendon::ServoSpec;
-use sophie_sim::scenario::ServoProfile;
 
 use super::model::{Section, Table, num};
 use super::printed::Printed;

@@ -2,8 +2,8 @@
 
 use sophie_report::units::KGCM;
 use sophie_sim::parallel;
+use sophie_sim::plant::tendon::ServoProfile;
 use sophie_sim::plant::tendon::ServoSpec;
-use sophie_sim::scenario::ServoProfile;
 
 use super::super::model::{Section, Table, num};
 use super::super::printed::Printed;

@@ -3,9 +3,10 @@
 use glam::{DQuat, DVec3};
 use sophie_control::allocation::wrench::PerArm;
 
-use sophie_sim::plant::body::{Body, BodySpec, Load};
+use sophie_sim::plant::body::{Body, BodySpec};
 use sophie_sim::plant::contact::Pose;
 use sophie_sim::plant::hinged::link::{Arm, ArmSpec};
+use sophie_sim::plant::load::Load;
 use sophie_sim::plant::rotor::{Rotor, RotorSpec};
 use sophie_sim::plant::{GRAVITY, STEP};
 

@@ -7,9 +7,10 @@ use super::row::{Limit, Row};
 use crate::pilot::throttle_on_pipe;
 use crate::plant::beam::rest::{DAMPING, SlowArm, pipe_under};
 use crate::plant::beam::{BeamSpec, Masses, TENDON_LEVER};
+use crate::plant::flexible::ArmBending;
 use crate::plant::tendon::ServoSpec;
 use crate::plant::{arm_spec, beam_spec};
-use crate::scenario::{ArmBending, Scenario, Step};
+use crate::scenario::{Scenario, Step};
 use crate::test_stands::arm_bench::{BenchArm, Tried, try_grip};
 
 /// Closing throttle of a mission that names none: a scenario file's default.
@@ -117,8 +118,8 @@ pub fn needed(scenario: &Scenario, arm: usize, thrust: f64, target: f64) -> Opti
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plant::tendon::ServoProfile;
     use crate::plant::tendon::TendonSpec;
-    use crate::scenario::ServoProfile;
     use crate::test_stands::arm_bench::{Closing, close};
 
     #[test]

@@ -13,6 +13,9 @@ use crate::scenario::{Assist, Scenario, Step};
 const HEADING: f64 = 0.0;
 /// Speed at which the nose is swept round, rad/s.
 const SWEEP: f64 = 0.5;
+/// Distance beside the crown within which the capture map holds careful touches, share of the pipe's diameter
+/// (docs/results.md).
+const WITHIN: f64 = 0.1;
 
 /// Inputs of a step.
 #[derive(Clone, Copy, Debug)]
@@ -133,7 +136,7 @@ impl Mission {
             pipe: DVec2::from_array(pipe.position),
             pipe_top: pipe.top,
             pipe_radius: 0.5 * pipe.diameter,
-            within: super::perch::within(&scenario.pilot, pipe.diameter),
+            within: scenario.pilot.touch_within.unwrap_or(WITHIN * pipe.diameter),
             drift: scenario.pilot.touch_drift,
             stick_angle: f64::from(scenario.params.stick_angle),
             arm_switch: false,

@@ -6,7 +6,6 @@ use sophie_control::params::Params;
 use super::guidance::Guidance;
 use super::mission::{Mission, Phase, Progress, View};
 use super::stick_dynamics::StickTarget;
-use crate::scenario::Pilot;
 
 /// Height over the pipe from which it is approached, and to which the vehicle goes after a release, m.
 const OVER: f64 = 1.0;
@@ -23,8 +22,6 @@ const LAST_DESCENT: f64 = 0.25;
 /// crown, and the height at which the belly touches, m.
 const GATE: f64 = 0.11;
 const BELLY: f64 = 0.05;
-/// Share of the diameter beside the crown within which the capture map has careful touches held (docs/results.md).
-const HELD: f64 = 0.1;
 /// Share of what he allows himself with which he continues from the gate at first, and the time, s, after which he is
 /// content with all of it.
 const STRICT: f64 = 0.6;
@@ -72,11 +69,6 @@ const SUNK: f64 = 0.06;
 const GRIP_LOST_TIME: f64 = 1.0;
 /// Rise at which the vehicle is clear of the pipe and the sticks are used again, m.
 const CLEAR: f64 = 0.06;
-
-/// How far beside the crown `pilot` sets down on a pipe of `diameter` (m), m.
-pub(super) fn within(pilot: &Pilot, diameter: f64) -> f64 {
-    pilot.touch_within.unwrap_or(HELD * diameter)
-}
 
 /// The throttle while closing that the scenario wants, as far as it leaves a vehicle that takes the share `lightly` of
 /// the paper's throttles standing on the pipe.

@@ -6,8 +6,10 @@
 use glam::{DMat3, DVec3};
 
 use super::contact::{ARM_X, HINGE_Z, Pose};
-use super::flexible::{Acceleration, Carried, Carrier};
+use super::flexible::{Carried, Carrier};
+use super::load::Load;
 use super::mass_matrix::MassMatrix;
+use crate::plant::load::Acceleration;
 
 /// Mass and inertia as built.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,23 +36,6 @@ impl Default for BodySpec {
 pub struct BodyState {
     /// Position, attitude and motion.
     pub pose: Pose,
-}
-
-/// Load at the origin, body axes.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Load {
-    /// N.
-    pub force: DVec3,
-    /// N·m.
-    pub moment: DVec3,
-}
-
-impl Load {
-    /// Adds a force (N) with its moment (N·m) about the origin.
-    pub fn add(&mut self, force: DVec3, moment: DVec3) {
-        self.force += force;
-        self.moment += moment;
-    }
 }
 
 /// A mass that every arm carries.

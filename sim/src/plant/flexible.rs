@@ -2,9 +2,18 @@
 
 use glam::DVec3;
 
-use super::body::Load;
 use super::contact::{Pipe, Pose};
+use super::load::{Acceleration, Load};
 use super::mass_matrix::MassMatrix;
+
+/// How the plant's arms bend.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ArmBending {
+    /// Rigid, on a hinge at the centre line: the paper's arm, for its tables.
+    Hinge,
+    /// Along their length.
+    Beam,
+}
 
 /// What is near enough to be touched.
 #[derive(Clone, Copy, Debug, Default)]
@@ -39,15 +48,6 @@ pub struct Carrier {
     pub gravity: DVec3,
     /// Whether the arms' masses act on the body.
     pub coupled: bool,
-}
-
-/// Accelerations of the body.
-#[derive(Clone, Copy, Debug)]
-pub struct Acceleration {
-    /// Of the body's origin, m/s², body.
-    pub linear: DVec3,
-    /// rad/s², body.
-    pub angular: DVec3,
 }
 
 /// An arm on the body that carries it.

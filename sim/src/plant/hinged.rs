@@ -5,10 +5,11 @@ pub mod link;
 use glam::DVec3;
 
 use self::link::{Arm, ArmSpec};
-use super::body::Load;
 use super::contact::{ArmSkin, ArmTip, Pose, STATIONS};
-use super::flexible::{Acceleration, Carried, Carrier, Drive, Flexible, Nearby};
+use super::flexible::{Carried, Carrier, Drive, Flexible, Nearby};
 use super::mass_matrix::MassMatrix;
+use crate::plant::load::Acceleration;
+use crate::plant::load::Load;
 
 /// An arm on one hinge, its underside and its tip.
 #[derive(Clone, Debug)]

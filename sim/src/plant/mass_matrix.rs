@@ -2,8 +2,8 @@
 
 use glam::{DMat3, DVec3};
 
-use super::body::Load;
-use super::flexible::Acceleration;
+use crate::plant::load::Acceleration;
+use crate::plant::load::Load;
 
 /// What a coordinate of an arm moves of the body's momentum per unit of its rate.
 #[derive(Clone, Copy, Debug, Default)]

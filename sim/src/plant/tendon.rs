@@ -9,7 +9,7 @@ use sophie_control::gripper::tendon::{REFERENCE_TILT, Reel};
 use sophie_control::params::Params;
 
 use super::beam::TENDON_LEVER;
-use crate::scenario::{ArmBending, ServoProfile};
+use crate::plant::flexible::ArmBending;
 
 /// µs (digital servos state 2 to 5; MG996R datasheet 5).
 const DEADBAND_US: f64 = 2.0;
@@ -17,6 +17,15 @@ const DEADBAND_US: f64 = 2.0;
 const PULSE_LIMITS_US: (f64, f64) = (450.0, 2550.0);
 /// Over the stall torque, without pulses (assumed).
 const GEAR_FRICTION: f64 = 0.35;
+
+/// The tendon servo fitted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ServoProfile {
+    /// 35 kgcm, the paper's claim.
+    Paper,
+    /// MG996R, datasheet at 4.8 V: 9.4 kgcm.
+    Mg996r,
+}
 
 /// A servo as built.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -8,13 +8,14 @@ use sophie_control::pilot::rc::ArmChoice;
 use sophie_mixers::Variant;
 
 use super::{
-    ArmBending, Assist, Assumed, Expect, Faults, Overrides, Pilot, Scenario, Sensors, ServoProfile, Step,
-    Vehicle, World, read_steps,
+    Assist, Assumed, Expect, Faults, Overrides, Pilot, Scenario, Sensors, Step, Vehicle, World, read_steps,
 };
 use crate::plant::body::BodySpec;
 use crate::plant::esc::EscSpec;
+use crate::plant::flexible::ArmBending;
 use crate::plant::hinged::link::TABLE_1;
 use crate::plant::rotor::RotorSpec;
+use crate::plant::tendon::ServoProfile;
 
 /// The default mission, every key at its default.
 pub const MISSION: &str = include_str!("../../../tests/scenarios/mission.toml");

@@ -42,6 +42,24 @@ impl Default for Faults {
     }
 }
 
+impl Faults {
+    /// Gain of the pressure sensor of `arm`, 0 to 3, and its fault with the time, s after power-up, when it begins.
+    #[must_use]
+    pub fn pressure(&self, arm: usize) -> (f64, Option<(FsrBreak, f64)>) {
+        let gain = self.pressure_gain.get(arm).copied().unwrap_or(1.0);
+        let broken = self.pressure.get(arm).copied().flatten();
+        (gain, broken.map(|broken| (broken, self.at)))
+    }
+
+    /// Offset of the tilt sensor of `arm`, 0 to 3, rad, and its fault with the time, s after power-up, when it begins.
+    #[must_use]
+    pub fn tilt(&self, arm: usize) -> (f64, Option<(TiltBreak, f64)>) {
+        let offset = self.tilt_offset.get(arm).copied().unwrap_or(0.0);
+        let broken = self.tilt.get(arm).copied().flatten();
+        (offset, broken.map(|broken| (broken, self.at)))
+    }
+}
+
 /// Word for a part without a fault.
 pub const SOUND: &str = "sound";
 /// Words for a pressure sensor.

@@ -7,8 +7,12 @@ use sophie_control::pilot::rc::ArmChoice;
 use sophie_mixers::Variant;
 
 use super::faults;
-use super::{Assist, BarometerFault, FlowFault, PoseFault, PositionSensor, Scenario, ServoProfile};
+use super::{Assist, PositionSensor, Scenario};
 use crate::devices::sbus;
+use crate::plant::tendon::ServoProfile;
+use crate::sensors::barometer::BarometerFault;
+use crate::sensors::flow::FlowFault;
+use crate::sensors::pose::PoseFault;
 
 /// One key.
 pub struct Key {

@@ -8,7 +8,6 @@ use rand_pcg::Pcg64Mcg;
 use sophie_control::allocation::wrench::SIDE;
 use sophie_control::maths::vector::Vec3;
 
-use crate::scenario::Faults;
 use crate::streams::Streams;
 
 /// Fusion steps per second (datasheet).
@@ -64,12 +63,11 @@ impl ArmImu {
         }
     }
 
-    /// The same with the faults of `arm`.
+    /// The same with an added `offset`, rad, and with a fault from a time, s after power-up, on.
     #[must_use]
-    pub fn with(mut self, arm: usize, faults: &Faults) -> Self {
-        self.mounting += faults.tilt_offset.get(arm).copied().unwrap_or(0.0);
-        let broken = faults.tilt.get(arm).copied().flatten();
-        self.breaks = broken.map(|broken| (broken, (faults.at * RATE_HZ) as u64));
+    pub fn with_fault(mut self, offset: f64, fault: Option<(TiltBreak, f64)>) -> Self {
+        self.mounting += offset;
+        self.breaks = fault.map(|(broken, at)| (broken, (at * RATE_HZ) as u64));
         self
     }
 
@@ -134,12 +132,7 @@ mod tests {
 
     #[test]
     fn a_stuck_sensor_sends_its_last_vector_from_when_it_breaks() {
-        let mut faults = Faults {
-            at: 0.1,
-            ..Faults::default()
-        };
-        faults.tilt[1] = Some(TiltBreak::Stuck);
-        let mut imu = ArmImu::new(1, Streams::new(5)).with(1, &faults);
+        let mut imu = ArmImu::new(1, Streams::new(5)).with_fault(0.0, Some((TiltBreak::Stuck, 0.1)));
         let rest = DVec3::new(0.0, 0.0, -9.806_65);
         let sent: Vec<Vec3> = (0..30).map(|_| imu.sample(DQuat::IDENTITY, 0.2, rest)).collect();
         let changes = sent.windows(2).filter(|pair| pair[0] != pair[1]).count();

@@ -10,10 +10,8 @@ use std::collections::VecDeque;
 
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
-use sophie_control::maths::scalar::GRAVITY;
 use sophie_control::navigation::air_pressure::AirPressure;
 
-use crate::scenario::{BarometerFault, Scenario};
 use crate::streams::Streams;
 
 /// Time of a measurement, µs.
@@ -38,6 +36,22 @@ const CELSIUS: f32 = 25.0;
 const JUMP: f64 = 24.0;
 const JUMP_MS: u64 = 300;
 const DRIFT: f64 = 12.0;
+
+/// How a barometer fails.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BarometerFault {
+    /// Not at all.
+    #[default]
+    None,
+    /// It says nothing.
+    Silent,
+    /// It says the same all the time.
+    Frozen,
+    /// It jumps by 2 m, back and forth.
+    Jumps,
+    /// It drifts by 1 m/s.
+    Drifts,
+}
 
 /// The barometer of one board.
 #[derive(Clone, Debug)]
@@ -73,14 +87,6 @@ impl Barometer {
             failure: (0, 0),
             held: None,
         }
-    }
-
-    /// That of the vehicle of `scenario`, which fails as it has it.
-    #[must_use]
-    pub fn of(scenario: &Scenario) -> Self {
-        let s = &scenario.sensors;
-        let sound = Self::new(scenario.streams(), f64::from(scenario.params.mass * GRAVITY));
-        sound.failing(s.barometer_fault, s.pose_fails_at, s.pose_fails_for)
     }
 
     /// The same, with `fault` from `at` s after power-up for `seconds`.

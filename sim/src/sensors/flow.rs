@@ -17,7 +17,7 @@ use rand_pcg::Pcg64Mcg;
 use sophie_drivers::msp::Message;
 
 use crate::plant::contact::{Pipe, Pose};
-use crate::scenario::FlowFault;
+
 use crate::streams::Streams;
 
 /// Time between two frames, ms: 50 a second, where nothing else is said.
@@ -56,6 +56,34 @@ const LONG: f64 = 1.6;
 const SHORT: f64 = 0.6;
 /// Quality of a picture with enough in it.
 const QUALITY: u8 = 120;
+
+/// How a module of flow and range fails.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FlowFault {
+    /// It says nothing.
+    #[default]
+    Silent,
+    /// It sees no picture.
+    Dark,
+    /// Its flow is turned round.
+    Mirrored,
+    /// Its flow is 2.5 times as large.
+    Scaled,
+    /// Its flow stands still.
+    Frozen,
+    /// Its flow jumps by 1.5 rad/s, back and forth.
+    Jumps,
+    /// Its range says nothing.
+    RangeSilent,
+    /// Its range stands still.
+    RangeFrozen,
+    /// Its range jumps by 0.6 m, back and forth.
+    RangeJumps,
+    /// Its range is 1.6 times as long.
+    RangeLong,
+    /// Its range is 0.6 times as long.
+    RangeShort,
+}
 
 /// The module.
 #[derive(Clone, Debug)]

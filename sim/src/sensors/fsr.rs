@@ -7,7 +7,6 @@
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 
-use crate::scenario::Faults;
 use crate::streams::Streams;
 
 /// m²: 38 mm square (datasheet).
@@ -83,12 +82,11 @@ impl FsrSensor {
         }
     }
 
-    /// The same with the faults of `arm`.
+    /// The same with its gain multiplied by `gain`, and with a fault from a time, s after power-up, on.
     #[must_use]
-    pub fn with(mut self, arm: usize, faults: &Faults) -> Self {
-        self.gain *= faults.pressure_gain.get(arm).copied().unwrap_or(1.0);
-        let broken = faults.pressure.get(arm).copied().flatten();
-        self.breaks = broken.map(|broken| (broken, faults.at));
+    pub fn with_fault(mut self, gain: f64, fault: Option<(FsrBreak, f64)>) -> Self {
+        self.gain *= gain;
+        self.breaks = fault;
         self
     }
 
@@ -194,19 +192,13 @@ mod tests {
 
     #[test]
     fn a_fault_begins_when_it_is_due_and_a_wrong_gain_at_once() {
-        let mut faults = Faults {
-            at: 1.0,
-            ..Faults::default()
-        };
-        faults.pressure[2] = Some(FsrBreak::Open);
-        faults.pressure_gain[2] = 0.5;
         let sound = || FsrSensor::new(2, Streams::new(3));
-        let mut s = sound().with(2, &faults);
+        let mut s = sound().with_fault(0.5, Some((FsrBreak::Open, 1.0)));
         let half = s.sample(950.0, 0.5);
         assert!(half < sound().sample(950.0, 0.5) && half > 500, "{half}");
         assert!(s.sample(950.0, 0.4) > 0);
         assert_eq!(s.sample(950.0, 0.2), 0);
-        let mut other = FsrSensor::new(1, Streams::new(3)).with(1, &faults);
+        let mut other = FsrSensor::new(1, Streams::new(3)).with_fault(1.0, None);
         assert!(other.sample(950.0, 2.0) > 1000);
     }
 }

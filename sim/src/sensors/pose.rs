@@ -9,7 +9,7 @@ use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 
 use crate::plant::contact::Pose;
-use crate::scenario::PoseFault;
+
 use crate::streams::Streams;
 
 /// Time between two measurements, ms: 50 a second.
@@ -49,6 +49,30 @@ pub struct Measured {
     pub attitude: DQuat,
     /// Where it sees the pipe's crown, m, and along which heading, rad, with every fifth pose.
     pub target: Option<(DVec3, f64)>,
+}
+
+/// How a source of poses fails.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PoseFault {
+    /// It says nothing.
+    #[default]
+    Silent,
+    /// It says the same all the time.
+    Frozen,
+    /// Its position jumps by 0.6 m, back and forth.
+    Jumps,
+    /// Its ways along its second axis are turned round.
+    Mirrored,
+    /// Its ways are 2.5 times as long.
+    Scaled,
+    /// Its heading is off by half a right angle.
+    Turned,
+    /// It no longer says where the pipe is.
+    TargetSilent,
+    /// The pipe's place jumps by 0.6 m, back and forth.
+    TargetJumps,
+    /// The pipe's place is 50 m away.
+    TargetFar,
 }
 
 /// The source.

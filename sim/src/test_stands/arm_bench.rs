@@ -14,14 +14,16 @@ use sophie_control::params::Params;
 
 use crate::plant::beam::rest::pipe_under;
 use crate::plant::beam::{BeamArm, BeamSpec, Masses};
-use crate::plant::body::{BodySpec, Load};
+use crate::plant::body::BodySpec;
 use crate::plant::contact::{Pipe, Pose};
-use crate::plant::flexible::{Acceleration, Carrier, Drive as Driven, Flexible, Nearby};
+use crate::plant::flexible::ArmBending;
+use crate::plant::flexible::{Carrier, Drive as Driven, Flexible, Nearby};
 use crate::plant::hinged::HingedArm;
 use crate::plant::hinged::link::ArmSpec;
+use crate::plant::load::Acceleration;
+use crate::plant::load::Load;
 use crate::plant::tendon::{ServoSpec, Tendon, TendonSpec};
 use crate::plant::{GRAVITY, STEP};
-use crate::scenario::ArmBending;
 use crate::sensors::fsr::{FsrBreak, FsrSensor};
 use crate::streams::Streams;
 
@@ -398,7 +400,7 @@ impl ArmBench {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::ServoProfile;
+    use crate::plant::tendon::ServoProfile;
 
     #[test]
     fn a_soft_arm_closes_and_its_torque_is_the_static_one() {

@@ -4,7 +4,8 @@ use sophie_control::mode::{Mode, Reason};
 use sophie_control::navigation::baro_height::PressureFault;
 use sophie_sim::flight::fly;
 use sophie_sim::record::{FlightRecord, Sample, Silent};
-use sophie_sim::scenario::{BarometerFault, PositionSensor, Scenario, Step};
+use sophie_sim::scenario::{PositionSensor, Scenario, Step};
+use sophie_sim::sensors::barometer::BarometerFault;
 
 use super::{held, says, ways};
 

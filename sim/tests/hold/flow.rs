@@ -5,7 +5,8 @@ use sophie_control::mode::Reason;
 use sophie_control::navigation::flow_range::SightFault;
 use sophie_sim::flight::fly;
 use sophie_sim::record::{FlightRecord, Sample, Silent};
-use sophie_sim::scenario::{FlowFault, PositionSensor, Scenario, Step};
+use sophie_sim::scenario::{PositionSensor, Scenario, Step};
+use sophie_sim::sensors::flow::FlowFault;
 
 use super::{NEVER_HELD, harmless, held, never_held, settled};
 

@@ -5,9 +5,9 @@ mod draw;
 use draw::Draw;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-use sophie_control::navigation::external_pose::PoseFault as Called;
-use sophie_control::navigation::flow_range::SightFault;
-use sophie_sim::scenario::{FlowFault, PoseFault};
+use sophie_control::navigation::position_estimator::{PoseFault as Called, SightFault};
+use sophie_sim::sensors::flow::FlowFault;
+use sophie_sim::sensors::pose::PoseFault;
 
 use super::by_itself::mission;
 use super::*;

@@ -4,7 +4,8 @@ use sophie_control::mode::{Mode, Reason};
 use sophie_control::navigation::external_pose::PoseFault as Called;
 use sophie_sim::flight::fly;
 use sophie_sim::record::{FlightRecord, Sample, Silent};
-use sophie_sim::scenario::{PoseFault, PositionSensor, Scenario, Step};
+use sophie_sim::scenario::{PositionSensor, Scenario, Step};
+use sophie_sim::sensors::pose::PoseFault;
 
 use super::{harmless, held};
 

@@ -2,7 +2,7 @@ use sophie_control::mode::Mode;
 use sophie_emulator::compare;
 use sophie_emulator::wires::BoardFault;
 use sophie_sim::record::FlightRecord;
-use sophie_sim::scenario::BarometerFault;
+use sophie_sim::sensors::barometer::BarometerFault;
 use sophie_sim::sensors::fsr::FsrBreak;
 use sophie_timing::live::{self, Contact, Line};
 

@@ -11,15 +11,16 @@ use glam::DVec3;
 use sophie_control::allocation::wrench::{FORE, SIDE};
 
 use super::super::GRAVITY;
-use super::super::body::Load;
 use super::super::contact::{ARM_LENGTH, ARM_X, BELLY_Z, HINGE_Z, Pose};
-use super::super::flexible::{Acceleration, Carried, Carrier, Drive, Flexible, Nearby};
+use super::super::flexible::{Carried, Carrier, Drive, Flexible, Nearby};
 use super::super::mass_matrix::{Column, MassMatrix};
 use super::masses::MIDDLE;
 use super::section::BeamSpec;
 use super::shape::{Point, points};
 use super::skin::{BeamContact, Bent};
 use super::{PerTerm, TERMS};
+use crate::plant::load::Acceleration;
+use crate::plant::load::Load;
 
 /// One arm with its contacts.
 #[derive(Clone, Debug)]

@@ -2,11 +2,12 @@
 
 use glam::{DQuat, DVec3};
 
-use super::super::body::Load;
 use super::super::contact::{BELLY_Z, Pipe, Pose};
-use super::super::flexible::{Acceleration, Carrier, Drive, Flexible, Nearby};
+use super::super::flexible::{Carrier, Drive, Flexible, Nearby};
 use super::super::{GRAVITY, STEP};
 use super::{BeamArm, BeamSpec};
+use crate::plant::load::Acceleration;
+use crate::plant::load::Load;
 
 /// Rise of the force, N/s: the damped arm lags it by 0.05 s, 0.5 N.
 const RISE: f64 = 10.0;

@@ -3,7 +3,6 @@
 
 use glam::DVec3;
 
-use super::super::body::Load;
 use super::super::contact::{
     ARM_LENGTH, ContactPoint, HINGE_Z, Pad, Pipe, PointMotion, Pose, SKIN, STATION_AREA, STATIONS, Surface,
     TIP,
@@ -11,6 +10,7 @@ use super::super::contact::{
 use super::super::flexible::Nearby;
 use super::shape::{Point, points, slope};
 use super::{DEPTH, PerTerm, TERMS};
+use crate::plant::load::Load;
 
 /// Shape, motion and place of an arm.
 #[derive(Clone, Copy, Debug)]

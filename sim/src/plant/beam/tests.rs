@@ -7,11 +7,13 @@ mod statics;
 
 use glam::DVec3;
 
-use super::super::body::{Body, BodySpec, Load};
-use super::super::flexible::{Acceleration, Carrier, Drive, Flexible, Nearby};
+use super::super::body::{Body, BodySpec};
+use super::super::flexible::{Carrier, Drive, Flexible, Nearby};
 use super::super::hinged::link::{ArmPrint, ArmSpec};
 use super::super::{GRAVITY, STEP};
 use super::{BeamArm, BeamSpec, Masses};
+use crate::plant::load::Acceleration;
+use crate::plant::load::Load;
 
 /// Level, body still.
 const BENCH: Carrier = Carrier {

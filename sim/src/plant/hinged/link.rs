@@ -8,9 +8,11 @@ use glam::DVec3;
 use sophie_control::allocation::wrench::{FORE, SIDE};
 
 use crate::plant::GRAVITY;
-use crate::plant::body::{ArmPoint, Load};
+use crate::plant::body::ArmPoint;
 use crate::plant::contact::{ARM_LENGTH, ARM_X, BELLY_Z, HINGE_Z};
-use crate::plant::flexible::{Acceleration, Carried, Carrier};
+use crate::plant::flexible::{Carried, Carrier};
+use crate::plant::load::Acceleration;
+use crate::plant::load::Load;
 use crate::plant::mass_matrix::MassMatrix;
 
 /// Motor, propeller and the arm's share, kg (assumed; gives 5 Hz in hover).
