@@ -18,6 +18,8 @@ const PERIOD: u64 = 5_000;
 /// Intervals of the inertial sensor from which its rate is taken, and the rates that the filter is made for, Hz.
 const INTERVALS: usize = 1_000;
 const RATES: (f32, f32) = (190.0, 8_500.0);
+/// Most measurements that are kept while that rate is looked for.
+const BEGIN_MAX: usize = 1_000_000;
 /// What a fault's text for the pilot ends with.
 const LEFT_OUT: &str = ", left out";
 
@@ -75,9 +77,12 @@ pub struct Outcome {
 /// # Errors
 /// One line: where, which value, and what is allowed.
 pub fn replay(path: &Path, options: &Options, truth: Option<Truth>) -> Result<Outcome, String> {
-    let rate_hz = rate(path)?;
     let mut sensors = Sensors::open(path)?;
+    let (begin, rate_hz) = begin(&mut sensors)?;
     let mut replay = Replay::new(options, rate_hz, truth);
+    for (at, event) in begin {
+        replay.take(at, event);
+    }
     while let Some((at, event)) = sensors.next()? {
         replay.take(at, event);
     }
@@ -91,16 +96,17 @@ pub fn replay(path: &Path, options: &Options, truth: Option<Truth>) -> Result<Ou
     Ok(replay.finish())
 }
 
-/// Rate of the inertial sensor, Hz: the middle one of its first intervals.
-fn rate(path: &Path) -> Result<f32, String> {
-    let mut sensors = Sensors::open(path)?;
-    let (mut before, mut intervals) = (None, vec![]);
+/// The first measurements, and the rate of the inertial sensor among them, Hz: the middle one of its intervals.
+fn begin(sensors: &mut Sensors) -> Result<(Vec<(u64, Event)>, f32), String> {
+    let (mut before, mut intervals, mut begin) = (None, vec![], vec![]);
     while intervals.len() < INTERVALS
+        && begin.len() < BEGIN_MAX
         && let Some((at, event)) = sensors.next()?
     {
         if matches!(event, Event::Inertial(_)) {
             intervals.extend(before.replace(at).map(|before| at - before));
         }
+        begin.push((at, event));
     }
     intervals.sort_unstable();
     let Some(middle) = intervals.get(intervals.len() / 2) else {
@@ -109,7 +115,7 @@ fn rate(path: &Path) -> Result<f32, String> {
     let hz = 1e6 / *middle as f32;
     let (least, most) = RATES;
     if (least..=most).contains(&hz) {
-        Ok(hz)
+        Ok((begin, hz))
     } else {
         let why = format!("inertial samples at {hz:.1} Hz, allowed 200 to 8000 Hz");
         Err(sensors.whole(&why))
