@@ -51,7 +51,7 @@ impl Lines {
         })
     }
 
-    /// The next line that says something, without blanks around it; `None` at the end.
+    /// The next line that is neither empty nor a comment, without blanks around it; `None` at the end.
     ///
     /// # Errors
     /// One line: where the file cannot be read, and why.

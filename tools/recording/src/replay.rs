@@ -20,7 +20,7 @@ const INTERVALS: usize = 1_000;
 const RATES: (f32, f32) = (190.0, 8_500.0);
 /// Most measurements that are kept while that rate is looked for.
 const BEGIN_MAX: usize = 1_000_000;
-/// What a fault's text for the pilot ends with.
+/// End of a fault's text for the pilot, which is left out here.
 const LEFT_OUT: &str = ", left out";
 
 /// Which part of a recording counts, and with which parameters.
@@ -64,9 +64,9 @@ pub struct Outcome {
     pub last: Option<Estimate>,
     /// Each fault in the order in which they were named.
     pub faults: Vec<Named>,
-    /// Silences of the inertial sensor after which an estimate begins anew, and the longest, s.
+    /// Silences of the inertial sensor after which the estimate restarts.
     pub gaps: u32,
-    /// The longest of them.
+    /// The longest of them, s.
     pub longest_gap_s: f64,
     /// Against the truth, where there is one.
     pub errors: Option<Errors>,
