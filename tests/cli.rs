@@ -111,6 +111,18 @@ fn input_without_an_end_is_refused() {
 }
 
 #[test]
+fn a_line_without_an_end_is_not_shown_whole() {
+    let temp = Temp::new("long-line");
+    let bench = temp.file("bench.csv", &[b'x'; 1 << 20]);
+    let output = sophie(&temp, &["fit-arm", &bench]);
+    let line = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(line.lines().count(), 1);
+    assert!(line.starts_with(&format!("sophie: {bench}:1: column 'xxx")) && line.ends_with("…\n"));
+    assert!(line.len() < 10_000, "{} bytes", line.len());
+}
+
+#[test]
 fn an_unwritable_directory_is_told_before_the_flight() {
     let temp = Temp::new("unwritable");
     let file = temp.file("taken", b"");

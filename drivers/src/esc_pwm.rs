@@ -61,8 +61,8 @@ impl EscPulse {
         PwmTiming::new(clock_hz, self.rate.period_us())
     }
 
-    /// Pulse of a motor command, µs: the stop pulse for 0 and anything not positive, the longest for 1; 0, which is no
-    /// pulse, where the ends are out of order: what would stop a motor is not known then, and silence does.
+    /// Pulse of a motor command, µs: the stop pulse for 0 and anything not positive, the longest for 1. 0, no
+    /// pulse at all, where the ends are out of order: the stop pulse is unknown then, and a controller without pulses stops.
     pub fn pulse_us(self, command: f32) -> f32 {
         self.pulses
             .map_or(0.0, |pulses| pulses.pulse_us(command) * self.rate.share())

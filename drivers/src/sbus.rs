@@ -35,7 +35,7 @@ const FLAGS: u8 = 0x0F;
 const BYTE: Duration = Duration::from_micros(120);
 /// Pause between frames. Receivers leave 4 ms or more, and none within a frame.
 const SILENCE: Duration = Duration::from_millis(3);
-/// Bytes of the eight slots behind an SBUS2 frame: what may follow it that is no frame.
+/// Bytes of the eight slots behind an SBUS2 frame: as many may follow it without being part of a frame.
 const SLOTS: u8 = 24;
 /// Consecutive frames before sticks are accepted.
 const TRUSTED_FROM: u8 = 3;

@@ -137,7 +137,7 @@ static COPIES: Copies = Copies(UnsafeCell::new([[0; STATE_WORDS]; 2]));
 pub enum Request {
     /// To enter the chip's loader ("LOAD").
     EnterLoader = 0x4C4F_4144,
-    /// To go on with whatever clocks run: the reset was meant to stop them ("GOON").
+    /// To start with the clocks as they are: the reset that should have stopped them is done ("GOON").
     GoOn = 0x474F_4F4E,
 }
 

@@ -42,7 +42,7 @@ pub fn stack_use() -> StackUse {
     StackUse { bytes, start, flight }
 }
 
-/// Notes the depth so far as that of the start-up, and paints anew what is not in use. Once, in thread mode.
+/// Notes the depth so far as that of the start-up, and paints the unused part again. Once, in thread mode.
 pub fn start_has_ended() {
     START.store(stack_use().flight, Ordering::Relaxed);
     let (first, _) = bounds();

@@ -136,7 +136,7 @@ registers!(I2C1, I2C2, I2C3);
 #[cfg(family = "h7")]
 registers!(I2C4);
 
-/// Error interrupt of a bus. A bus error is cleared and the transfer goes on: F7 and H7 see some where there are none (ST's
+/// Error interrupt of a bus. A bus error is cleared and the transfer continues: F7 and H7 flag spurious ones (ST's
 /// errata, "Spurious bus error detection in master mode"), and embassy-stm32 0.6 would end the transfer for it.
 #[cfg(any(family = "f7", family = "h7"))]
 pub struct BusErrors<T>(PhantomData<T>);

@@ -49,8 +49,8 @@ pub fn enter_or_leave_loader(cause: ResetCause) {
     }
 }
 
-/// The crystal, a PLL or another core clock than the internal one is on: none is after a reset (RM0090 §7.3, RM0410 §5.3,
-/// RM0433 §8.7).
+/// The crystal, a PLL or another core clock than the internal one is on: all are off after a reset (RM0090 §7.3, RM0410
+/// §5.3, RM0433 §8.7).
 fn clocks_run() -> bool {
     let on = RCC.cr().read();
     #[cfg(family = "h7")]

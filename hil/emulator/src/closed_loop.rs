@@ -412,7 +412,7 @@ impl Aircraft for Bench<'_> {
 
     fn motors(&self) -> PerArm<f64> {
         let restarted = self.resets.last().map_or(f64::NEG_INFINITY, |(at, _)| *at);
-        // Over a reset the controllers hold their last command until they miss it: nothing asks for it.
+        // Over a reset the controllers hold their last command until their time-out: no command arrives.
         if self.dead || self.pins.ms as f64 - restarted < SILENCE as f64 * 1e-6 {
             return [0.0; 4];
         }

@@ -45,7 +45,7 @@ pub enum BoardFault {
     ArmUnplugged(usize, bool),
     /// Arm bus 0 or 1: clock stretched by this many µs after each byte; 0: none.
     ClockHeld(usize, u32),
-    /// Arm bus 0 or 1: bus errors flagged where there are none, one in about this many bytes; 0: none.
+    /// Arm bus 0 or 1: spurious bus errors, one in about this many bytes; 0 stops them.
     BusErrors(usize, u32),
     /// The sensor of arm 0 to 3 does not acknowledge (true) the byte that resets it, and resets.
     ArmRefusesReset(usize, bool),

@@ -27,7 +27,7 @@ pub(super) fn seed(text: &str) -> Result<u64, String> {
     seed.ok_or_else(|| format!("allowed {}", keys::SEED_ALLOWED))
 }
 
-/// Refuses `count` seeds from `first` on where the last is none.
+/// Refuses `count` seeds from `first` on whose last is not allowed.
 pub(super) fn seeds(first: u64, count: u64, of: &str) -> Result<(), String> {
     let last = first.saturating_add(count.saturating_sub(1));
     match keys::seed(last as f64) {

@@ -16,8 +16,8 @@ pub fn open(path: &Path) -> io::Result<File> {
     if !std::fs::metadata(path)?.file_type().is_fifo() {
         return File::open(path);
     }
-    // Opening blocks until there is a writer, and nothing in the standard library ends that: a thread waits, and is left
-    // behind where it waits in vain.
+    // Opening blocks until there is a writer, and the standard library cannot end that: a thread waits, and is left
+    // behind if no writer comes.
     let (sender, opened) = mpsc::channel();
     let path = path.to_owned();
     thread::spawn(move || sender.send(File::open(path)));

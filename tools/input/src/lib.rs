@@ -45,14 +45,15 @@ pub fn read_text(path: &Path, most: u64) -> Result<String, String> {
     String::from_utf8(read(path, most)?).map_err(|_| "it is not text in UTF-8".to_owned())
 }
 
-#[cfg(unix)]
-fn open(path: &Path) -> io::Result<File> {
-    fifo::open(path)
-}
-
-#[cfg(not(unix))]
-fn open(path: &Path) -> io::Result<File> {
-    File::open(path)
+/// Opens the file at `path` for a reader with a bound of its own.
+///
+/// # Errors
+/// Why it cannot be opened: the system's reason, or a named pipe that no program writes into.
+pub fn open(path: &Path) -> io::Result<File> {
+    #[cfg(unix)]
+    return fifo::open(path);
+    #[cfg(not(unix))]
+    return File::open(path);
 }
 
 /// A bound as a message has it.

@@ -1,4 +1,4 @@
-//! What a sensor's line says, and when it came.
+//! A measurement: the content of a sensor's line.
 
 use sophie_control::chain::ImuReading;
 use sophie_control::maths::vector::Vec3;

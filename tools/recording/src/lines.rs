@@ -1,6 +1,5 @@
 //! The lines of a file, plain or gzipped, bounded in length and number.
 
-use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 
@@ -19,6 +18,8 @@ pub struct Lines {
     input: Box<dyn BufRead>,
     number: usize,
     line: Vec<u8>,
+    /// The next call gives the last line once more.
+    again: bool,
 }
 
 impl Lines {
@@ -34,7 +35,7 @@ impl Lines {
                 "{name}: is a directory, allowed is a file, plain or gzipped"
             ));
         }
-        let mut file = BufReader::new(File::open(path).map_err(refused)?);
+        let mut file = BufReader::new(sophie_input::open(path).map_err(refused)?);
         let packed = file.fill_buf().map_err(refused)?.starts_with(&GZIP);
         let input: Box<dyn BufRead> = if packed {
             Box::new(BufReader::new(MultiGzDecoder::new(file)))
@@ -46,15 +47,16 @@ impl Lines {
             input,
             number: 0,
             line: vec![],
+            again: false,
         })
     }
 
-    /// The next line that says something, without blanks around it; `None` at the end.
+    /// The next line that is neither empty nor a comment, without blanks around it; `None` at the end.
     ///
     /// # Errors
     /// One line: where the file cannot be read, and why.
     pub fn next(&mut self) -> Result<Option<&str>, String> {
-        loop {
+        while !std::mem::take(&mut self.again) {
             self.line.clear();
             self.number += 1;
             let mut bounded = (&mut self.input).take(LINE_MAX);
@@ -77,6 +79,11 @@ impl Lines {
             }
         }
         Ok(std::str::from_utf8(&self.line).ok().map(str::trim))
+    }
+
+    /// Has [`Self::next`] give the last line once more.
+    pub const fn again(&mut self) {
+        self.again = true;
     }
 
     /// A complaint about the last line.

@@ -20,7 +20,9 @@ const PERIOD: u64 = 5_000;
 /// Intervals of the inertial sensor from which its rate is taken, and the rates that the filter is made for, Hz.
 const INTERVALS: usize = 1_000;
 const RATES: (f32, f32) = (190.0, 8_500.0);
-/// What a fault's text for the pilot ends with.
+/// Most measurements that are kept while that rate is looked for.
+const BEGIN_MAX: usize = 1_000_000;
+/// End of a fault's text for the pilot, which is left out here.
 const LEFT_OUT: &str = ", left out";
 
 /// Which part of a recording counts, and with which parameters.
@@ -64,9 +66,9 @@ pub struct Outcome {
     pub last: Option<Estimate>,
     /// Each fault in the order in which they were named.
     pub faults: Vec<Named>,
-    /// Silences of the inertial sensor after which an estimate begins anew, and the longest, s.
+    /// Silences of the inertial sensor after which the estimate restarts.
     pub gaps: u32,
-    /// The longest of them.
+    /// The longest of them, s.
     pub longest_gap_s: f64,
     /// Against the truth, where there is one.
     pub errors: Option<Errors>,
@@ -77,9 +79,12 @@ pub struct Outcome {
 /// # Errors
 /// One line: where, which value, and what is allowed.
 pub fn replay(path: &Path, options: &Options, truth: Option<Truth>) -> Result<Outcome, String> {
-    let rate_hz = rate(path)?;
     let mut sensors = Sensors::open(path)?;
+    let (begin, rate_hz) = begin(&mut sensors)?;
     let mut replay = Replay::new(options, rate_hz, truth);
+    for (at, event) in begin {
+        replay.take(at, event);
+    }
     while let Some((at, event)) = sensors.next()? {
         replay.take(at, event);
     }
@@ -93,16 +98,17 @@ pub fn replay(path: &Path, options: &Options, truth: Option<Truth>) -> Result<Ou
     Ok(replay.finish())
 }
 
-/// Rate of the inertial sensor, Hz: the middle one of its first intervals.
-fn rate(path: &Path) -> Result<f32, String> {
-    let mut sensors = Sensors::open(path)?;
-    let (mut before, mut intervals) = (None, vec![]);
+/// The first measurements, and the rate of the inertial sensor among them, Hz: the middle one of its intervals.
+fn begin(sensors: &mut Sensors) -> Result<(Vec<(u64, Event)>, f32), String> {
+    let (mut before, mut intervals, mut begin) = (None, vec![], vec![]);
     while intervals.len() < INTERVALS
+        && begin.len() < BEGIN_MAX
         && let Some((at, event)) = sensors.next()?
     {
         if matches!(event, Event::Inertial(_)) {
             intervals.extend(before.replace(at).map(|before| at - before));
         }
+        begin.push((at, event));
     }
     intervals.sort_unstable();
     let Some(middle) = intervals.get(intervals.len() / 2) else {
@@ -111,7 +117,7 @@ fn rate(path: &Path) -> Result<f32, String> {
     let hz = 1e6 / *middle as f32;
     let (least, most) = RATES;
     if (least..=most).contains(&hz) {
-        Ok(hz)
+        Ok((begin, hz))
     } else {
         let why = format!("inertial samples at {hz:.1} Hz, allowed 200 to 8000 Hz");
         Err(sensors.whole(&why))

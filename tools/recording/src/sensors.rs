@@ -31,21 +31,23 @@ impl Sensors {
     /// # Errors
     /// One line about the file.
     pub fn open(path: &Path) -> Result<Self, String> {
-        let mut first = Lines::open(path)?;
-        let line = first.next()?.map(str::to_owned);
+        let mut lines = Lines::open(path)?;
+        let line = lines.next()?.map(str::to_owned);
         let Some(line) = line else {
-            return Err(first.whole("empty, allowed are sensors' lines"));
+            return Err(lines.whole("empty, allowed are sensors' lines"));
         };
         let named = line.split(',').any(|name| name.trim() == "t_us");
-        let (lines, head) = if named {
-            let head = Head::of(&line).map_err(|why| first.bad(&why))?;
-            head.require(&INERTIAL).map_err(|why| first.bad(&why))?;
+        let head = if named {
+            let head = Head::of(&line).map_err(|why| lines.bad(&why))?;
+            head.require(&INERTIAL).map_err(|why| lines.bad(&why))?;
             if FLOW.iter().any(|name| head.has(name)) {
-                head.require(&FLOW).map_err(|why| first.bad(&why))?;
+                head.require(&FLOW).map_err(|why| lines.bad(&why))?;
             }
-            (first, Some(head))
+            Some(head)
         } else {
-            (Lines::open(path)?, None)
+            // A measurement already: a pipe cannot be read from its beginning again.
+            lines.again();
+            None
         };
         Ok(Self {
             lines,

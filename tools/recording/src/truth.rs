@@ -36,7 +36,7 @@ pub struct Row {
 #[derive(Clone, Debug, Default)]
 pub struct Truth {
     rows: Vec<Row>,
-    /// The row that was looked at last: time goes on.
+    /// The row that was looked at last: later calls ask for later times.
     next: usize,
 }
 

@@ -13,7 +13,7 @@ pub struct Frame {
     pub name: String,
     /// Greatest depth of its own, bytes.
     pub own: i64,
-    /// Functions that it calls or goes on to, and its greatest depth there, bytes.
+    /// Functions that it calls or jumps to, and its greatest depth there, bytes.
     pub calls: BTreeMap<u64, i64>,
     /// The same of calls by an address in a register.
     pub unknown: Option<i64>,

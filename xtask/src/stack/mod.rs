@@ -18,8 +18,8 @@ const HANDLER: &str = "OTG_FS";
 const TASK: &str = "__usb_task_inner_function";
 /// Ends the run: what it takes is taken from a stack that is given up.
 const END: &str = "core::panicking::panic_fmt";
-/// What calls by an address in a register reach from there: the wakers of the executor, and what the device tells its
-/// class.
+/// Functions that calls by an address in a register reach from there: the wakers of the executor, and the USB class's
+/// handlers of the device's events.
 const REACHED: [&str; 2] = ["embassy_executor::raw::waker::", "as embassy_usb::Handler>::"];
 
 /// Checks that the stack of `image` lies at the very bottom of a memory, where one that overflows faults.

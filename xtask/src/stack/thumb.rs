@@ -71,7 +71,7 @@ impl Effect {
     }
 
     /// Of two halfwords at `at`; the second is the next instruction's after a short one. `None`: it changes the stack by
-    /// what a register says.
+    /// a register's value.
     pub fn of(at: u64, first: u16, second: u16) -> Option<Self> {
         if first >> 11 >= 0b11101 {
             long(at, first, second)
@@ -196,7 +196,7 @@ fn immediate(first: u16, second: u16) -> u32 {
     u32::from(first >> 10 & 1) << 11 | u32::from(second >> 12 & 7) << 8 | u32::from(second & 0xFF)
 }
 
-/// A modified constant (A5.3.2); one of repeated bytes is no size of a frame.
+/// A modified constant (A5.3.2); a constant of repeated bytes is never a frame's size.
 fn modified(first: u16, second: u16) -> i64 {
     let bits = immediate(first, second);
     match bits >> 10 {

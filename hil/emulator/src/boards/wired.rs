@@ -109,7 +109,7 @@ impl<C: Chip> Wired<C> {
         self.chip.hold_clock(bus, u64::from(us) * 1000)
     }
 
-    /// Bus errors on an arm bus that are none, one in about `every` bytes; false if the part has none.
+    /// Flags spurious bus errors on an arm bus, one in about `every` bytes; false if the chip has no such erratum.
     pub fn err_on_bus(&mut self, bus: usize, every: u32) -> bool {
         self.chip.err_on_bus(bus, every)
     }

@@ -22,7 +22,7 @@ pub struct Line {
 }
 
 impl Line {
-    /// Goes on with the port's draws of noise, which it makes of words that it receives. It flips what it draws: flipped
+    /// Continues the port's draws of noise, which it makes of words that it receives. It flips what it draws: flipped
     /// beforehand, a word arrives right, as the better of three samples gives it.
     pub fn align(&mut self, noise: Errors) {
         if self.outgoing.is_empty() {

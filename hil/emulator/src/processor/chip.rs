@@ -69,7 +69,7 @@ pub trait Chip: Mcu + Debug + Send + 'static {
         let _ = (bus, speed);
         None
     }
-    /// Flags a bus error where there is none in one of about `every` bytes; false if the part does not.
+    /// Flags spurious bus errors, one in about `every` bytes; false if the chip has no such erratum.
     fn err_on_bus(&mut self, bus: usize, every: u32) -> bool {
         let _ = (bus, every);
         false

@@ -96,7 +96,7 @@ fn so_it_does_on_the_small_board() {
 
 /// One in some 40 bytes: in almost each reading.
 #[test]
-fn bus_errors_that_are_none_cost_no_reading() {
+fn spurious_bus_errors_cost_no_reading() {
     let troubles = [0, 1].map(|bus| (0.0, BoardFault::BusErrors(bus, 40)));
     read_at(&stand(false, ArmBusSpeed::Fast, &troubles), EACH_ROUND);
 }

@@ -1,6 +1,6 @@
 //! The emulator's I2C interface, with what that lacks:
 //!
-//! - bus errors that are none: F7 and H7 flag some as a master while the transfer goes on (ST's errata, "Spurious bus error
+//! - spurious bus errors: F7 and H7 flag some as a master while the transfer continues (ST's errata, "Spurious bus error
 //!   detection in master mode");
 //! - a data register that asks for its next byte as soon as the last one has moved on to the wire, and not only after its
 //!   acknowledge (RM0433 §47.9.7, TXIS; ST's own driver flushes that byte after a missing acknowledge).
