@@ -1,6 +1,6 @@
 //! Perching by itself, and leaving again.
 
-use sophie_control::navigation::position_estimator::PoseFault as Called;
+use sophie_control::navigation::external_pose::PoseFault as Called;
 use sophie_control::pilot::rc::ArmChoice;
 use sophie_sim::sensors::pose::PoseFault;
 

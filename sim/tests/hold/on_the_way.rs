@@ -5,7 +5,7 @@ mod draw;
 use draw::Draw;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-use sophie_control::navigation::position_estimator::{PoseFault as Called, SightFault};
+use sophie_control::navigation::{external_pose::PoseFault as Called, flow_range::SightFault};
 use sophie_sim::sensors::flow::FlowFault;
 use sophie_sim::sensors::pose::PoseFault;
 

@@ -1,6 +1,6 @@
 //! A range that is 1.6 or 0.6 times what it should be: named where the vehicle climbs, and a sound one never.
 
-use sophie_control::navigation::position_estimator::SightFault;
+use sophie_control::navigation::flow_range::SightFault;
 use sophie_sim::sensors::flow::FlowFault;
 
 use super::by_itself::{campaign, mission};
