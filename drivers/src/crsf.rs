@@ -11,8 +11,7 @@
 
 use embassy_time::{Duration, Instant};
 use sophie_control::rc::Sticks;
-use sophie_tasks::links::RcState;
-use sophie_tasks::ports::RcDecoder;
+use sophie_ports::receiver::{RcDecoder, RcState};
 use uf_crsf::{CrsfParser, Packet};
 
 /// Ten bits at 420 kbaud.

@@ -23,8 +23,7 @@
 
 use embassy_time::{Duration, Instant};
 use sophie_control::rc::{CHANNELS, ChannelError, Sticks};
-use sophie_tasks::links::RcState;
-use sophie_tasks::ports::RcDecoder;
+use sophie_ports::receiver::{RcDecoder, RcState};
 
 /// Bytes per frame.
 pub const FRAME: usize = 25;

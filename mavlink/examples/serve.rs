@@ -16,8 +16,8 @@ use sophie_control::params::Params;
 use sophie_control::rc::{ArmChoice, StickMode, Sticks};
 use sophie_control::vector::{Quat, Vec3};
 use sophie_mavlink::inputs::Inputs;
-use sophie_mavlink::signing::Stored;
 use sophie_mavlink::{Condition, Order, Server, Signing, Vehicle};
+use sophie_ports::signing::Stored;
 
 /// The period of the task that serves a line.
 const PERIOD: Duration = Duration::from_millis(20);

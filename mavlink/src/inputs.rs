@@ -12,7 +12,6 @@ pub mod target;
 
 use self::attitude::OffboardAttitude;
 use self::clock::{AGE_MAX, Clocks, Stamp, Time};
-use self::pose::{ExternalPose, Pose};
 use crate::dialect::{
     DISTANCE_SENSOR_DATA, LANDING_TARGET_DATA, OPTICAL_FLOW_RAD_DATA, SET_ATTITUDE_TARGET_DATA,
 };
@@ -22,6 +21,7 @@ use sophie_control::ground::{Flow, GroundView, Range};
 use sophie_control::params::{FlowPort, Params};
 use sophie_control::target::PipeTarget;
 use sophie_control::vector::{Quat, Vec3};
+use sophie_ports::external_pose::{ExternalPose, Pose};
 
 /// Squared length of a quaternion may be off by this much: senders round, and do not always normalise.
 const QUATERNION_TOLERANCE: f32 = 0.02;

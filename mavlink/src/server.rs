@@ -21,8 +21,7 @@ use crate::dialect::*;
 use crate::files::FILES;
 use crate::frame::{Encoder, Frame};
 use crate::ftp::Ftp;
-use crate::inputs::Inputs;
-use crate::inputs::pose::Pose;
+use crate::inputs::{Inputs, pose};
 use crate::parameters::{Parameters, Place, Refused};
 use crate::parser::Parser;
 use crate::requests::{Peer, Request, request};
@@ -271,12 +270,12 @@ impl Server {
 /// Takes what `from` has measured or wished; true where it is to be asked for its time.
 fn measured(inputs: &mut Inputs, said: &Request, from: Peer, now: u64) -> bool {
     match said {
-        Request::Odometry(m) => inputs.pose(Pose::odometry(m), ODOMETRY_DATA::ID, m.time_usec, from, now),
+        Request::Odometry(m) => inputs.pose(pose::odometry(m), ODOMETRY_DATA::ID, m.time_usec, from, now),
         Request::Vision(m) => {
             let id = VISION_POSITION_ESTIMATE_DATA::ID;
-            inputs.pose(Pose::vision(m), id, m.usec, from, now)
+            inputs.pose(pose::vision(m), id, m.usec, from, now)
         }
-        Request::Mocap(m) => inputs.pose(Pose::mocap(m), ATT_POS_MOCAP_DATA::ID, m.time_usec, from, now),
+        Request::Mocap(m) => inputs.pose(pose::mocap(m), ATT_POS_MOCAP_DATA::ID, m.time_usec, from, now),
         Request::Flow(m) => inputs.flow(m, from, now),
         Request::Range(m) => inputs.range(m, from, now),
         Request::Target(m) => inputs.target(m, from, now),

@@ -5,24 +5,24 @@ use std::rc::Rc;
 
 use embassy_time::Timer;
 use sophie_control::calibration::Face;
+use sophie_control::chain::ImuReading;
 use sophie_control::mounting::Mounting;
 use sophie_control::params::{ImuMounting, Params};
 use sophie_control::vector::Vec3;
 use sophie_control::wrench::Configuration;
 use sophie_drivers::param_store::ParamStore;
 use sophie_fakes::{FakeChip, FakeImu, FakeLine, Flash};
+use sophie_ports::error::PortError;
+use sophie_ports::serial::SerialOutput;
 use sophie_sim::clock::VirtualTime;
 use sophie_sim::flight_level::{Errors, Rig, level, vehicle};
 use sophie_sim::mixers::Variant;
 use sophie_sim::sensors::imu::Misfit;
+use sophie_tasks::console;
+use sophie_tasks::flight::{estimator, imu};
 use sophie_tasks::links::Links;
-use sophie_tasks::ports::{ImuReading, PortError, SerialOutput};
-use sophie_tasks::{
-    console,
-    flight::{estimator, imu},
-    pilot::commander,
-    storage::parameters,
-};
+use sophie_tasks::pilot::commander;
+use sophie_tasks::storage::parameters;
 
 /// Turned by 90 degrees to the left, 3 % off along two axes.
 fn misfit() -> Misfit {

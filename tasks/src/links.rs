@@ -17,6 +17,7 @@ pub mod last_value;
 
 use core::cell::{Cell, RefCell};
 use core::sync::atomic::{AtomicBool, Ordering};
+use sophie_ports::receiver::RcState;
 
 use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::signal::Signal;
@@ -36,23 +37,24 @@ pub use sophie_control::ground::GroundView;
 use sophie_control::mode::{Mode, Reason};
 use sophie_control::params::Params;
 pub use sophie_control::position::{Estimate, Fault};
-use sophie_control::rc::Sticks;
 pub use sophie_control::remote::{RemoteAnswer, RemoteRequest};
 pub use sophie_control::setpoint::{ClampCommand, Setpoint};
 pub use sophie_control::target::PipeTarget;
 use sophie_control::wrench::PerArm;
 use sophie_mavlink::inputs::Counts;
 pub use sophie_mavlink::inputs::attitude::OffboardAttitude;
-pub use sophie_mavlink::inputs::pose::ExternalPose;
-use sophie_mavlink::signing::{Refused, Signing, Stored};
+use sophie_mavlink::signing::{Refused, Signing};
+pub use sophie_ports::external_pose::ExternalPose;
+use sophie_ports::signing::Stored;
 
 use crate::links::last_value::{LastValue, Receiver};
 pub use crate::links::last_value::{RECEIVERS, Raw};
-use crate::ports::AnalogFrame;
 use crate::schedule::histogram::Histogram;
 use crate::schedule::timing::{Quantity, Record, Run, Timing};
 use crate::schedule::{Level, TaskId};
-use crate::start::{Start, StartCause};
+use crate::start::Start;
+use sophie_ports::retained::StartCause;
+use sophie_ports::sensors::AnalogFrame;
 
 /// A value and the time at which what it describes was measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -242,17 +244,6 @@ pub struct TendonForce {
     pub force: f32,
     /// The servo is to stay where it is, whatever the force.
     pub stay: bool,
-}
-
-/// State of the radio link.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct RcState {
-    /// The pilot's wishes.
-    pub sticks: Sticks,
-    /// Frames decoded since power-up.
-    pub frames: u32,
-    /// Frames or bytes rejected since power-up.
-    pub errors: u32,
 }
 
 /// The commander's view, for telemetry, log and lights.

@@ -12,12 +12,12 @@ use sophie_control::tendon::Reel;
 use sophie_control::thrust_curve::ThrustCurve;
 use sophie_control::wrench::PerArm;
 use sophie_drivers::sbus;
+use sophie_ports::retained::StartCause;
 use sophie_sim::crsf::Telemetry;
 use sophie_sim::flight::aircraft::{Aircraft, Belief, Reset, Said};
 use sophie_sim::plant::{Actuators, Plant};
 use sophie_sim::scenario::Scenario;
 use sophie_tasks::pilot::telemetry::parse_mode_text;
-use sophie_tasks::start::StartCause;
 use uf_crsf::{CrsfParser, Packet};
 
 use crate::below::Module;

@@ -7,7 +7,7 @@ use sophie_control::vector::{Quat, Vec3};
 use sophie_mavlink::dialect::*;
 use sophie_mavlink::inputs::Counts;
 use sophie_mavlink::inputs::attitude::OffboardAttitude;
-use sophie_mavlink::inputs::pose::{ExternalPose, TimeSource};
+use sophie_ports::external_pose::{ExternalPose, TimeSource};
 
 use crate::station::{Station, frame_by};
 

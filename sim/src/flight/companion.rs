@@ -5,9 +5,9 @@ use std::cell::Cell;
 use glam::{DQuat, DVec3};
 use mavlink_core::{MAVLinkV2MessageRaw, MavHeader, MessageData};
 use sophie_mavlink::dialect::{ATT_POS_MOCAP_DATA, LANDING_TARGET_DATA};
+use sophie_ports::signing::Stored;
 use sophie_tasks::ground_station::console_pipe::Shell;
 use sophie_tasks::ground_station::mavlink;
-use sophie_tasks::ground_station::mavlink::signing::Stored;
 use sophie_tasks::links::Links;
 
 use crate::clock::VirtualTime;

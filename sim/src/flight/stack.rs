@@ -11,10 +11,10 @@ use sophie_control::vector::Vec3;
 use sophie_control::wrench::{Configuration, PerArm};
 use sophie_drivers::rc_decoder::Decoder;
 use sophie_mixers::{Mixer, Variant};
+use sophie_ports::retained::{StartCause, Words};
 use sophie_tasks::deadline::TaskId;
 use sophie_tasks::links::{GripState, Links, Newest, Stamped, Status};
-use sophie_tasks::start::retained_state::Words;
-use sophie_tasks::start::{Start, StartCause};
+use sophie_tasks::start::Start;
 
 use super::aircraft::{Aircraft, Belief, Reset, Said};
 use super::below::Below;

@@ -19,11 +19,12 @@ use self::stored::{Memory, Port};
 pub use self::udp::Udp;
 use crate::clock::VirtualTime;
 use sophie_control::params::Params;
+pub use sophie_ports::signing::Key;
+use sophie_ports::signing::Record;
+use sophie_tasks::console;
 use sophie_tasks::ground_station::console_pipe::Shell;
-pub use sophie_tasks::ground_station::mavlink::signing::Key;
-use sophie_tasks::ground_station::mavlink::signing::Record;
+use sophie_tasks::ground_station::mavlink;
 use sophie_tasks::links::Links;
-use sophie_tasks::{console, ground_station::mavlink};
 
 /// What ends a flight before its mission is over, in the report.
 const STOPPED: &str = "stopped from outside";

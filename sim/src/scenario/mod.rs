@@ -27,7 +27,7 @@ use glam::DVec3;
 use sophie_control::params::Params;
 use sophie_control::rc::ArmChoice;
 use sophie_control::wrench::{Configuration, PerArm};
-use sophie_tasks::start::StartCause;
+use sophie_ports::retained::StartCause;
 
 use crate::plant::body::BodySpec;
 use crate::plant::esc::EscSpec;

@@ -305,7 +305,7 @@ mod tests {
     use sophie_control::vector::Quat;
     use sophie_drivers::ground_module::GroundModule;
     use sophie_drivers::msp::Parser;
-    use sophie_tasks::ports::GroundDecoder;
+    use sophie_ports::sensors::GroundDecoder;
 
     use super::*;
 

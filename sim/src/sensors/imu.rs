@@ -5,10 +5,10 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
+use sophie_control::chain::ImuReading;
 use sophie_control::mounting::Mounting;
 use sophie_control::params::Params;
 use sophie_control::vector::Vec3;
-use sophie_tasks::ports::ImuReading;
 
 use crate::streams::Streams;
 

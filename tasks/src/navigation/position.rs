@@ -9,7 +9,8 @@ use sophie_control::position::{Fix, Inertial, PositionEstimator};
 use sophie_control::vector::{Quat, Vec3};
 
 use crate::deadline::{FixedRate, TaskId};
-use crate::links::{ExternalPose, Links};
+use crate::links::Links;
+use sophie_ports::external_pose::ExternalPose;
 
 /// Estimates the position; never returns.
 pub async fn run(links: &Links) -> ! {

@@ -4,7 +4,7 @@ use sophie_control::arming::ArmingInhibit;
 use sophie_control::battery::ServoSupply;
 use sophie_control::position::{Fault, PoseFault, PressureFault, SightFault, SightLimit};
 
-use crate::start::StartCause;
+use sophie_ports::retained::StartCause;
 
 /// A warning, shown beside the mode when there is no reason.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -9,7 +9,7 @@ use sophie_control::mounting::Mounting;
 use sophie_control::wrench::PerArm;
 
 use crate::links::{Links, TendonOrder};
-use crate::ports::Retain;
+use sophie_ports::retained::Retain;
 
 /// Writer of the retained state.
 pub struct RetainedStore<R> {

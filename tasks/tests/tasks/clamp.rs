@@ -8,12 +8,13 @@ use sophie_control::grip_memory::GripMemory;
 use sophie_control::params::Params;
 use sophie_control::rc::ArmChoice;
 use sophie_control::wrench::PerArm;
+use sophie_ports::retained::StartCause;
 use sophie_tasks::links::{
     ArmAngles, ClampCommand, Contact, Links, MixOutput, TendonForce, TendonForces, TendonOrder,
 };
 use sophie_tasks::perching::clamp;
+use sophie_tasks::start::Start;
 use sophie_tasks::start::retained_state::RetainedState;
-use sophie_tasks::start::{Start, StartCause};
 
 use crate::rig::Rig;
 

@@ -13,12 +13,14 @@ use sophie_mavlink::dialect::{
     COMMAND_LONG_DATA, HEARTBEAT_DATA, ODOMETRY_DATA, PARAM_SET_DATA, SERIAL_CONTROL_DATA,
     SET_ATTITUDE_TARGET_DATA,
 };
-use sophie_mavlink::signing::{Key, Record, Refused, Signing, Stored};
+use sophie_mavlink::signing::{Refused, Signing};
+use sophie_ports::error::PortError;
+use sophie_ports::serial::SerialOutput;
+use sophie_ports::signing::{Key, Record, Stored};
 use sophie_tasks::console;
 use sophie_tasks::ground_station::console_pipe::Shell;
 use sophie_tasks::ground_station::mavlink::{self, Lines};
 use sophie_tasks::links::{LineState, Links, SigningState, Status};
-use sophie_tasks::ports::{PortError, SerialOutput};
 
 use crate::console::Board;
 use crate::rig::Rig;

@@ -4,8 +4,8 @@ use std::fmt::Write;
 
 use sophie_control::battery::ServoSupply;
 use sophie_control::position::{Fault, PoseFault, SightFault, SightLimit};
+use sophie_ports::retained::StartCause;
 use sophie_tasks::pilot::warning::Warning;
-use sophie_tasks::start::StartCause;
 
 fn to_do(warning: Warning) -> &'static str {
     match warning {

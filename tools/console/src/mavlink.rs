@@ -17,7 +17,8 @@ use sophie_mavlink::dialect::{
 use sophie_mavlink::frame::{COMPONENT, Encoder, Frame, SYSTEM};
 use sophie_mavlink::parser::Parser;
 use sophie_mavlink::server::shell::CHUNK;
-use sophie_mavlink::signing::{Key, Record, Signing, Stored};
+use sophie_mavlink::signing::Signing;
+use sophie_ports::signing::{Key, Record, Stored};
 
 use crate::port::Wire;
 
