@@ -6,15 +6,14 @@
 #[cfg_attr(feature = "f405", path = "f405.rs")]
 mod chosen;
 
-#[cfg(not(family = "f4"))]
-pub(crate) use chosen::DATA_CACHE;
-pub(crate) use chosen::FIRST_LEVELS;
 pub use chosen::{
     AnalogPort, ArmsPort, BarometerPort, ImuPort, LightsPort, MotorsPort, NAME, ServosPort, StoragePort,
     WIRING, WatchdogPort, start_levels, stop_motors, take,
 };
+#[cfg(not(family = "f4"))]
+pub(crate) use chosen::{DATA_CACHE, FIRST_LEVELS};
 use sophie_control::params::Params;
-use sophie_tasks::ports::Loaded;
+use sophie_ports::storage::Loaded;
 
 use crate::stm32::{
     BufferedInput, BufferedOutput, GroundLine, ReceiverLine, TelemetryLine, ThisChip, UsbPort,

@@ -10,7 +10,8 @@
 use embedded_hal_async::i2c::I2c;
 use sophie_control::allocation::wrench::PerArm;
 use sophie_control::maths::vector::Vec3;
-use sophie_tasks::ports::{ArmImus, PortError};
+use sophie_ports::error::PortError;
+use sophie_ports::sensors::ArmImus;
 
 use crate::bno055::{Address, Bno055, Calibration, Config};
 use crate::fault::Fault;

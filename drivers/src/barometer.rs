@@ -5,7 +5,8 @@
 
 use embassy_time::{Duration, Instant};
 use sophie_control::navigation::air_pressure::AirPressure;
-use sophie_tasks::ports::{Barometer as Port, PortError};
+use sophie_ports::error::PortError;
+use sophie_ports::sensors::Barometer as Port;
 
 use crate::fault::{Fault, report};
 

@@ -7,7 +7,7 @@
 use embassy_time::{Duration, Instant, with_timeout};
 use embedded_hal_async::i2c::I2c;
 use sophie_control::maths::vector::Vec3;
-use sophie_tasks::ports::PortError;
+use sophie_ports::error::PortError;
 
 use crate::fault::{Fault, report};
 use crate::mounting::Mounting;

@@ -2,8 +2,8 @@
 //!
 //! A receiver without its transmitter may repeat the last channels. At 0 % uplink quality in its link statistics no
 //! sticks are published: the link turns stale and the failsafe acts. Sticks resume with the first frame after a quality
-//! above 0 %, and only then: a receiver may report the loss and send no statistics after it, and channels that change may
-//! be its failsafe's. A receiver that never sends statistics is accepted. Receivers should be set to "no pulses"
+//! above 0 %, and with nothing else: a receiver may report the loss and then be silent about its link, and channels that
+//! change may be its failsafe's. One that never sends statistics is heard. Receivers should be set to "no pulses"
 //! without a link.
 //!
 //! Channels are read from frames of type 0x16. Those of type 0x17 (some of the channels, CRSF 3) are not: a receiver
@@ -11,8 +11,7 @@
 
 use embassy_time::{Duration, Instant};
 use sophie_control::pilot::rc::Sticks;
-use sophie_tasks::links::RcState;
-use sophie_tasks::ports::RcDecoder;
+use sophie_ports::receiver::{RcDecoder, RcState};
 use uf_crsf::{CrsfParser, Packet};
 
 /// Ten bits at 420 kbaud.
@@ -189,7 +188,7 @@ mod tests {
 
     #[test]
     fn a_report_of_loss_counts_until_a_quality_above_zero_comes() {
-        // ExpressLRS 3.x: two reports at the loss, then none; the last frame repeats for an hour.
+        // ExpressLRS 3.x: two reports at the loss, then none; the last frame goes on for an hour.
         let mut d = Decoder::new();
         assert_eq!(published(&mut d, &throttle(0.3), 100), Some(30));
         let _ = published(&mut d, &statistics(0), 500);

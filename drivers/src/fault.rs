@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use sophie_tasks::ports::PortError;
+use sophie_ports::error::PortError;
 
 /// A chip's fault, at start-up or in flight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

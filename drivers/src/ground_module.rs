@@ -4,7 +4,7 @@
 use embassy_time::{Duration, Instant};
 use sophie_control::navigation::flow_range_sample::{Flow, GroundView, Range};
 use sophie_control::params::{FlowMounting, Params};
-use sophie_tasks::ports::GroundDecoder;
+use sophie_ports::sensors::GroundDecoder;
 
 use crate::msp::{Message, Parser};
 

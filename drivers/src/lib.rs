@@ -33,7 +33,6 @@ pub mod arm_buses;
 pub mod barometer;
 pub mod bno055;
 pub mod crsf;
-pub mod data_ready;
 pub mod dps310;
 pub mod dshot;
 pub mod dshot_decoder;

@@ -22,8 +22,8 @@ use sequential_storage::cache::key_pointers::ArrayKeyPointers;
 use sequential_storage::cache::{Cache, Uncached};
 use sequential_storage::map::{MapConfig, MapStorage};
 use sophie_control::params::Params;
-use sophie_tasks::ground_station::mavlink::signing::{Record, Stored};
-use sophie_tasks::ports::{Loaded, Storage, StorageError};
+use sophie_ports::signing::{Record, Stored};
+use sophie_ports::storage::{Loaded, Storage, StorageError};
 
 use self::guard::ReadOnly;
 pub use self::set::hash;

@@ -2,8 +2,7 @@
 
 use embassy_time::Instant;
 use sophie_control::params::{Params, RcProtocol};
-use sophie_tasks::links::RcState;
-use sophie_tasks::ports::RcDecoder;
+use sophie_ports::receiver::{RcDecoder, RcState};
 
 use crate::{crsf, sbus};
 

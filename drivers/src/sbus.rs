@@ -23,8 +23,7 @@
 
 use embassy_time::{Duration, Instant};
 use sophie_control::pilot::rc::{CHANNELS, ChannelError, Sticks};
-use sophie_tasks::links::RcState;
-use sophie_tasks::ports::RcDecoder;
+use sophie_ports::receiver::{RcDecoder, RcState};
 
 /// Bytes per frame.
 pub const FRAME: usize = 25;
@@ -35,7 +34,7 @@ const FLAGS: u8 = 0x0F;
 const BYTE: Duration = Duration::from_micros(120);
 /// Pause between frames. Receivers leave 4 ms or more, and none within a frame.
 const SILENCE: Duration = Duration::from_millis(3);
-/// Bytes of the eight slots behind an SBUS2 frame: as many may follow it without being part of a frame.
+/// Bytes of the eight slots behind an SBUS2 frame: what may follow it that is no frame.
 const SLOTS: u8 = 24;
 /// Consecutive frames before sticks are accepted.
 const TRUSTED_FROM: u8 = 3;

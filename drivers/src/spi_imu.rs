@@ -12,16 +12,18 @@ use embassy_futures::select::{Either, select};
 use embassy_time::{Duration, Instant, Timer};
 use embedded_hal_async::spi::SpiDevice;
 use heapless::Vec;
+use sophie_control::chain::ImuReading;
 use sophie_control::maths::scalar;
 use sophie_control::maths::vector::Vec3;
-use sophie_tasks::ports::{Imu, ImuReading, PortError};
+use sophie_ports::error::PortError;
+use sophie_ports::sensors::Imu;
 
-use crate::data_ready::DataReady;
 use crate::fault::{Fault, report};
 use crate::line_watch::LineWatch;
 use crate::mounting::Mounting;
 use crate::registers::{Registers, Setting};
 use crate::self_test::{Limits, Measured, SAMPLES, SelfTest, Stage, judge};
+use sophie_ports::data_ready::DataReady;
 
 /// Bytes of one sample: accelerometer, gyroscope, temperature.
 const SAMPLE: usize = 14;

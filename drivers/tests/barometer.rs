@@ -13,7 +13,8 @@ use sophie_drivers::barometer::{Barometer, Chip};
 use sophie_drivers::dps310::{Coefficients, Dps310};
 use sophie_drivers::fault::Fault;
 use sophie_drivers::ms5611::Ms5611;
-use sophie_tasks::ports::{Barometer as _, PortError};
+use sophie_ports::error::PortError;
+use sophie_ports::sensors::Barometer as _;
 
 /// Calibration as of a real part: c0 205, c1 -264, c00 78,716, c10 -54,086, c01 -2,848, c11 1,387, c20 -10,156, c21 46,
 /// c30 -1,385.

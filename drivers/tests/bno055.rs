@@ -4,21 +4,18 @@
 mod fake;
 
 use std::cell::RefCell;
-use std::pin::pin;
 use std::rc::Rc;
 
-use embassy_time::{Duration, Instant, Timer, with_timeout};
+use embassy_time::{Duration, Instant, Timer};
 use fake::i2c::{Bus, Chip, Failure, OnReset};
 use fake::run;
-use sophie_control::arming::ArmingInhibit;
 use sophie_control::maths::vector::Vec3;
-use sophie_control::params::Params;
 use sophie_drivers::arm_buses::ArmBuses;
 use sophie_drivers::bno055::{Config, Fusion};
 use sophie_drivers::fault::Fault;
 use sophie_drivers::mounting::{Heading, Mounting};
-use sophie_tasks::links::Links;
-use sophie_tasks::ports::{ArmImus, PortError};
+use sophie_ports::error::PortError;
+use sophie_ports::sensors::ArmImus;
 
 type Chips = [Rc<RefCell<Chip>>; 4];
 
@@ -383,40 +380,36 @@ fn an_arm_that_does_not_exist_is_absent() {
 }
 
 #[test]
-fn the_arms_task_waits_for_slow_chips_and_names_the_broken_ones() {
+fn a_slow_chip_is_waited_for_and_a_broken_one_fails_alone() {
     // Power-up of the chips.
     for late_ms in [0, 100, 300, 600] {
         run(async move {
-            let (port, chips) = arms([Config::default(); 4]);
-            let links = Links::new(Params::default());
-            let mut task = pin!(sophie_tasks::perching::arms::run(&links, port));
-            let _ = with_timeout(Duration::from_millis(late_ms), task.as_mut()).await;
+            let (mut arms, chips) = arms([Config::default(); 4]);
+            rounds(&mut arms, Duration::from_millis(late_ms)).await;
             chips.iter().for_each(|chip| chip.borrow_mut().reset());
-            for _ in 0..600 {
-                let _ = with_timeout(Duration::from_millis(10), task.as_mut()).await;
-                assert!(
-                    links.hardware().is_empty(),
-                    "{late_ms} ms late: {} ms",
-                    Instant::now().as_millis()
-                );
+            let sound = |calls: &[Call; 4]| calls.each_ref().map(|call| call.result.is_ok());
+            let calls = rounds(&mut arms, Duration::from_millis(2500 - late_ms)).await;
+            assert_eq!(sound(&calls), [true; 4], "{late_ms} ms late");
+            for _ in 0..300 {
+                assert_eq!(sound(&round(&mut arms).await), [true; 4], "{late_ms} ms late");
+                Timer::after_millis(10).await;
             }
             chips[1].borrow_mut().failure = Failure::Missing;
-            let _ = with_timeout(Duration::from_millis(1100), task.as_mut()).await;
-            assert!(links.hardware().iter().eq([ArmingInhibit::ArmSensor2]));
+            for _ in 0..100 {
+                assert_eq!(sound(&round(&mut arms).await), [true, false, true, true]);
+                Timer::after_millis(10).await;
+            }
             chips[2].borrow_mut().failure = Failure::Stretched;
             chips[3].borrow_mut().failure = Failure::Stretched;
-            let _ = with_timeout(Duration::from_millis(1200), task.as_mut()).await;
-            let all = [
-                ArmingInhibit::ArmSensor2,
-                ArmingInhibit::ArmSensor3,
-                ArmingInhibit::ArmSensor4,
-            ];
-            assert!(links.hardware().iter().eq(all));
+            for _ in 0..100 {
+                assert_eq!(sound(&round(&mut arms).await), [true, false, false, false]);
+                Timer::after_millis(10).await;
+            }
             for chip in &chips {
                 chip.borrow_mut().failure = Failure::None;
             }
-            let _ = with_timeout(Duration::from_secs(3), task.as_mut()).await;
-            assert!(links.hardware().is_empty());
+            let calls = rounds(&mut arms, Duration::from_secs(3)).await;
+            assert_eq!(sound(&calls), [true; 4]);
         });
     }
 }

@@ -15,7 +15,7 @@ use sophie_control::params::Params;
 use sophie_drivers::fault::Fault;
 use sophie_drivers::fram::{CAPACITY, Fram, FramFault};
 use sophie_drivers::param_store::{BUFFER, ParamStore, hash};
-use sophie_tasks::ports::{Loaded, Storage, StorageError};
+use sophie_ports::storage::{Loaded, Storage, StorageError};
 
 /// Identity and protection before the first access.
 fn bring_up() -> Vec<Vec<u8>> {

@@ -11,7 +11,7 @@ use sophie_control::params::Params;
 use sophie_drivers::fault::{Fault, Sensor};
 use sophie_drivers::icm20689::{Config, GyroFilter, Icm20689};
 use sophie_drivers::mounting::Mounting;
-use sophie_tasks::ports::Imu;
+use sophie_ports::sensors::Imu;
 
 #[test]
 fn it_is_configured_and_read_at_4_khz() {

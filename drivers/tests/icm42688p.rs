@@ -4,21 +4,20 @@
 mod fake;
 
 use std::cell::RefCell;
-use std::pin::pin;
 use std::rc::Rc;
 
 use embassy_time::{Duration, Instant, Timer, with_timeout};
 use fake::run;
 use fake::spi::{Bus, DataReady, Failure, Kind, Part};
-use sophie_control::arming::ArmingInhibit;
+use sophie_control::chain::ImuReading;
 use sophie_control::maths::scalar::GRAVITY;
 use sophie_control::maths::vector::Vec3;
 use sophie_control::params::Params;
 use sophie_drivers::fault::{Fault, Sensor};
 use sophie_drivers::icm42688p::{AccelRange, AntiAlias, Config, FilterOrder, GyroRange, Icm42688p, Rate};
 use sophie_drivers::mounting::{Heading, Mounting};
-use sophie_tasks::links::Links;
-use sophie_tasks::ports::{Imu, ImuReading, PortError};
+use sophie_ports::error::PortError;
+use sophie_ports::sensors::Imu;
 
 type Driver = Icm42688p<Bus, DataReady>;
 type Shared = Rc<RefCell<Part>>;
@@ -529,45 +528,48 @@ fn the_part_is_looked_at_ten_times_a_second_at_every_rate() {
 }
 
 #[test]
-fn the_imu_task_reports_what_the_driver_finds_and_takes_it_back() {
-    let cases: [(Spoil, ArmingInhibit); 4] = [
-        (|p| p.failure = Failure::Ones, ArmingInhibit::ImuAbsent),
-        (|p| p.failure = Failure::Zeros, ArmingInhibit::ImuAbsent),
-        (|p| p.failure = Failure::Bus, ArmingInhibit::ImuCorrupt),
+fn what_is_wrong_is_named_for_as_long_as_it_lasts() {
+    let cases: [(Spoil, PortError); 4] = [
+        (|p| p.failure = Failure::Ones, PortError::Absent),
+        (|p| p.failure = Failure::Zeros, PortError::Absent),
+        (|p| p.failure = Failure::Bus, PortError::Corrupt),
         (
             |p| {
                 p.kind = Kind::Icm20689;
                 p.reset();
             },
-            ArmingInhibit::ImuWrongPart,
+            PortError::WrongPart,
         ),
     ];
-    for (spoil, reason) in cases {
+    for (spoil, error) in cases {
         for at_start in [true, false] {
             run(async move {
-                let (driver, part) = pair(Config::default());
-                let links = Links::new(Params::default());
-                let mut task = pin!(sophie_tasks::flight::imu::run(&links, driver));
+                let case = format!("{error:?}, at the start: {at_start}");
+                let (mut driver, part) = pair(Config::default());
                 if !at_start {
-                    let _ = with_timeout(Duration::from_secs(1), task.as_mut()).await;
-                    assert!(links.hardware().is_empty() && links.imu.fresh().is_some());
+                    let (good, errors, _) = read_for(&mut driver, Duration::from_secs(1)).await;
+                    assert!(good > 3600 && errors.is_empty(), "{case}: {good} {errors:?}");
                 }
                 spoil(&mut part.borrow_mut());
-                let _ = with_timeout(Duration::from_millis(300), task.as_mut()).await;
-                assert!(links.hardware().iter().eq([reason]), "{reason:?}, {at_start}");
-                let _ = with_timeout(Duration::from_secs(5), task.as_mut()).await;
+                let (_, errors, _) = read_for(&mut driver, Duration::from_millis(300)).await;
                 assert!(
-                    links.hardware().iter().eq([reason]),
-                    "{reason:?}, {at_start}: flaps"
+                    errors.len() >= 3 && errors.ends_with(&[error; 3]),
+                    "{case}: {errors:?}"
+                );
+                let (good, errors, _) = read_for(&mut driver, Duration::from_secs(5)).await;
+                assert!(
+                    good == 0 && errors.iter().all(|&e| e == error),
+                    "{case}: {good} {errors:?}"
                 );
                 {
                     let mut part = part.borrow_mut();
                     (part.failure, part.kind) = (Failure::None, Kind::Icm42688p);
                     part.reset();
                 }
-                let _ = with_timeout(Duration::from_millis(500), task.as_mut()).await;
-                assert!(links.hardware().is_empty(), "{reason:?}, {at_start}");
-                assert!(links.imu.fresh().is_some());
+                let (good, ..) = read_for(&mut driver, Duration::from_millis(300)).await;
+                assert!(good > 0, "{case}");
+                let (_, errors, _) = read_for(&mut driver, Duration::from_millis(200)).await;
+                assert!(errors.is_empty(), "{case}: {errors:?}");
             });
         }
     }

@@ -14,8 +14,8 @@ use sequential_storage::map::{MapConfig, MapStorage};
 use sophie_control::params::Params;
 use sophie_drivers::param_store::{BUFFER, ParamStore, hash};
 use sophie_fakes::Flash;
-use sophie_tasks::ground_station::mavlink::signing::{Key, Record, Stored};
-use sophie_tasks::ports::{Loaded, Storage, StorageError};
+use sophie_ports::signing::{Key, Record, Stored};
+use sophie_ports::storage::{Loaded, Storage, StorageError};
 
 /// Small, so that a short log rotates often.
 const SMALL: usize = 512;

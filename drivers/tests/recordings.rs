@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use embassy_time::{Duration, Instant};
 use sophie_drivers::sbus;
-use sophie_tasks::ports::RcDecoder;
+use sophie_ports::receiver::RcDecoder;
 
 /// The bytes of a recording with their times: a line each, `time_us byte`. `None` without the folder.
 fn recording(name: &str) -> Option<Vec<(Instant, u8)>> {

@@ -16,8 +16,8 @@ use sophie_control::mode::{Mode, Reason};
 use sophie_control::params::Params;
 use sophie_control::pilot::rc::{ArmChoice, StickMode, Sticks};
 use sophie_mavlink::inputs::Inputs;
-use sophie_mavlink::wire::signing::Stored;
 use sophie_mavlink::{Condition, Order, Server, Signing, Vehicle};
+use sophie_ports::signing::Stored;
 
 /// The period of the task that serves a line.
 const PERIOD: Duration = Duration::from_millis(20);

@@ -10,7 +10,6 @@ pub mod pose;
 pub mod target;
 
 use self::clock::{AGE_MAX, Clocks, Stamp, Time};
-use self::pose::{ExternalPose, Pose};
 use crate::wire::frame::SYSTEM;
 use crate::wire::requests::Peer;
 use sophie_control::approach::pipe_target::PipeTarget;
@@ -18,6 +17,7 @@ use sophie_control::maths::vector::{Quat, Vec3};
 use sophie_control::navigation::flow_range_sample::{Flow, GroundView, Range};
 use sophie_control::params::{FlowPort, Params};
 use sophie_dialect::{DISTANCE_SENSOR_DATA, LANDING_TARGET_DATA, OPTICAL_FLOW_RAD_DATA};
+use sophie_ports::external_pose::{ExternalPose, Pose};
 
 /// Squared length of a quaternion may be off by this much: senders round, and do not always normalise.
 const QUATERNION_TOLERANCE: f32 = 0.02;

@@ -6,8 +6,7 @@ use mavlink_core::MessageData;
 use sophie_control::mode::Mode;
 use sophie_control::params::Params;
 
-use crate::inputs::Inputs;
-use crate::inputs::pose::Pose;
+use crate::inputs::{Inputs, pose};
 use crate::services::Services;
 use crate::services::answer::Answer;
 use crate::services::commands::orders::Requests;
@@ -245,12 +244,12 @@ impl Server {
 /// Takes what `from` has measured or wished; true where it is to be asked for its time.
 fn measured(inputs: &mut Inputs, said: &Request, from: Peer, now: u64) -> bool {
     match said {
-        Request::Odometry(m) => inputs.pose(Pose::odometry(m), ODOMETRY_DATA::ID, m.time_usec, from, now),
+        Request::Odometry(m) => inputs.pose(pose::odometry(m), ODOMETRY_DATA::ID, m.time_usec, from, now),
         Request::Vision(m) => {
             let id = VISION_POSITION_ESTIMATE_DATA::ID;
-            inputs.pose(Pose::vision(m), id, m.usec, from, now)
+            inputs.pose(pose::vision(m), id, m.usec, from, now)
         }
-        Request::Mocap(m) => inputs.pose(Pose::mocap(m), ATT_POS_MOCAP_DATA::ID, m.time_usec, from, now),
+        Request::Mocap(m) => inputs.pose(pose::mocap(m), ATT_POS_MOCAP_DATA::ID, m.time_usec, from, now),
         Request::Flow(m) => inputs.flow(m, from, now),
         Request::Range(m) => inputs.range(m, from, now),
         Request::PipeTarget(m) => inputs.target(m, from, now),

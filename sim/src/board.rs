@@ -9,14 +9,17 @@ use embassy_time::{Instant, Timer};
 use heapless::Vec;
 use sophie_control::allocation::motor_map::at_rotors;
 use sophie_control::allocation::wrench::PerArm;
+use sophie_control::chain::ImuReading;
 use sophie_control::maths::vector::Vec3;
 use sophie_control::navigation::air_pressure::AirPressure;
 use sophie_control::params::{MotorMap, Params};
 use sophie_drivers::esc_protocol::EscProtocol;
 use sophie_drivers::esc_pwm::PulseRate;
+use sophie_ports::error::PortError;
+use sophie_ports::retained::{self, WORDS, Words};
+use sophie_ports::sensors::{self, AnalogFrame, IMU_BATCH};
+use sophie_ports::{actuators, chip, serial};
 use sophie_tasks::links::Raw;
-use sophie_tasks::ports::{self, AnalogFrame, IMU_BATCH, ImuReading, PortError};
-use sophie_tasks::start::retained_state::{WORDS, Words};
 
 use crate::plant::esc::{EscSpec, ONESHOT125};
 use crate::plant::{Actuators, Plant, STEP};
@@ -261,7 +264,7 @@ impl Board {
 #[derive(Clone, Copy)]
 pub struct Port(pub &'static Board);
 
-impl ports::Imu for Port {
+impl sensors::Imu for Port {
     type Batch = Vec<ImuReading, IMU_BATCH>;
 
     fn rate_hz(&self) -> f32 {
@@ -278,7 +281,7 @@ impl ports::Imu for Port {
     }
 }
 
-impl ports::ArmImus for Port {
+impl sensors::ArmImus for Port {
     async fn gravity(&mut self, arm: usize) -> Result<Vec3, PortError> {
         Timer::after_micros(ARM_READ_US).await;
         self.0
@@ -291,7 +294,7 @@ impl ports::ArmImus for Port {
     }
 }
 
-impl ports::Barometer for Port {
+impl sensors::Barometer for Port {
     const FITTED: bool = true;
 
     async fn read(&mut self) -> Result<AirPressure, PortError> {
@@ -304,7 +307,7 @@ impl ports::Barometer for Port {
     }
 }
 
-impl ports::Analog for Port {
+impl sensors::Analog for Port {
     fn volts_per_count(&self) -> f32 {
         PIN_VOLTS_PER_COUNT as f32
     }
@@ -330,7 +333,7 @@ impl ports::Analog for Port {
     }
 }
 
-impl ports::Motors for Port {
+impl actuators::Motors for Port {
     async fn write(&mut self, commands: PerArm<f32>) -> Instant {
         if let Some(drives) = self.0.drives(commands) {
             self.0.actuators.set(Actuators {
@@ -342,7 +345,7 @@ impl ports::Motors for Port {
     }
 }
 
-impl ports::Servos for Port {
+impl actuators::Servos for Port {
     /// The servo follows the newest width at once, without a frame.
     async fn write(&mut self, pulses_us: PerArm<f32>) -> Instant {
         let actuators = self.0.actuators.get();
@@ -354,13 +357,13 @@ impl ports::Servos for Port {
     }
 }
 
-impl ports::SerialInput for Port {
+impl serial::SerialInput for Port {
     async fn read(&mut self, buffer: &mut [u8]) -> Result<usize, PortError> {
         Ok(self.0.rc.read(buffer).await)
     }
 }
 
-impl ports::SerialOutput for Port {
+impl serial::SerialOutput for Port {
     async fn write(&mut self, bytes: &[u8]) -> Result<(), PortError> {
         let mut rest = bytes;
         while !rest.is_empty() {
@@ -371,7 +374,7 @@ impl ports::SerialOutput for Port {
     }
 }
 
-impl ports::Retain for Port {
+impl retained::Retain for Port {
     fn keep(&mut self, second: bool, words: &Words) {
         let [first_copy, second_copy] = self.0.memory.get();
         self.0.memory.set(if second {
@@ -382,7 +385,7 @@ impl ports::Retain for Port {
     }
 }
 
-impl ports::Watchdog for Port {
+impl chip::Watchdog for Port {
     /// No watchdog: the supervisor's tests cover withheld feeds.
     fn feed(&mut self) {}
 }

@@ -18,9 +18,9 @@ use crate::devices::line::Line;
 use crate::devices::mavlink_server;
 use crate::devices::storage::{Memory, Port};
 use sophie_control::params::Params;
+pub use sophie_ports::signing::Key;
+use sophie_ports::signing::Record;
 use sophie_tasks::console;
-pub use sophie_tasks::ground_station::mavlink::signing::Key;
-use sophie_tasks::ground_station::mavlink::signing::Record;
 use sophie_tasks::links::Links;
 
 /// What ends a flight before its mission is over, in the report.

@@ -28,7 +28,7 @@ use sophie_control::allocation::wrench::{Configuration, PerArm};
 use sophie_control::maths::scalar::GRAVITY;
 use sophie_control::params::Params;
 use sophie_control::pilot::rc::ArmChoice;
-use sophie_tasks::start::StartCause;
+use sophie_ports::retained::StartCause;
 
 use crate::plant::body::BodySpec;
 use crate::plant::esc::EscSpec;

@@ -10,19 +10,21 @@ use sophie_control::mode::{Mode, Reason};
 use sophie_control::params::{Params, ServoMarks};
 use sophie_drivers::param_store::ParamStore;
 use sophie_fakes::{Answer, BrokenLine, FakeAnalog, FakeChip, FakeImu, FakeLine, FakeServos, Flash, Part};
+use sophie_ports::chip::Look;
+use sophie_ports::error::PortError;
+use sophie_ports::sensors::AnalogFrame;
+use sophie_ports::serial::SerialOutput;
+use sophie_ports::signing::Record;
+use sophie_ports::stack_use::StackUse;
+use sophie_ports::storage::{Loaded, Storage, StorageError};
 use sophie_sim::clock::VirtualTime;
+use sophie_tasks::console;
 use sophie_tasks::deadline::TaskId;
-use sophie_tasks::ground_station::mavlink::signing::Record;
+use sophie_tasks::flight::{estimator, imu};
 use sophie_tasks::links::{Links, Status};
-use sophie_tasks::ports::{AnalogFrame, Loaded, Look, PortError, SerialOutput, Storage, StorageError};
-use sophie_tasks::stack_use::StackUse;
-use sophie_tasks::{
-    console,
-    flight::{estimator, imu},
-    perching::{analog, clamp, servos},
-    pilot::commander,
-    storage::parameters,
-};
+use sophie_tasks::perching::{analog, clamp, servos};
+use sophie_tasks::pilot::commander;
+use sophie_tasks::storage::parameters;
 
 /// A terminal at 115,200 baud, or one that takes nothing.
 #[derive(Clone, Default)]

@@ -2,12 +2,16 @@
 
 mod vehicle;
 
+mod links;
+
 use embassy_time::Instant;
+use links::links_with;
 use sophie_control::allocation::mixer::Flexible;
 use sophie_control::allocation::wrench::Configuration;
 use sophie_control::mode::{Mode, Reason};
+use sophie_control::params::Params;
 use sophie_control::pilot::rc::Sticks;
-use sophie_fakes::{Answer, FakeImu, FakeMotors, links};
+use sophie_fakes::{Answer, FakeImu, FakeMotors};
 use sophie_sim::clock::VirtualTime;
 use sophie_tasks::links::Setpoint;
 use vehicle::Vehicle;
@@ -63,7 +67,11 @@ fn a_gap_in_the_samples_shorter_than_the_limit_is_flown_through() {
 #[test]
 fn a_setpoint_that_is_not_renewed_stops_the_rotors() {
     // All tasks but the commander, which sent one message.
-    let (time, links, motors) = (VirtualTime::new(), links(), FakeMotors::default());
+    let (time, links, motors) = (
+        VirtualTime::new(),
+        links_with(Params::default()),
+        FakeMotors::default(),
+    );
     time.spawn(sophie_tasks::flight::imu::run(links, FakeImu::default()));
     time.spawn(sophie_tasks::flight::estimator::run(links));
     time.spawn(sophie_tasks::flight::control::run(links));

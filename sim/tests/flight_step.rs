@@ -7,6 +7,7 @@ use sophie_control::chain::setpoint::Setpoint;
 use sophie_control::chain::{
     ArmReading, Attitude, Command, Demand, FlightChain, ImuReading, MixOutput, Surroundings,
 };
+use sophie_ports::retained::StartCause;
 use sophie_sim::flight::aircraft::{Aircraft, Belief, Reset, Said};
 use sophie_sim::flight::fly_with;
 use sophie_sim::flight::stack::Stack;
@@ -14,7 +15,6 @@ use sophie_sim::plant::Plant;
 use sophie_sim::record::Silent;
 use sophie_sim::scenario::Scenario;
 use sophie_tasks::links::{ArmAngles, GripState, Links};
-use sophie_tasks::start::StartCause;
 
 struct Step {
     at_us: u64,

@@ -1,6 +1,9 @@
 //! Tasks analog, clamp and servos on four simple arms with faults: reactions, and no force beyond the limit.
 
+mod links;
+
 use embassy_time::Instant;
+use links::links_with;
 use sophie_control::allocation::arm_deflection::ArmModel;
 use sophie_control::allocation::wrench::PerArm;
 use sophie_control::gripper::grip::{ArmState, GripState};
@@ -8,7 +11,7 @@ use sophie_control::gripper::grip_fault::GripFault;
 use sophie_control::gripper::tendon::{ForceLimit, REFERENCE_TILT, Reel};
 use sophie_control::params::Params;
 use sophie_control::pilot::rc::ArmChoice;
-use sophie_fakes::{Answer, FakeAnalog, FakeServos, links, links_with};
+use sophie_fakes::{Answer, FakeAnalog, FakeServos};
 use sophie_sim::clock::VirtualTime;
 use sophie_tasks::links::{ArmAngles, ClampCommand, Links, TendonForce, TendonForces, TendonOrder};
 use sophie_tasks::schedule::timing::Quantity;
@@ -234,7 +237,11 @@ fn four_different_servos_close_hold_and_let_go_at_every_frame_rate() {
 
 #[test]
 fn no_pulse_goes_out_before_the_clamp_loop_has_spoken_and_none_pulls_before_it_is_told_to() {
-    let (time, links, servos) = (VirtualTime::new(), links(), FakeServos::default());
+    let (time, links, servos) = (
+        VirtualTime::new(),
+        links_with(Params::default()),
+        FakeServos::default(),
+    );
     time.spawn(sophie_tasks::perching::servos::run(links, servos.clone()));
     time.run_until(1_000_000);
     let silent = servos.pulses.borrow().len();
@@ -413,7 +420,11 @@ fn a_commander_that_falls_silent_leaves_the_grip_as_it_is() {
 
 #[test]
 fn a_clamp_loop_that_falls_silent_leaves_the_servos_where_they_are() {
-    let (time, links, servos) = (VirtualTime::new(), links(), FakeServos::default());
+    let (time, links, servos) = (
+        VirtualTime::new(),
+        links_with(Params::default()),
+        FakeServos::default(),
+    );
     time.spawn(sophie_tasks::perching::servos::run(links, servos.clone()));
     let step = |ms: u64, force: Option<f32>| {
         time.run_until(ms * 1000);

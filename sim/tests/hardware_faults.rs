@@ -1,12 +1,13 @@
 //! Broken, missing or wrong sensors: displayed, arming inhibited meanwhile, flights continued where possible.
 
+mod links;
 mod vehicle;
 
 use sophie_control::arming::ArmingInhibit;
 use sophie_control::mode::{Mode, Reason};
 use sophie_control::pilot::rc::Sticks;
 use sophie_fakes::Answer;
-use sophie_tasks::ports::PortError;
+use sophie_ports::error::PortError;
 use vehicle::Vehicle;
 
 type Break = fn(&Vehicle);

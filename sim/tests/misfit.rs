@@ -7,22 +7,22 @@ use embassy_time::Timer;
 use sophie_control::allocation::wrench::Configuration;
 use sophie_control::attitude::mounting::Mounting;
 use sophie_control::calibration::Face;
+use sophie_control::chain::ImuReading;
 use sophie_control::maths::vector::Vec3;
 use sophie_control::params::{ImuMounting, Params};
 use sophie_drivers::param_store::ParamStore;
 use sophie_fakes::{FakeChip, FakeImu, FakeLine, Flash};
+use sophie_ports::error::PortError;
+use sophie_ports::serial::SerialOutput;
 use sophie_sim::clock::VirtualTime;
 use sophie_sim::mixers::Variant;
 use sophie_sim::sensors::imu::Misfit;
 use sophie_sim::test_stands::flight_level::{Errors, Rig, level, vehicle};
+use sophie_tasks::console;
+use sophie_tasks::flight::{estimator, imu};
 use sophie_tasks::links::Links;
-use sophie_tasks::ports::{ImuReading, PortError, SerialOutput};
-use sophie_tasks::{
-    console,
-    flight::{estimator, imu},
-    pilot::commander,
-    storage::parameters,
-};
+use sophie_tasks::pilot::commander;
+use sophie_tasks::storage::parameters;
 
 /// Turned by 90 degrees to the left, 3 % off along two axes.
 fn misfit() -> Misfit {

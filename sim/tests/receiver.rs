@@ -1,16 +1,21 @@
 //! The receiver task on a line with every radio error.
 
+mod links;
+
 use embassy_time::Instant;
+use links::links_with;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
+use sophie_control::params::Params;
 use sophie_control::pilot::rc::{RAW_CENTRE, Sticks};
 use sophie_drivers::crsf::Decoder;
-use sophie_fakes::{Answer, BrokenLine, FakeLine, links};
+use sophie_fakes::{Answer, BrokenLine, FakeLine};
+use sophie_ports::receiver::RcState;
 use sophie_sim::board::{Board, Port};
 use sophie_sim::clock::VirtualTime;
 use sophie_sim::devices::crsf::{channel_frame, rc_frame};
 use sophie_sim::streams::Streams;
-use sophie_tasks::links::{Links, RcState};
+use sophie_tasks::links::Links;
 
 struct Line {
     time: VirtualTime,
@@ -21,7 +26,11 @@ struct Line {
 
 impl Line {
     fn new() -> Self {
-        let (time, links, line) = (VirtualTime::new(), links(), FakeLine::default());
+        let (time, links, line) = (
+            VirtualTime::new(),
+            links_with(Params::default()),
+            FakeLine::default(),
+        );
         time.spawn(sophie_tasks::pilot::rc::run(links, line.clone(), Decoder::new()));
         Self {
             time,
@@ -138,7 +147,7 @@ fn the_link_is_stale_half_a_second_after_the_last_good_frame() {
 #[test]
 fn a_broken_line_is_counted_and_leaves_the_processor_alone() {
     for answer in [Answer::Fails, Answer::Refuses, Answer::Sound] {
-        let (time, links) = (VirtualTime::new(), links());
+        let (time, links) = (VirtualTime::new(), links_with(Params::default()));
         let line = BrokenLine::default();
         line.0.answer.set(answer);
         time.spawn(sophie_tasks::pilot::rc::run(links, line.clone(), Decoder::new()));
@@ -150,7 +159,7 @@ fn a_broken_line_is_counted_and_leaves_the_processor_alone() {
 
 #[test]
 fn the_simulated_line_loses_no_byte_that_fits() {
-    let (time, links) = (VirtualTime::new(), links());
+    let (time, links) = (VirtualTime::new(), links_with(Params::default()));
     let board: &'static Board = Box::leak(Box::new(Board::new(Streams::new(1))));
     time.spawn(sophie_tasks::pilot::rc::run(links, Port(board), Decoder::new()));
     for i in 1..=100 {

@@ -17,15 +17,17 @@ use sophie_control::pilot::rc::{ArmChoice, Sticks};
 use sophie_fakes::{
     FakeAnalog, FakeArms, FakeImu, FakeMemory, FakeMotors, FakeServos, FakeWatchdog, VOLTS_PER_COUNT,
 };
+use sophie_ports::receiver::RcState;
+use sophie_ports::retained::{StartCause, WORDS, Words};
+use sophie_ports::sensors::AnalogFrame;
 use sophie_sim::clock::VirtualTime;
 use sophie_sim::flight::stack::Stack;
 use sophie_sim::flight::{fly, fly_with};
 use sophie_sim::record::{FlightRecord, Silent};
 use sophie_sim::scenario::{Overrides, Scenario, Step};
-use sophie_tasks::links::{Links, RcState};
-use sophie_tasks::ports::AnalogFrame;
-use sophie_tasks::start::retained_state::{RetainedState, WORDS, Words};
-use sophie_tasks::start::{Start, StartCause};
+use sophie_tasks::links::Links;
+use sophie_tasks::start::Start;
+use sophie_tasks::start::retained_state::RetainedState;
 
 /// Counts at about 950 Pa with the default sensor.
 const PRESSED: u16 = 2000;

@@ -2,6 +2,9 @@
 
 mod vehicle;
 
+mod links;
+
+use links::links_with;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use sophie_control::mode::{Mode, Reason};
@@ -174,7 +177,7 @@ fn telemetry_keeps_off_a_line_that_has_no_way_back() {
     use sophie_tasks::links::Status;
 
     for (params, silent) in [(Params::default(), false), (sbus(), true)] {
-        let (time, links) = (VirtualTime::new(), sophie_fakes::links_with(params));
+        let (time, links) = (VirtualTime::new(), links_with(params));
         let board: &'static Board = Box::leak(Box::new(Board::new(Streams::new(1))));
         time.spawn(sophie_tasks::pilot::telemetry::run(links, Port(board)));
         for ms in 1..=500 {

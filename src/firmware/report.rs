@@ -7,8 +7,8 @@
 use embassy_futures::select::{Either, select};
 use embassy_time::{Duration, Instant, Ticker};
 use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
+use sophie_ports::chip::Look;
 use sophie_tasks::links::{Links, Status};
-use sophie_tasks::ports::Look;
 
 use super::grip::GripReport;
 use super::timing::TimingReport;

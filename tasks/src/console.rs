@@ -34,9 +34,11 @@ use self::line::{Echo, Line, LineError};
 pub use self::nearest::edits;
 use self::output::Output;
 use crate::links::Links;
-use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
-use crate::storage::storing::NotNow;
-use crate::storage::{parameters as table, storing};
+use crate::storage::parameters as table;
+use crate::storage::storing::{self, NotNow};
+use sophie_ports::chip::Chip;
+use sophie_ports::serial::{SerialInput, SerialOutput};
+use sophie_ports::storage::Storage;
 
 /// Pause after a line error or an empty read, so that a dead line cannot take the processor.
 const PAUSE: Duration = Duration::from_millis(1);

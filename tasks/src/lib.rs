@@ -1,6 +1,6 @@
 //! The concurrent tasks of the SOPHIE flight stack.
 //!
-//! Each task is a plain `async fn` over borrowed [`links::Links`] and a port of [`ports`]: the firmware wraps
+//! Each task is a plain `async fn` over borrowed [`links::Links`] and a port of [`sophie_ports`]: the firmware wraps
 //! it in a static task, the host spawns it on its own executor. No task owns a global. Level, period and deadline of each
 //! are declared in [`schedule`], its messages in [`links`].
 //!
@@ -25,14 +25,11 @@ pub mod console;
 pub mod deadline;
 pub mod flight;
 pub mod ground_station;
-pub mod image_id;
 pub mod links;
 pub mod navigation;
 pub mod perching;
 pub mod pilot;
-pub mod ports;
 pub mod schedule;
-pub mod stack_use;
 pub mod start;
 pub mod storage;
 pub mod supervision;

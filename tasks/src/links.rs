@@ -17,6 +17,7 @@ pub mod last_value;
 
 use core::cell::{Cell, RefCell};
 use core::sync::atomic::{AtomicBool, Ordering};
+use sophie_ports::receiver::RcState;
 
 use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::signal::Signal;
@@ -39,19 +40,20 @@ pub use sophie_control::navigation::position_estimator::{Estimate, Fault};
 use sophie_control::params::Params;
 use sophie_control::pilot::bench_orders::Place;
 pub use sophie_control::pilot::bench_orders::{BenchAnswer, BenchRequest, BenchView};
-use sophie_control::pilot::rc::Sticks;
 pub use sophie_control::pilot::remote::{RemoteAnswer, RemoteRequest};
 use sophie_mavlink::inputs::Counts;
-pub use sophie_mavlink::inputs::pose::ExternalPose;
-use sophie_mavlink::wire::signing::{Refused, Signing, Stored};
+use sophie_mavlink::wire::signing::{Refused, Signing};
+pub use sophie_ports::external_pose::ExternalPose;
+use sophie_ports::signing::Stored;
 
 use crate::links::last_value::{LastValue, Receiver};
 pub use crate::links::last_value::{RECEIVERS, Raw};
-use crate::ports::AnalogFrame;
 use crate::schedule::histogram::Histogram;
 use crate::schedule::timing::{Quantity, Record, Run, Timing};
 use crate::schedule::{Level, TaskId};
-use crate::start::{Start, StartCause};
+use crate::start::Start;
+use sophie_ports::retained::StartCause;
+use sophie_ports::sensors::AnalogFrame;
 
 /// A value and the time at which what it describes was measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -241,17 +243,6 @@ pub struct TendonForce {
     pub force: f32,
     /// The servo is to stay where it is, whatever the force.
     pub stay: bool,
-}
-
-/// State of the radio link.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct RcState {
-    /// The pilot's wishes.
-    pub sticks: Sticks,
-    /// Frames decoded since power-up.
-    pub frames: u32,
-    /// Frames or bytes rejected since power-up.
-    pub errors: u32,
 }
 
 /// The commander's view, for telemetry, log and lights.

@@ -2,40 +2,8 @@
 
 pub mod retained_state;
 
-use crate::start::retained_state::{RetainedState, Words};
-
-/// Cause of a start.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum StartCause {
-    /// Power was switched on.
-    #[default]
-    PowerOn,
-    /// The supply dipped: memory is lost.
-    BrownOut,
-    /// The watchdog was not fed.
-    Watchdog,
-    /// Panic or processor fault.
-    Fault,
-    /// Command, reset button or debug probe.
-    Software,
-}
-
-impl StartCause {
-    /// Memory is noise.
-    pub const fn loses_memory(self) -> bool {
-        matches!(self, Self::PowerOn | Self::BrownOut)
-    }
-
-    /// Warning for the pilot; empty if none.
-    pub const fn warning(self) -> &'static str {
-        match self {
-            Self::PowerOn | Self::Software => "",
-            Self::BrownOut => "restarted by a brown-out",
-            Self::Watchdog => "restarted by the watchdog",
-            Self::Fault => "restarted after a fault",
-        }
-    }
-}
+use crate::start::retained_state::RetainedState;
+use sophie_ports::retained::{StartCause, Words};
 
 /// A start of the board.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -77,7 +45,7 @@ mod tests {
     use sophie_control::pilot::rc::ArmChoice;
 
     use super::*;
-    use crate::start::retained_state::WORDS;
+    use sophie_ports::retained::WORDS;
 
     #[test]
     fn memory_is_trusted_only_where_power_never_went() {

@@ -15,26 +15,27 @@ use sophie_control::allocation::mixer::Flexible;
 use sophie_control::allocation::motor_map::at_rotors;
 use sophie_control::allocation::wrench::{Configuration, PerArm};
 use sophie_control::arming::ArmingInhibit;
+use sophie_control::chain::ImuReading;
 use sophie_control::maths::scalar::GRAVITY;
 use sophie_control::maths::vector::Vec3;
 use sophie_control::params::{MotorMap, Params};
 use sophie_control::pilot::rc::Sticks;
 use sophie_fakes::{FakeAnalog, FakeBarometer, FakeImu, FakeLine, FakeMotors, FakeServos};
+use sophie_ports::chip::{Chip, Look, NotSet};
+use sophie_ports::error::PortError;
+use sophie_ports::receiver::RcState;
+use sophie_ports::sensors::{AnalogFrame, ArmImus};
+use sophie_ports::serial::SerialOutput;
+use sophie_ports::signing::{Key, Record, Stored};
+use sophie_ports::storage::{Loaded, Storage, StorageError};
+use sophie_tasks::console;
+use sophie_tasks::flight::{control, estimator, imu, mixer, motors};
 use sophie_tasks::ground_station::console_pipe::{Shell, ShellPort};
-use sophie_tasks::ground_station::mavlink::signing::{Key, Record, Stored};
 use sophie_tasks::ground_station::mavlink::{self, Lines};
-use sophie_tasks::links::{Links, RcState};
-use sophie_tasks::ports::{
-    AnalogFrame, ArmImus, Chip, ImuReading, Loaded, Look, NotSet, PortError, SerialOutput, Storage,
-    StorageError,
-};
-use sophie_tasks::{
-    console,
-    flight::{control, estimator, imu, mixer, motors},
-    navigation::barometer,
-    perching::{analog, arms, clamp, servos},
-    pilot::commander,
-};
+use sophie_tasks::links::Links;
+use sophie_tasks::navigation::barometer;
+use sophie_tasks::perching::{analog, arms, clamp, servos};
+use sophie_tasks::pilot::commander;
 
 use super::wire::Wire;
 

@@ -6,7 +6,7 @@ use std::path::Path;
 use object::read::elf::{ElfFile32, ProgramHeader};
 use object::{Object, ObjectSection, ObjectSymbol, SectionFlags, SymbolKind};
 
-use crate::{Error, image_id};
+use crate::Error;
 
 pub struct Section {
     pub name: String,
@@ -187,7 +187,7 @@ impl Image {
         let (start, end) = (self.symbol("__stext")?, self.symbol("__sidata")? + values);
         // Flash that nothing has written.
         let word = |at| self.word(at).unwrap_or(u32::MAX);
-        Ok(image_id::of((start..end).step_by(4).map(word)))
+        Ok(sophie_image_id::of((start..end).step_by(4).map(word)))
     }
 
     /// Address of the symbol `name`.

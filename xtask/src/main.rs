@@ -12,9 +12,6 @@ mod dma;
 mod flash;
 mod guard;
 mod image;
-// The firmware has it of itself.
-#[path = "../../tasks/src/image_id.rs"]
-mod image_id;
 mod own_board;
 mod params;
 mod retained;

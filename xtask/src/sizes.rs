@@ -12,7 +12,7 @@ use crate::{Error, build};
 /// Of any board, bytes: five eighths of the smallest chip's flash, the F405's 1 MiB. It was 512 KiB until the position, its
 /// sources' trust and the barometer had filled these.
 const FLASH_LIMIT: u64 = 640 * 1024;
-/// The stack may be used up to this share, parts of its size, as the firmware warns (`tasks/src/stack_use.rs`).
+/// The stack may be used up to this share, parts of its size, as the firmware warns (`ports/src/stack_use.rs`).
 const STACK_LIMIT: [u64; 2] = [3, 4];
 
 /// With the ceilings, between two marks.

@@ -1,7 +1,5 @@
 //! The image itself, as it lies in flash.
 
-use sophie_tasks::image_id;
-
 /// Number of the code, the constants and the initial values; takes 3 ms of the background at 168 MHz.
 pub fn id() -> u32 {
     unsafe extern "C" {
@@ -16,5 +14,5 @@ pub fn id() -> u32 {
     let end = (&raw const __sidata as usize).wrapping_add(values);
     let words = end.wrapping_sub(start as usize) / size_of::<u32>();
     // SAFETY: within the image, which the linker has laid out without a break, aligned; flash that nothing writes.
-    image_id::of((0..words).map(|at| unsafe { start.add(at).read() }))
+    sophie_image_id::of((0..words).map(|at| unsafe { start.add(at).read() }))
 }

@@ -9,9 +9,7 @@ use core::cell::UnsafeCell;
 use core::fmt::{self, Write};
 
 use heapless::String;
-use sophie_tasks::ports::Retain;
-use sophie_tasks::start::StartCause;
-use sophie_tasks::start::retained_state::{WORDS as STATE_WORDS, Words};
+use sophie_ports::retained::{Retain, StartCause, WORDS as STATE_WORDS, Words};
 
 /// Reset cause.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, defmt::Format)]

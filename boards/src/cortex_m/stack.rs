@@ -4,7 +4,7 @@
 use core::arch::asm;
 use core::sync::atomic::{AtomicU32, Ordering};
 
-use sophie_tasks::stack_use::StackUse;
+use sophie_ports::stack_use::StackUse;
 
 /// Paint of cortex-m-rt (feature `paint-stack`).
 const PAINT: u32 = 0xCCCC_CCCC;

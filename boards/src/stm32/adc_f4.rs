@@ -1,15 +1,14 @@
 //! Single scans on the converter of the F4 and F7: embassy-stm32 0.6 only has a free-running ring there, with thousands
 //! of interrupts a second for 500 readings.
 
-use embassy_stm32::Peri;
 use embassy_stm32::adc::{Adc, AnyAdcChannel, RxDma, SampleTime};
 use embassy_stm32::dma::{self, InterruptHandler, TransferOptions};
 use embassy_stm32::interrupt::typelevel::Binding;
-use embassy_stm32::pac;
 use embassy_stm32::pac::adc::vals::{Dds, Eocs};
 use embassy_stm32::peripherals::ADC1;
+use embassy_stm32::{Peri, pac};
 use embassy_time::{Duration, with_timeout};
-use sophie_tasks::ports::PortError;
+use sophie_ports::error::PortError;
 
 use super::Aligned;
 use super::analog::{CHANNELS, Scan};

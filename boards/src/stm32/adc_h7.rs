@@ -6,7 +6,7 @@ use embassy_stm32::dma::InterruptHandler;
 use embassy_stm32::interrupt::typelevel::Binding;
 use embassy_stm32::peripherals::ADC1;
 use embassy_time::{Duration, with_timeout};
-use sophie_tasks::ports::PortError;
+use sophie_ports::error::PortError;
 
 use super::Aligned;
 use super::analog::{CHANNELS, Scan};

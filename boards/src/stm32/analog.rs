@@ -5,7 +5,8 @@ use embassy_stm32::adc::{AnyAdcChannel, RxDma};
 use embassy_stm32::dma::InterruptHandler;
 use embassy_stm32::interrupt::typelevel::Binding;
 use embassy_stm32::peripherals::ADC1;
-use sophie_tasks::ports::{Analog, AnalogFrame, PortError};
+use sophie_ports::error::PortError;
+use sophie_ports::sensors::{Analog, AnalogFrame};
 use static_cell::ConstStaticCell;
 
 use super::Aligned;

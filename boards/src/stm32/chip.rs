@@ -1,12 +1,11 @@
 //! The chip: restart, option bytes, results of start-up checks.
 
-use sophie_tasks::ports::{Chip, Look, Looks, NotSet};
-use sophie_tasks::stack_use::StackUse;
+use sophie_ports::chip::{Chip, Look, Looks, NotSet};
+use sophie_ports::stack_use::StackUse;
 use static_cell::StaticCell;
 
 use super::loader::leave_for_loader;
-use super::options;
-use super::watchdog;
+use super::{options, watchdog};
 use crate::cortex_m::restart::reset;
 use crate::cortex_m::{image, stack};
 use crate::{NAME, stop_motors};

@@ -15,7 +15,7 @@ use embassy_stm32::pac::EXTI;
 use embassy_stm32::pac::exti::regs::Lines;
 use embassy_sync::waitqueue::AtomicWaker;
 use embassy_time::{Duration, Instant};
-use sophie_drivers::data_ready::DataReady;
+use sophie_ports::data_ready::DataReady;
 
 /// The lowest 32 bits of the clock at the last interrupt, µs.
 static RISEN: AtomicU32 = AtomicU32::new(0);

@@ -16,7 +16,7 @@ use sophie_drivers::dshot::{self, BitTiming, Frame, fill_burst};
 use sophie_drivers::esc_protocol::EscProtocol;
 use sophie_drivers::esc_pwm::EscPulse;
 use sophie_drivers::pwm_timing::PwmTiming;
-use sophie_tasks::ports::Motors;
+use sophie_ports::actuators::Motors;
 use static_cell::ConstStaticCell;
 
 use super::Aligned;

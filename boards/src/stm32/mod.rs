@@ -1,4 +1,4 @@
-//! Common to the STM32 boards: the ports of `sophie_tasks` over embassy-stm32's drivers, generic over the instance.
+//! Common to the STM32 boards: the ports of `sophie_ports` over embassy-stm32's drivers, generic over the instance.
 //!
 //! Differences between chips depend on `family`, which the build script takes from the board feature's chip, never on
 //! the board.

@@ -12,7 +12,8 @@ use embassy_stm32::{Peri, dma};
 use embassy_time::{Duration, with_timeout};
 use embedded_io_async::{Read, Write};
 use sophie_control::params::{FlowPort, Params, RcProtocol};
-use sophie_tasks::ports::{PortError, SerialInput, SerialOutput};
+use sophie_ports::error::PortError;
+use sophie_ports::serial::{SerialInput, SerialOutput};
 use static_cell::ConstStaticCell;
 
 use super::Aligned;

@@ -8,7 +8,7 @@ use sophie_control::allocation::wrench::PerArm;
 use sophie_control::params::Params;
 use sophie_drivers::pwm_timing::PwmTiming;
 use sophie_drivers::servo_pulse;
-use sophie_tasks::ports::Servos;
+use sophie_ports::actuators::Servos;
 
 use super::pulse_timer::PulseTimer;
 use super::servos::timer_with_frames;

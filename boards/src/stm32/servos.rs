@@ -8,8 +8,8 @@ use sophie_control::allocation::wrench::PerArm;
 use sophie_control::params::Params;
 use sophie_drivers::pwm_timing::PwmTiming;
 use sophie_drivers::servo_pulse;
+use sophie_ports::actuators::Servos;
 use sophie_tasks::perching::servos;
-use sophie_tasks::ports::Servos;
 
 use super::pulse_timer::PulseTimer;
 

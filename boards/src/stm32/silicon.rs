@@ -3,11 +3,11 @@
 
 use core::fmt::{self, Write};
 
-use embassy_stm32::pac;
-use embassy_stm32::rcc;
+use embassy_stm32::{pac, rcc};
 use heapless::String;
 use sophie_control::arming::ArmingInhibit;
-use sophie_tasks::ports::{Loaded, Look, Looks, READ};
+use sophie_ports::chip::{Look, Looks, READ};
+use sophie_ports::storage::Loaded;
 
 use super::clock::bus_hz;
 use super::options;

@@ -4,8 +4,8 @@ use embassy_futures::block_on;
 use embedded_storage_async::nor_flash::NorFlash;
 use sophie_control::params::Params;
 use sophie_drivers::param_store::ParamStore;
-use sophie_tasks::ground_station::mavlink::signing::Record;
-use sophie_tasks::ports::{Loaded, Storage, StorageError};
+use sophie_ports::signing::Record;
+use sophie_ports::storage::{Loaded, Storage, StorageError};
 use sophie_tasks::storage::parameters;
 
 use super::watchdog;

@@ -9,7 +9,7 @@ use embassy_stm32::pac::IWDG1 as IWDG;
 use embassy_stm32::pac::iwdg::vals::{Key, Pr};
 use embassy_stm32::wdg::{IndependentWatchdog, Instance};
 use embassy_time::Timer;
-use sophie_tasks::ports::Watchdog;
+use sophie_ports::chip::Watchdog;
 
 /// Watchdog time-out, µs, at its nominal clock of 32 kHz. Actual: 17 to 47 kHz on F4 and F7, 29.7 to 33.6 kHz on the H7
 /// (datasheets, LSI), so 0.20 to 0.56 s and 0.29 to 0.32 s. The supervisor is designed for the shortest.

@@ -1,7 +1,7 @@
 //! MAVLink's key in a set: ten values under names that no parameter has, written and read with the parameters as one. The
 //! first of them alone says that a key was lost.
 
-use sophie_tasks::ground_station::mavlink::signing::{Key, Record, Stored};
+use sophie_ports::signing::{Key, Record, Stored};
 
 use super::hash;
 

@@ -2,7 +2,7 @@
 
 use sequential_storage::map::{SerializationError, Value};
 use sophie_control::params::{ParamInfo, Params, RENAMED, Renamed};
-use sophie_tasks::ground_station::mavlink::signing::Stored;
+use sophie_ports::signing::Stored;
 
 use super::key::Words;
 

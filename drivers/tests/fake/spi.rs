@@ -6,7 +6,7 @@ use std::rc::Rc;
 use embassy_time::{Instant, Timer};
 use embedded_hal::spi::{self, Operation};
 use embedded_hal_async::spi::SpiDevice;
-use sophie_drivers::data_ready;
+use sophie_ports::data_ready;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {

@@ -13,13 +13,13 @@ use sophie_control::mode::Mode;
 use sophie_control::params::{FlowPort, Params, RcProtocol};
 use sophie_control::pilot::rc::Sticks;
 use sophie_drivers::sbus;
+use sophie_ports::retained::StartCause;
 use sophie_sim::devices::crsf::Telemetry;
 use sophie_sim::devices::flow_module::FlowSender;
 use sophie_sim::flight::aircraft::{Aircraft, Belief, Reset, Said};
 use sophie_sim::plant::{Actuators, Plant};
 use sophie_sim::scenario::Scenario;
 use sophie_tasks::pilot::telemetry::parse_mode_text;
-use sophie_tasks::start::StartCause;
 use uf_crsf::{CrsfParser, Packet};
 
 use crate::bench_operator::Hands;

@@ -1,9 +1,9 @@
 //! Checks that the image can fly a scenario: some settings are built in.
 
 use sophie_control::allocation::wrench::Configuration;
+use sophie_ports::retained::StartCause;
 use sophie_sim::mixers::Variant;
 use sophie_sim::scenario::{Faults, PositionSensor, Scenario, Step, keys};
-use sophie_tasks::start::StartCause;
 
 /// Refuses a scenario that needs another image.
 ///

@@ -1,7 +1,7 @@
 //! The firmware's start-up checks of the chip, as logged.
 
 use serde::Serialize;
-use sophie_tasks::stack_use::{AT_START, SINCE, StackUse};
+use sophie_ports::stack_use::{AT_START, SINCE, StackUse};
 
 use crate::log::Line;
 

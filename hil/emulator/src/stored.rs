@@ -4,7 +4,7 @@ use embassy_futures::block_on;
 use embedded_storage_async::nor_flash::{ErrorType, NorFlash, NorFlashErrorKind, ReadNorFlash};
 use sophie_control::params::Params;
 use sophie_drivers::param_store::ParamStore;
-use sophie_tasks::ports::Storage;
+use sophie_ports::storage::Storage;
 
 use crate::board_kind::Kind;
 

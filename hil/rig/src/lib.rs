@@ -17,7 +17,7 @@ use defmt_rtt as _;
 use embassy_executor::SendSpawner;
 use embassy_time::{Duration, Ticker};
 use sophie_boards::{WatchdogPort, start_levels};
-use sophie_tasks::ports::Watchdog;
+use sophie_ports::chip::Watchdog;
 pub use verdict::{absent, passed};
 
 sophie_boards::ends_with!(verdict::end_of_run);

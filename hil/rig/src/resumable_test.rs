@@ -4,8 +4,7 @@
 use core::cell::RefCell;
 
 use critical_section::Mutex;
-use sophie_tasks::ports::Retain;
-use sophie_tasks::start::retained_state::{WORDS, Words};
+use sophie_ports::retained::{Retain, WORDS, Words};
 
 use crate::cycles;
 use sophie_boards::retained::{self, Memory};

@@ -1,5 +1,7 @@
 //! When something was measured by a sender whose clock is another: by TIMESYNC, as the standard has it.
 
+use sophie_ports::external_pose::TimeSource;
+
 use super::{INPUTS, Refusal};
 use crate::wire::requests::Peer;
 
@@ -13,18 +15,6 @@ const WAY_GROWTH: u64 = 2_000;
 pub(super) const AGE_MAX: u64 = 1_000_000;
 /// What a clock may be ahead, µs: what its offset is known to.
 const AHEAD_MAX: u64 = WAY_MAX / 2;
-
-/// How a time of measurement is known.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum TimeSource {
-    /// It is the time of receipt: the message has none, or nothing is known of the sender's clock.
-    #[default]
-    Receipt,
-    /// The sender's clock is the vehicle's.
-    Vehicle,
-    /// By the sender's clock and its offset.
-    Offset,
-}
 
 /// A time of the vehicle's clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,8 +1,8 @@
-//! Where the vehicle is, as others see it: cameras aboard or around it.
+//! Poses out of the three messages that carry one, in the axes of [`Pose`].
 
 use sophie_control::maths::vector::{Quat, Vec3};
+use sophie_ports::external_pose::Pose;
 
-pub use super::clock::TimeSource;
 use super::{Refusal, bounded, rotation};
 use sophie_dialect::{ATT_POS_MOCAP_DATA, ODOMETRY_DATA, VISION_POSITION_ESTIMATE_DATA};
 
@@ -24,42 +24,6 @@ const BODY_NED: u8 = 8;
 const BODY_FRD: u8 = 12;
 const LOCAL_FRD: u8 = 20;
 const LOCAL_FLU: u8 = 21;
-
-/// What others see, in the vehicle's axes: the world is NED, or turned from it about down; the body is FRD.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Pose {
-    /// m.
-    pub position: Vec3,
-    /// From body to world.
-    pub attitude: Option<Quat>,
-    /// In the world, m/s.
-    pub velocity: Option<Vec3>,
-    /// Variances along the world's axes, m².
-    pub position_variance: Option<Vec3>,
-    /// Of roll, pitch and yaw, rad².
-    pub attitude_variance: Option<Vec3>,
-    /// Along the world's axes, (m/s)².
-    pub velocity_variance: Option<Vec3>,
-    /// The world's x is north; else it is where the sender's axes began.
-    pub north: bool,
-    /// Counts the jumps of the sender's estimate.
-    pub resets: u8,
-    /// 1 worst to 100 best.
-    pub quality: Option<u8>,
-}
-
-/// A pose with its times.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ExternalPose {
-    /// The pose.
-    pub pose: Pose,
-    /// When it was measured, µs since the start.
-    pub measured_at: u64,
-    /// When it arrived, µs since the start.
-    pub received_at: u64,
-    /// How the time of measurement is known.
-    pub clock: TimeSource,
-}
 
 /// World axes of a sender.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -108,92 +72,90 @@ impl World {
     }
 }
 
-impl Pose {
-    /// What ODOMETRY says. Its quaternion is from body FRD to the axes of the pose.
-    ///
-    /// # Errors
-    /// Axes that are not known here, values that are no numbers or out of bounds, an estimate that has failed.
-    pub fn odometry(m: &ODOMETRY_DATA) -> Result<Self, Refusal> {
-        if m.quality == FAILED {
-            return Err(Refusal::Value);
-        }
-        let (world, north) = World::of(m.frame_id)?;
-        let attitude = rotation(m.q)?.map(|q| world.attitude(q));
-        let (position_variance, attitude_variance) = variances(&m.pose_covariance)?;
-        let mut pose = Self {
-            position: world.vector(bounded([m.x, m.y, m.z], POSITION_MAX)?),
-            attitude,
-            position_variance: position_variance.map(|v| world.variance(v)),
-            // About axes that are turned they would be others.
-            attitude_variance: attitude_variance.filter(|_| world == World::Down),
-            north,
-            resets: m.reset_counter,
-            quality: u8::try_from(m.quality).ok().filter(|quality| *quality > 0),
-            ..Self::default()
-        };
-        if !m.vx.is_nan() {
-            let velocity = bounded([m.vx, m.vy, m.vz], SPEED_MAX)?;
-            let (variance, _) = variances(&m.velocity_covariance)?;
-            pose.set_velocity(m.child_frame_id, velocity, variance)?;
-        }
-        Ok(pose)
+/// What ODOMETRY says. Its quaternion is from body FRD to the axes of the pose.
+///
+/// # Errors
+/// Axes that are not known here, values that are no numbers or out of bounds, an estimate that has failed.
+pub fn odometry(m: &ODOMETRY_DATA) -> Result<Pose, Refusal> {
+    if m.quality == FAILED {
+        return Err(Refusal::Value);
     }
+    let (world, north) = World::of(m.frame_id)?;
+    let attitude = rotation(m.q)?.map(|q| world.attitude(q));
+    let (position_variance, attitude_variance) = variances(&m.pose_covariance)?;
+    let mut pose = Pose {
+        position: world.vector(bounded([m.x, m.y, m.z], POSITION_MAX)?),
+        attitude,
+        position_variance: position_variance.map(|v| world.variance(v)),
+        // About axes that are turned they would be others.
+        attitude_variance: attitude_variance.filter(|_| world == World::Down),
+        north,
+        resets: m.reset_counter,
+        quality: u8::try_from(m.quality).ok().filter(|quality| *quality > 0),
+        ..Pose::default()
+    };
+    if !m.vx.is_nan() {
+        let velocity = bounded([m.vx, m.vy, m.vz], SPEED_MAX)?;
+        let (variance, _) = variances(&m.velocity_covariance)?;
+        set_velocity(&mut pose, m.child_frame_id, velocity, variance)?;
+    }
+    Ok(pose)
+}
 
-    /// Sets a velocity in the axes of MAV_FRAME `frame`. One in the body's without an attitude is left out.
-    fn set_velocity(&mut self, frame: u8, velocity: Vec3, variance: Option<Vec3>) -> Result<(), Refusal> {
-        if let BODY_FRD | BODY_NED = frame {
-            self.velocity = self.attitude.map(|q| q.rotate(velocity));
-            self.velocity_variance = self.attitude.zip(variance).map(|(q, v)| turned(q, v));
-            return Ok(());
-        }
-        let (world, north) = World::of(frame)?;
-        if north != self.north {
-            return Err(Refusal::Frame);
-        }
-        self.velocity = Some(world.vector(velocity));
-        self.velocity_variance = variance.map(|v| world.variance(v));
-        Ok(())
+/// Sets a velocity in the axes of MAV_FRAME `frame`. One in the body's without an attitude is left out.
+fn set_velocity(pose: &mut Pose, frame: u8, velocity: Vec3, variance: Option<Vec3>) -> Result<(), Refusal> {
+    if let BODY_FRD | BODY_NED = frame {
+        pose.velocity = pose.attitude.map(|q| q.rotate(velocity));
+        pose.velocity_variance = pose.attitude.zip(variance).map(|(q, v)| turned(q, v));
+        return Ok(());
     }
+    let (world, north) = World::of(frame)?;
+    if north != pose.north {
+        return Err(Refusal::Frame);
+    }
+    pose.velocity = Some(world.vector(velocity));
+    pose.velocity_variance = variance.map(|v| world.variance(v));
+    Ok(())
+}
 
-    /// What VISION_POSITION_ESTIMATE says, in NED.
-    ///
-    /// # Errors
-    /// Values that are no numbers or out of bounds.
-    pub fn vision(m: &VISION_POSITION_ESTIMATE_DATA) -> Result<Self, Refusal> {
-        let attitude = if m.roll.is_nan() {
-            None
-        } else {
-            let angles = bounded([m.roll, m.pitch, m.yaw], ANGLE_MAX)?;
-            Some(Quat::from_euler(angles.x, angles.y, angles.z))
-        };
-        Self::north_east_down([m.x, m.y, m.z], attitude, &m.covariance, m.reset_counter)
-    }
+/// What VISION_POSITION_ESTIMATE says, in NED.
+///
+/// # Errors
+/// Values that are no numbers or out of bounds.
+pub fn vision(m: &VISION_POSITION_ESTIMATE_DATA) -> Result<Pose, Refusal> {
+    let attitude = if m.roll.is_nan() {
+        None
+    } else {
+        let angles = bounded([m.roll, m.pitch, m.yaw], ANGLE_MAX)?;
+        Some(Quat::from_euler(angles.x, angles.y, angles.z))
+    };
+    north_east_down([m.x, m.y, m.z], attitude, &m.covariance, m.reset_counter)
+}
 
-    /// What ATT_POS_MOCAP says, in NED.
-    ///
-    /// # Errors
-    /// As [`Self::vision`].
-    pub fn mocap(m: &ATT_POS_MOCAP_DATA) -> Result<Self, Refusal> {
-        Self::north_east_down([m.x, m.y, m.z], rotation(m.q)?, &m.covariance, 0)
-    }
+/// What ATT_POS_MOCAP says, in NED.
+///
+/// # Errors
+/// As [`vision`].
+pub fn mocap(m: &ATT_POS_MOCAP_DATA) -> Result<Pose, Refusal> {
+    north_east_down([m.x, m.y, m.z], rotation(m.q)?, &m.covariance, 0)
+}
 
-    fn north_east_down(
-        position: [f32; 3],
-        attitude: Option<Quat>,
-        covariance: &[f32; 21],
-        resets: u8,
-    ) -> Result<Self, Refusal> {
-        let (position_variance, attitude_variance) = variances(covariance)?;
-        Ok(Self {
-            position: bounded(position, POSITION_MAX)?,
-            attitude,
-            position_variance,
-            attitude_variance,
-            north: true,
-            resets,
-            ..Self::default()
-        })
-    }
+fn north_east_down(
+    position: [f32; 3],
+    attitude: Option<Quat>,
+    covariance: &[f32; 21],
+    resets: u8,
+) -> Result<Pose, Refusal> {
+    let (position_variance, attitude_variance) = variances(covariance)?;
+    Ok(Pose {
+        position: bounded(position, POSITION_MAX)?,
+        attitude,
+        position_variance,
+        attitude_variance,
+        north: true,
+        resets,
+        ..Pose::default()
+    })
 }
 
 /// The variances of the first and the last three states in the upper triangle of a covariance, row by row; `None` where

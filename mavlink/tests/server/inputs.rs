@@ -6,7 +6,7 @@ use sophie_control::maths::vector::{Quat, Vec3};
 use sophie_control::navigation::flow_range_sample::GroundView;
 use sophie_dialect::*;
 use sophie_mavlink::inputs::Counts;
-use sophie_mavlink::inputs::pose::{ExternalPose, TimeSource};
+use sophie_ports::external_pose::{ExternalPose, TimeSource};
 
 use crate::station::{Station, frame_by};
 

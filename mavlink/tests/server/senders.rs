@@ -3,8 +3,8 @@
 use mavlink_core::MessageData;
 use sophie_control::params::{FlowPort, Params};
 use sophie_dialect::*;
-use sophie_mavlink::inputs::pose::TimeSource;
 use sophie_mavlink::inputs::{Counts, Inputs};
+use sophie_ports::external_pose::TimeSource;
 
 use crate::station::{Station, frame_by};
 

@@ -6,7 +6,8 @@ use sha2::{Digest, Sha256};
 use sophie_control::mode::Mode;
 use sophie_dialect::*;
 use sophie_mavlink::wire::frame::Encoder;
-use sophie_mavlink::wire::signing::{Key, Record, Refused, Signing, Stored};
+use sophie_mavlink::wire::signing::{Refused, Signing};
+use sophie_ports::signing::{Key, Record, Stored};
 
 use crate::station::{PERIOD, Station, frame, vehicle};
 

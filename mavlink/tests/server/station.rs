@@ -7,8 +7,8 @@ use sophie_control::mode::Mode;
 use sophie_control::params::Params;
 use sophie_dialect::{COMMAND_ACK_DATA, COMMAND_LONG_DATA, MavCmd, STATUSTEXT_DATA};
 use sophie_mavlink::inputs::Inputs;
-use sophie_mavlink::wire::signing::Stored;
 use sophie_mavlink::{Condition, Order, Server, Signing, Vehicle};
+use sophie_ports::signing::Stored;
 
 /// Plenty for every stream at its own rate.
 pub const PLENTY: u32 = 5000;

@@ -3,8 +3,8 @@
 use std::cell::Cell;
 use std::rc::Rc;
 
-use sophie_tasks::ports::{Chip, Look, NotSet};
-use sophie_tasks::stack_use::StackUse;
+use sophie_ports::chip::{Chip, Look, NotSet};
+use sophie_ports::stack_use::StackUse;
 
 /// A chip that counts its restarts and may refuse its brown-out level.
 #[derive(Clone, Default)]

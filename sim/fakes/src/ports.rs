@@ -4,34 +4,22 @@ use std::cell::{Cell, RefCell};
 use std::future::pending;
 use std::rc::Rc;
 
+use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_sync::signal::Signal;
 use embassy_time::{Duration, Instant, Timer};
 use heapless::Vec as Few;
 use sophie_control::allocation::wrench::PerArm;
+use sophie_control::chain::ImuReading;
 use sophie_control::maths::scalar::GRAVITY;
 use sophie_control::maths::vector::Vec3;
 use sophie_control::navigation::air_pressure::AirPressure;
-use sophie_control::params::{Params, ServoMarks};
-use sophie_tasks::links::{Links, Raw};
-use sophie_tasks::ports::{
-    Analog, AnalogFrame, ArmImus, Barometer, IMU_BATCH, Imu, ImuReading, Motors, PortError, Retain,
-    SerialInput, Servos, Watchdog,
-};
-use sophie_tasks::start::retained_state::{WORDS, Words};
-
-/// Links without messages, for as long as the process lives.
-pub fn links() -> &'static Links {
-    links_with(Params::default())
-}
-
-/// The same with these parameters, of a vehicle whose servos are calibrated.
-pub fn links_with(params: Params) -> &'static Links {
-    let servo_marks = ServoMarks::S1234;
-    Box::leak(Box::new(Links::new(Params {
-        servo_marks,
-        ..params
-    })))
-}
+use sophie_control::params::Params;
+use sophie_ports::actuators::{Motors, Servos};
+use sophie_ports::chip::Watchdog;
+use sophie_ports::error::PortError;
+use sophie_ports::retained::{Retain, WORDS, Words};
+use sophie_ports::sensors::{Analog, AnalogFrame, ArmImus, Barometer, IMU_BATCH, Imu};
+use sophie_ports::serial::SerialInput;
 
 /// How a port answers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -233,7 +221,7 @@ pub struct FakeLine {
     news: Rc<Line>,
 }
 
-struct Line(Signal<Raw, ()>);
+struct Line(Signal<CriticalSectionRawMutex, ()>);
 
 impl Default for Line {
     fn default() -> Self {

@@ -4,8 +4,9 @@ use std::cell::{Cell, RefCell};
 use std::collections::VecDeque;
 
 use embassy_sync::pipe::Pipe;
+use sophie_ports::error::PortError;
+use sophie_ports::serial::{SerialInput, SerialOutput};
 use sophie_tasks::links::Raw;
-use sophie_tasks::ports::{PortError, SerialInput, SerialOutput};
 
 /// Bytes towards the board that wait for its task: what a fast client sends within a millisecond is less.
 const INPUT: usize = 4096;

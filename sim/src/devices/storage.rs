@@ -3,8 +3,8 @@
 use std::cell::Cell;
 
 use sophie_control::params::Params;
-use sophie_tasks::ground_station::mavlink::signing::{Record, Stored};
-use sophie_tasks::ports::{Loaded, Storage, StorageError};
+use sophie_ports::signing::{Record, Stored};
+use sophie_ports::storage::{Loaded, Storage, StorageError};
 
 /// What a board has stored.
 #[derive(Debug)]

@@ -2,8 +2,8 @@
 
 use sophie_control::allocation::wrench::PerArm;
 use sophie_control::mode::Mode;
+use sophie_ports::retained::StartCause;
 use sophie_tasks::links::GripState;
-use sophie_tasks::start::StartCause;
 
 use crate::plant::Plant;
 

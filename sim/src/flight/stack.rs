@@ -11,10 +11,10 @@ use sophie_control::navigation::flow_range_sample::Flow;
 use sophie_control::params::{FlowPort, Params};
 use sophie_drivers::rc_decoder::Decoder;
 use sophie_mixers::{Mixer, Variant};
+use sophie_ports::retained::{StartCause, Words};
 use sophie_tasks::deadline::TaskId;
 use sophie_tasks::links::{GripState, Links, Newest, Stamped, Status};
-use sophie_tasks::start::retained_state::Words;
-use sophie_tasks::start::{Start, StartCause};
+use sophie_tasks::start::Start;
 
 use super::aircraft::{Aircraft, Belief, Reset, Said};
 use crate::board::{Board, Port};

@@ -1,7 +1,6 @@
 //! The simulated board's chip, as its console shows it.
 
-use sophie_tasks::image_id;
-use sophie_tasks::ports::{Chip, Look, NotSet};
+use sophie_ports::chip::{Chip, Look, NotSet};
 use sophie_tasks::storage::parameters::table_id;
 
 use super::Line;
@@ -26,7 +25,7 @@ impl Chip for ThisChip {
 
     /// It has no image: what it knows of parameters stands for one.
     fn build(&self) -> u32 {
-        image_id::of([table_id()])
+        sophie_image_id::of([table_id()])
     }
 
     fn looks(&self) -> &[Look] {

@@ -4,7 +4,7 @@ use core::f64::consts::PI;
 
 use super::Step;
 use super::keys::Range;
-use sophie_tasks::start::StartCause;
+use sophie_ports::retained::StartCause;
 
 /// One kind of step.
 pub struct StepKind {

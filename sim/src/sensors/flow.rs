@@ -333,7 +333,7 @@ mod tests {
     use sophie_control::params::{FlowMounting, Params};
     use sophie_drivers::ground_module::GroundModule;
     use sophie_drivers::msp::Parser;
-    use sophie_tasks::ports::GroundDecoder;
+    use sophie_ports::sensors::GroundDecoder;
 
     use super::*;
 

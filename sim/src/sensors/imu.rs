@@ -6,9 +6,9 @@ use glam::DVec3;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 use sophie_control::attitude::mounting::Mounting;
+use sophie_control::chain::ImuReading;
 use sophie_control::maths::vector::Vec3;
 use sophie_control::params::Params;
-use sophie_tasks::ports::ImuReading;
 
 use crate::streams::Streams;
 

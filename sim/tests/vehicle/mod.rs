@@ -2,19 +2,20 @@
 
 #![allow(dead_code, reason = "each test file uses what it needs")]
 
+use crate::links::links_with;
 use embassy_time::Instant;
 use sophie_control::allocation::mixer::Flexible;
 use sophie_control::allocation::wrench::Configuration;
 use sophie_control::mode::{Mode, Reason};
 use sophie_control::params::Params;
 use sophie_control::pilot::rc::Sticks;
+use sophie_ports::receiver::RcState;
+use sophie_ports::sensors::AnalogFrame;
 use sophie_sim::clock::VirtualTime;
-use sophie_tasks::links::{Links, RcState};
-use sophie_tasks::ports::AnalogFrame;
+use sophie_tasks::links::Links;
 
 use sophie_fakes::{
     FakeAnalog, FakeArms, FakeImu, FakeMemory, FakeMotors, FakeServos, FakeWatchdog, VOLTS_PER_COUNT,
-    links_with,
 };
 
 /// ms.

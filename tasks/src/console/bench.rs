@@ -16,8 +16,10 @@ use sophie_control::pilot::bench_orders::{
 
 use super::Console;
 use crate::deadline::{FixedRate, TaskId};
-use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
 use sophie_control::maths::decimal::{self, Decimal};
+use sophie_ports::chip::Chip;
+use sophie_ports::serial::{SerialInput, SerialOutput};
+use sophie_ports::storage::Storage;
 
 /// Time that the commander has to answer: fifty of its periods.
 const COMMANDER: Duration = Duration::from_millis(500);

@@ -19,8 +19,10 @@ use super::Console;
 use super::bench::End;
 use crate::links::Links;
 use crate::perching::arms::fits;
-use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
 use sophie_control::maths::decimal::{self, Decimal};
+use sophie_ports::chip::Chip;
+use sophie_ports::serial::{SerialInput, SerialOutput};
+use sophie_ports::storage::Storage;
 
 /// Samples of one rest, and the time between two: 2 s, in which a breath of wind is over.
 const SAMPLES: u16 = 200;

@@ -3,8 +3,10 @@
 use sophie_control::arming::ArmingInhibit;
 
 use super::Console;
-use crate::ports::{Chip, Look, SerialInput, SerialOutput, Storage};
 use sophie_control::maths::decimal::Decimal;
+use sophie_ports::chip::{Chip, Look};
+use sophie_ports::serial::{SerialInput, SerialOutput};
+use sophie_ports::storage::Storage;
 
 impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, C> {
     /// What the start-up looked at, and how deep the stack has been: name, what was read, what is expected.

@@ -7,7 +7,8 @@ use embassy_time::{Duration, Instant, Timer, with_deadline};
 
 use super::PAUSE;
 use super::line::CHUNK;
-use crate::ports::{PortError, SerialInput};
+use sophie_ports::error::PortError;
+use sophie_ports::serial::SerialInput;
 
 /// Most keys that one look at them takes: a line that is full of noise must not hold its reader.
 const KEYS: usize = 256;

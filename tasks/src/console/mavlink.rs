@@ -2,12 +2,15 @@
 
 use sophie_control::arming::ArmingInhibit;
 use sophie_mavlink::inputs::Counts;
-use sophie_mavlink::wire::signing::{Key, Record, Refused, Stored};
+use sophie_mavlink::wire::signing::Refused;
+use sophie_ports::signing::{Key, Record, Stored};
 
 use super::Console;
 use crate::links::{LineState, SigningState};
-use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
 use crate::storage::storing;
+use sophie_ports::chip::Chip;
+use sophie_ports::serial::{SerialInput, SerialOutput};
+use sophie_ports::storage::Storage;
 
 impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, C> {
     /// Whether it is signed, and what was refused for that.

@@ -1,6 +1,7 @@
 //! A port that is one of two kinds, so that what is generic over ports is compiled once for both.
 
-use crate::ports::{PortError, SerialInput, SerialOutput};
+use sophie_ports::error::PortError;
+use sophie_ports::serial::{SerialInput, SerialOutput};
 
 /// One of two.
 pub enum OneOf<A, B> {

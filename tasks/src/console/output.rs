@@ -5,7 +5,8 @@ use core::fmt::{self, Write};
 use embassy_time::{Duration, Timer, with_timeout};
 use heapless::String;
 
-use crate::ports::{PortError, SerialOutput};
+use sophie_ports::error::PortError;
+use sophie_ports::serial::SerialOutput;
 
 /// Longest line written, bytes; more is cut off. 160 take 14 ms at 115,200 baud.
 const LENGTH: usize = 160;

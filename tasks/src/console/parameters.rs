@@ -4,9 +4,11 @@ use sophie_control::params::{ParamInfo, Params, RENAMED, Renamed};
 
 use super::Console;
 use super::nearest::nearest;
-use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
 use crate::storage::parameters::{Allowed, Shown, Unit, parse_value};
 use sophie_control::maths::decimal::Decimal;
+use sophie_ports::chip::Chip;
+use sophie_ports::serial::{SerialInput, SerialOutput};
+use sophie_ports::storage::Storage;
 
 impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, C> {
     pub(super) async fn list(&mut self, part: &str) {

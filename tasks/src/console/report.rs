@@ -5,8 +5,10 @@ use sophie_control::mode::{Mode, Reason};
 
 use super::Console;
 use crate::deadline::TaskId;
-use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
 use sophie_control::maths::decimal::Decimal;
+use sophie_ports::chip::Chip;
+use sophie_ports::serial::{SerialInput, SerialOutput};
+use sophie_ports::storage::Storage;
 
 impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, C> {
     pub(super) async fn status(&mut self) {

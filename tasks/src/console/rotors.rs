@@ -8,8 +8,10 @@ use sophie_control::pilot::bench_orders::{BenchOrder, SPIN_DRIVE, SPIN_TIME, Spi
 
 use super::Console;
 use super::bench::End;
-use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
 use sophie_control::maths::decimal::Decimal;
+use sophie_ports::chip::Chip;
+use sophie_ports::serial::{SerialInput, SerialOutput};
+use sophie_ports::storage::Storage;
 
 /// Time that the builder has for an answer.
 pub(super) const ANSWER: Duration = Duration::from_secs(60);

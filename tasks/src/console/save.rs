@@ -4,8 +4,10 @@ use sophie_control::arming::ArmingInhibit;
 
 use super::Console;
 use crate::links::SigningState;
-use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
 use crate::storage::storing;
+use sophie_ports::chip::Chip;
+use sophie_ports::serial::{SerialInput, SerialOutput};
+use sophie_ports::storage::Storage;
 
 impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, C> {
     /// Stores the working copy and restarts. Arming is refused meanwhile: storing may stall the processor.

@@ -9,8 +9,10 @@ use sophie_control::maths::scalar::to_deg;
 
 use super::Console;
 use crate::deadline::{Level, TaskId};
-use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
 use sophie_control::maths::decimal::Decimal;
+use sophie_ports::chip::Chip;
+use sophie_ports::serial::{SerialInput, SerialOutput};
+use sophie_ports::storage::Storage;
 
 /// Time over which rates are counted.
 const TIME: Duration = Duration::from_secs(1);

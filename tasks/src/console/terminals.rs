@@ -8,7 +8,8 @@ use core::cell::Cell;
 use embassy_futures::select::select_array;
 
 use crate::console::CANCEL;
-use crate::ports::{PortError, SerialInput, SerialOutput};
+use sophie_ports::error::PortError;
+use sophie_ports::serial::{SerialInput, SerialOutput};
 
 /// Which terminal the console serves: where something was typed last.
 #[derive(Debug, Default)]

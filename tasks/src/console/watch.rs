@@ -10,9 +10,12 @@ use sophie_control::maths::vector::{Quat, Vec3};
 use sophie_control::pilot::rc::{ArmChoice, StickMode};
 
 use super::Console;
-use crate::links::{ExternalPose, Links};
-use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
+use crate::links::Links;
 use sophie_control::maths::decimal::Decimal;
+use sophie_ports::chip::Chip;
+use sophie_ports::external_pose::ExternalPose;
+use sophie_ports::serial::{SerialInput, SerialOutput};
+use sophie_ports::storage::Storage;
 
 /// Time between two lines: 80 characters take 7 ms at 115,200 baud, and eyes follow no more.
 const PERIOD: Duration = Duration::from_millis(200);

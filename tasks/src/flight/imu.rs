@@ -6,15 +6,15 @@
 use embassy_time::{Duration, Instant, Timer, with_timeout};
 use sophie_control::arming::ArmingInhibit;
 use sophie_control::chain::{ImuSample, Sensing};
+use sophie_ports::sensors::IMU_SILENCE;
 
 use crate::deadline::{TaskId, note_run};
 use crate::links::Links;
-use crate::ports::{Imu, PortError};
+use sophie_ports::error::PortError;
+use sophie_ports::sensors::Imu;
 
 /// Time from data-ready to the handed-on sample.
 pub const DEADLINE: Duration = TaskId::Imu.deadline();
-/// A sensor that says nothing for this long is tried again.
-pub const SILENCE: Duration = Duration::from_millis(3);
 /// Pause after a failed read.
 pub const RETRY: Duration = Duration::from_millis(1);
 
@@ -31,7 +31,7 @@ pub async fn run(links: &Links, mut port: impl Imu) -> ! {
     let mut sample = ImuSample::default();
     let mut faults = Faults::default();
     loop {
-        let batch = match with_timeout(SILENCE, port.read()).await {
+        let batch = match with_timeout(IMU_SILENCE, port.read()).await {
             Ok(Ok(batch)) if !batch.as_ref().is_empty() => batch,
             // A port that fails at once must not keep the flight level from everything below it.
             Ok(failed) => {

@@ -6,9 +6,9 @@ use embassy_time::{Duration, Instant, with_deadline, with_timeout};
 
 use crate::deadline::{TaskId, record_run_until};
 use crate::links::{Links, Stamped};
-use crate::ports::Motors;
 use sophie_control::allocation::motor_map::at_outputs;
 use sophie_control::allocation::wrench::PerArm;
+use sophie_ports::actuators::Motors;
 
 /// Time from data-ready to the frame.
 pub const DEADLINE: Duration = TaskId::Motors.deadline();

@@ -5,7 +5,8 @@ use heapless::Vec;
 use sophie_mavlink::services::shell::CHUNK;
 
 use crate::links::Raw;
-use crate::ports::{PortError, SerialInput, SerialOutput};
+use sophie_ports::error::PortError;
+use sophie_ports::serial::{SerialInput, SerialOutput};
 
 /// Bytes each way that wait: two commands, and one line of the console and its end.
 const TYPED: usize = 256;

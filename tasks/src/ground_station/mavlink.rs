@@ -22,14 +22,15 @@ use sophie_control::params::Params;
 use sophie_mavlink::inputs::Inputs;
 use sophie_mavlink::wire::frame::LONGEST;
 pub use sophie_mavlink::wire::signing;
-use sophie_mavlink::wire::signing::Stored;
 use sophie_mavlink::{Answers, Condition, Order, Requests, Server, Signing, Vehicle};
+use sophie_ports::signing::Stored;
 
 use crate::deadline::{FixedRate, TaskId, Tick};
 use crate::ground_station::console_pipe::Shell;
 use crate::links::{LineState, Links};
-use crate::ports::{SerialInput, SerialOutput, Storage};
 use crate::storage::storing::{self, NotNow};
+use sophie_ports::serial::{SerialInput, SerialOutput};
+use sophie_ports::storage::Storage;
 
 /// Bytes taken at once.
 const CHUNK: usize = 64;

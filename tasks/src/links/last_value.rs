@@ -138,7 +138,7 @@ mod tests {
     // Critical section of host tests.
     use sophie_clock as _;
 
-    use crate::links::last_value::*;
+    use super::*;
 
     /// After 2^32 - 1 messages: 49 days at 1 kHz.
     fn about_to_wrap() -> LastValue<u32> {

@@ -44,7 +44,7 @@ impl FlowLimit {
 
 #[cfg(test)]
 mod tests {
-    use crate::navigation::flow_limit::*;
+    use super::*;
 
     #[test]
     fn what_flickers_at_an_edge_is_not_shown_and_what_lasts_is() {

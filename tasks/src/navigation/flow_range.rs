@@ -6,7 +6,8 @@ use embassy_time::{Duration, Instant, Timer};
 
 use crate::deadline::{TaskId, record_run};
 use crate::links::Links;
-use crate::ports::{GroundDecoder, SerialInput};
+use sophie_ports::sensors::GroundDecoder;
+use sophie_ports::serial::SerialInput;
 
 /// Bytes per read: both frames of a module.
 const BUFFER: usize = 32;

@@ -9,7 +9,8 @@ use sophie_control::maths::vector::{Quat, Vec3};
 use sophie_control::navigation::position_estimator::{Fix, Inertial, PositionEstimator};
 
 use crate::deadline::{FixedRate, TaskId};
-use crate::links::{ExternalPose, Links};
+use crate::links::Links;
+use sophie_ports::external_pose::ExternalPose;
 
 /// Estimates the position; never returns.
 pub async fn run(links: &Links) -> ! {

@@ -13,8 +13,8 @@ use sophie_control::gripper::contact_pressure::{Fsr, FsrScale};
 
 use crate::deadline::{FixedRate, TaskId};
 use crate::links::{Contact, Links};
-use crate::ports::Analog;
 use crate::supervision::silence::SilenceWatch;
+use sophie_ports::sensors::Analog;
 
 /// Time without a conversion before a report.
 pub const SILENCE: Duration = Duration::from_millis(100);

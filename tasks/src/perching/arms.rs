@@ -15,8 +15,8 @@ use sophie_control::params::Params;
 
 use crate::deadline::{FixedRate, TaskId};
 use crate::links::{ArmAngles, Links, Stamped};
-use crate::ports::ArmImus;
 use crate::supervision::silence::SilenceWatch;
+use sophie_ports::sensors::ArmImus;
 
 /// Time without a reading before a report.
 pub const SILENCE: Duration = Duration::from_secs(1);
@@ -108,7 +108,7 @@ fn arm_tilt(q: Quat, gravity: Vec3, side: f32) -> Option<f32> {
 mod tests {
     use sophie_control::maths::scalar::{GRAVITY, deg};
 
-    use crate::perching::arms::*;
+    use super::*;
 
     /// Reading of a sensor on an arm tilted by `tilt`, on a body at `q`.
     fn seen(q: Quat, tilt: f32, side: f32) -> Vec3 {

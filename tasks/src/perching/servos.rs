@@ -17,8 +17,8 @@ use sophie_control::gripper::tendon::{Drive, Reel, TendonDrive};
 
 use crate::deadline::{FixedRate, TaskId};
 use crate::links::{Links, Newest, Stamped, TendonForce, TendonOrder};
-use crate::ports::Servos;
 use crate::schedule::timing::Run;
+use sophie_ports::actuators::Servos;
 
 /// Start of the servos' frames by the board's clock, also of a port's own: after the task has written the pulse widths,
 /// which take effect then.

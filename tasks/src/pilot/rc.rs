@@ -7,7 +7,8 @@ use embassy_time::{Duration, Instant, Timer};
 
 use crate::deadline::{TaskId, record_run};
 use crate::links::Links;
-use crate::ports::{RcDecoder, SerialInput};
+use sophie_ports::receiver::RcDecoder;
+use sophie_ports::serial::SerialInput;
 
 /// Bytes per read: two of the longest frames.
 const BUFFER: usize = 128;

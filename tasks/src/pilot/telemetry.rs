@@ -18,7 +18,7 @@ use uf_crsf::write_packet_to_buffer;
 
 use crate::deadline::{FixedRate, TaskId};
 use crate::links::{Battery, Links, Status};
-use crate::ports::SerialOutput;
+use sophie_ports::serial::SerialOutput;
 
 const CYCLE: u8 = 10;
 const BATTERY_SLOT: u8 = 9;
@@ -129,7 +129,7 @@ fn encode<P: CrsfPacket>(packet: Option<P>) -> Option<Frame> {
 
 #[cfg(test)]
 mod tests {
-    use crate::pilot::telemetry::*;
+    use super::*;
 
     #[test]
     fn the_text_of_every_mode_can_be_read_back() {

@@ -7,7 +7,7 @@ use sophie_control::navigation::external_pose::PoseFault;
 use sophie_control::navigation::flow_range::{SightFault, SightLimit};
 use sophie_control::navigation::position_estimator::Fault;
 
-use crate::start::StartCause;
+use sophie_ports::retained::StartCause;
 
 /// A warning, shown beside the mode when there is no reason.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

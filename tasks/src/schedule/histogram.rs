@@ -86,7 +86,7 @@ fn upper(bucket: usize) -> u32 {
 mod tests {
     use proptest::prelude::*;
 
-    use crate::schedule::histogram::*;
+    use super::*;
 
     #[test]
     fn buckets_follow_each_other_without_gap() {

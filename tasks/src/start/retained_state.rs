@@ -11,11 +11,7 @@ use sophie_control::gripper::retained_grip::GripMemory;
 use sophie_control::maths::scalar;
 use sophie_control::maths::vector::Vec3;
 use sophie_control::pilot::rc::ArmChoice;
-
-/// Words of one copy.
-pub const WORDS: usize = 17;
-/// One copy as it lies in memory.
-pub type Words = [u32; WORDS];
+use sophie_ports::retained::Words;
 
 /// Marks a copy ("WARM") and its layout's number.
 const MAGIC: u32 = 0x5741_524D + 3;

@@ -5,10 +5,9 @@ use core::fmt;
 use sophie_control::arming::ArmingInhibit;
 use sophie_control::params::{ParamInfo, Params, Renamed};
 
-use crate::image_id;
 use crate::links::Links;
-use crate::ports::{Loaded, Storage};
 use sophie_control::maths::decimal::{self, Decimal};
+use sophie_ports::storage::{Loaded, Storage};
 
 /// Parameters in force and the result of reading them. Called once, before [`Links::new`].
 pub async fn load(storage: &mut impl Storage) -> (Params, Loaded) {
@@ -31,7 +30,7 @@ pub fn table_id() -> u32 {
         let numbers = [row.min, row.max, row.default].map(f32::to_bits);
         text.chain(numbers)
     });
-    image_id::of(words)
+    sophie_image_id::of(words)
 }
 
 /// Most choices that are all named where a parameter is shown: a line has 80 characters.

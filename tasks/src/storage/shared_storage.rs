@@ -2,10 +2,10 @@
 
 use embassy_sync::mutex::Mutex;
 use sophie_control::params::Params;
-use sophie_mavlink::wire::signing::Record;
+use sophie_ports::signing::Record;
 
 use crate::links::Raw;
-use crate::ports::{Loaded, Storage, StorageError};
+use sophie_ports::storage::{Loaded, Storage, StorageError};
 
 /// The storage of parameters for console and MAVLink: who comes second waits until the first is through.
 pub struct SharedStorage<'a, S> {

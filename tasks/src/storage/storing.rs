@@ -4,10 +4,10 @@ use embassy_time::{Duration, Instant, Timer, with_timeout};
 use sophie_control::arming::ArmingInhibit;
 use sophie_control::mode::Mode;
 use sophie_control::params::Params;
-use sophie_mavlink::wire::signing::Record;
+use sophie_ports::signing::Record;
 
 use crate::links::Links;
-use crate::ports::{Storage, StorageError};
+use sophie_ports::storage::{Storage, StorageError};
 
 /// Time that the commander has to answer: fifty of its periods.
 const COMMANDER: Duration = Duration::from_millis(500);
@@ -120,14 +120,4 @@ pub fn differ(links: &Links, params: &Params) -> bool {
     Params::TABLE
         .iter()
         .any(|row| bits(params, row.name) != bits(&links.params, row.name))
-}
-
-impl StorageError {
-    /// What is wrong, for people.
-    pub const fn text(self) -> &'static str {
-        match self {
-            Self::Full => "the storage is full",
-            Self::Broken => "the storage does not keep what is written",
-        }
-    }
 }

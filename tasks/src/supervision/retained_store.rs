@@ -9,7 +9,7 @@ use sophie_control::attitude::mounting::Mounting;
 use sophie_control::gripper::force_per_thrust;
 
 use crate::links::{Links, TendonOrder};
-use crate::ports::Retain;
+use sophie_ports::retained::Retain;
 
 /// Writer of the retained state.
 pub struct RetainedStore<R> {

@@ -8,9 +8,10 @@ use embassy_time::{Duration, Instant};
 
 use crate::deadline::{FixedRate, Level, TaskId};
 use crate::links::Links;
-use crate::ports::{Retain, Watchdog};
 use crate::schedule::Watch;
 use crate::supervision::retained_store::RetainedStore;
+use sophie_ports::chip::Watchdog;
+use sophie_ports::retained::Retain;
 
 const WINDOW: u8 = 10;
 /// Time from power-up for drivers to start.

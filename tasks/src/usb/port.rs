@@ -11,7 +11,8 @@ use sophie_mavlink::wire::protocol_detector::{For, Sorter, Speaks};
 use super::PACKET;
 use crate::console::CANCEL;
 use crate::links::Raw;
-use crate::ports::{PortError, SerialInput, SerialOutput};
+use sophie_ports::error::PortError;
+use sophie_ports::serial::{SerialInput, SerialOutput};
 
 /// Bytes that wait for a user: of a paste, or of some frames.
 const INPUT: usize = 256;

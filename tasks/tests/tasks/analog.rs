@@ -4,9 +4,9 @@ use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
 use sophie_control::battery::ServoSupply;
 use sophie_control::gripper::contact_pressure::FsrFault;
 use sophie_control::params::Params;
+use sophie_ports::sensors::AnalogFrame;
 use sophie_tasks::links::Contact;
 use sophie_tasks::perching::analog;
-use sophie_tasks::ports::AnalogFrame;
 
 use crate::rig::Rig;
 use sophie_fakes::{Answer, FakeAnalog};

@@ -10,14 +10,12 @@ use sophie_control::params::{Params, ServoMarks};
 use sophie_control::pilot::bench_orders::{BenchOrder, BenchRequest, PLACE_TIME, Spin};
 use sophie_control::pilot::rc::Sticks;
 use sophie_fakes::{Answer, FakeAnalog, FakeArms, FakeImu, FakeLine, FakeMotors, FakeServos};
-use sophie_tasks::links::RcState;
-use sophie_tasks::ports::AnalogFrame;
-use sophie_tasks::{
-    console,
-    flight::{control, estimator, imu, mixer, motors},
-    perching::{analog, arms, clamp, servos},
-    pilot::commander,
-};
+use sophie_ports::receiver::RcState;
+use sophie_ports::sensors::AnalogFrame;
+use sophie_tasks::console;
+use sophie_tasks::flight::{control, estimator, imu, mixer, motors};
+use sophie_tasks::perching::{analog, arms, clamp, servos};
+use sophie_tasks::pilot::commander;
 
 use crate::console::{Board, Screen};
 use crate::rig::Rig;

@@ -2,10 +2,10 @@
 
 use embassy_time::Instant;
 use sophie_control::calibration::Face;
+use sophie_control::chain::ImuReading;
 use sophie_control::maths::vector::{Quat, Vec3};
 use sophie_control::navigation::flow_range_sample::{Flow, GroundView, Range};
 use sophie_control::params::{MotorMap, MotorProtocol, Params};
-use sophie_tasks::ports::ImuReading;
 
 use crate::bench::{Table, UNLOADED};
 

@@ -8,12 +8,13 @@ use sophie_control::gripper::grip_fault::GripFault;
 use sophie_control::gripper::retained_grip::GripMemory;
 use sophie_control::params::Params;
 use sophie_control::pilot::rc::ArmChoice;
+use sophie_ports::retained::StartCause;
 use sophie_tasks::links::{
     ArmAngles, ClampCommand, Contact, Links, MixOutput, TendonForce, TendonForces, TendonOrder,
 };
 use sophie_tasks::perching::clamp;
+use sophie_tasks::start::Start;
 use sophie_tasks::start::retained_state::RetainedState;
-use sophie_tasks::start::{Start, StartCause};
 
 use crate::rig::Rig;
 

@@ -8,11 +8,13 @@ use sophie_control::maths::vector::Vec3;
 use sophie_control::mode::Mode;
 use sophie_control::params::Params;
 use sophie_control::pilot::rc::Sticks;
+use sophie_ports::receiver::RcState;
+use sophie_ports::retained::StartCause;
 use sophie_tasks::deadline::TaskId;
-use sophie_tasks::links::{Attitude, Battery, Contact, Links, MixOutput, RcState};
+use sophie_tasks::links::{Attitude, Battery, Contact, Links, MixOutput};
 use sophie_tasks::pilot::commander;
 use sophie_tasks::schedule::timing::Run;
-use sophie_tasks::start::{Start, StartCause};
+use sophie_tasks::start::Start;
 
 use crate::rig::Rig;
 

@@ -4,10 +4,10 @@ use embassy_time::{Duration, Instant};
 use sophie_control::maths::vector::Vec3;
 use sophie_control::navigation::flow_range_sample::{Flow, GroundView, Range};
 use sophie_fakes::{BrokenLine, FakeLine};
+use sophie_ports::sensors::GroundDecoder;
 use sophie_tasks::deadline::TaskId;
 use sophie_tasks::links::{Attitude, Links};
 use sophie_tasks::navigation::{flow_range, position};
-use sophie_tasks::ports::GroundDecoder;
 
 use crate::rig::Rig;
 

@@ -6,12 +6,14 @@ use std::rc::Rc;
 use embassy_time::{Instant, Timer};
 use heapless::Vec as Few;
 use sophie_control::arming::ArmingInhibit;
+use sophie_control::chain::ImuReading;
 use sophie_control::maths::scalar::GRAVITY;
 use sophie_control::maths::vector::Vec3;
 use sophie_control::params::Params;
+use sophie_ports::error::PortError;
+use sophie_ports::sensors::{IMU_BATCH, Imu};
 use sophie_tasks::deadline::TaskId;
 use sophie_tasks::flight::imu;
-use sophie_tasks::ports::{IMU_BATCH, Imu, ImuReading, PortError};
 
 use crate::rig::Rig;
 

@@ -3,10 +3,11 @@
 use embassy_time::{Duration, Instant};
 use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
 use sophie_control::params::Params;
+use sophie_ports::retained::StartCause;
 use sophie_tasks::deadline::{Level, TaskId};
 use sophie_tasks::links::Setpoint;
 use sophie_tasks::schedule::timing::{Quantity, Run};
-use sophie_tasks::start::{Start, StartCause};
+use sophie_tasks::start::Start;
 
 use crate::rig::Rig;
 

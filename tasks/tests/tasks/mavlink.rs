@@ -10,12 +10,14 @@ use sophie_control::params::Params;
 use sophie_control::pilot::remote::{RemoteAnswer, RemoteOrder, RemoteRequest};
 use sophie_dialect::{COMMAND_LONG_DATA, HEARTBEAT_DATA, ODOMETRY_DATA, PARAM_SET_DATA, SERIAL_CONTROL_DATA};
 use sophie_fakes::FakeLine;
-use sophie_mavlink::wire::signing::{Key, Record, Refused, Signing, Stored};
+use sophie_mavlink::wire::signing::{Refused, Signing};
+use sophie_ports::error::PortError;
+use sophie_ports::serial::SerialOutput;
+use sophie_ports::signing::{Key, Record, Stored};
 use sophie_tasks::console;
 use sophie_tasks::ground_station::console_pipe::Shell;
 use sophie_tasks::ground_station::mavlink::{self, Lines};
 use sophie_tasks::links::{LineState, Links, SigningState, Status};
-use sophie_tasks::ports::{PortError, SerialOutput};
 
 use crate::console::Board;
 use crate::rig::Rig;

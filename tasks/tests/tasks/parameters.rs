@@ -3,8 +3,8 @@
 use sophie_clock::VirtualTime;
 use sophie_control::arming::ArmingInhibit;
 use sophie_control::params::Params;
-use sophie_tasks::ground_station::mavlink::signing::Record;
-use sophie_tasks::ports::{Loaded, Storage, StorageError};
+use sophie_ports::signing::Record;
+use sophie_ports::storage::{Loaded, Storage, StorageError};
 use sophie_tasks::storage::parameters::{load, report};
 
 use crate::rig::Rig;

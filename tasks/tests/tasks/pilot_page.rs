@@ -3,11 +3,13 @@
 use std::fmt::Write;
 
 use sophie_control::battery::ServoSupply;
-use sophie_control::navigation::external_pose::PoseFault;
-use sophie_control::navigation::flow_range::{SightFault, SightLimit};
-use sophie_control::navigation::position_estimator::Fault;
+use sophie_control::navigation::{
+    external_pose::PoseFault,
+    flow_range::{SightFault, SightLimit},
+    position_estimator::Fault,
+};
+use sophie_ports::retained::StartCause;
 use sophie_tasks::pilot::warning::Warning;
-use sophie_tasks::start::StartCause;
 
 fn to_do(warning: Warning) -> &'static str {
     match warning {

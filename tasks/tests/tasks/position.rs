@@ -2,7 +2,7 @@
 
 use embassy_time::{Duration, Instant};
 use sophie_control::maths::vector::{Quat, Vec3};
-use sophie_mavlink::inputs::pose::{ExternalPose, Pose};
+use sophie_ports::external_pose::{ExternalPose, Pose};
 use sophie_tasks::deadline::TaskId;
 use sophie_tasks::links::{Attitude, Links};
 use sophie_tasks::navigation::position;

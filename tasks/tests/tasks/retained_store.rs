@@ -7,9 +7,10 @@ use sophie_control::gripper::retained_grip::GripMemory;
 use sophie_control::maths::vector::Vec3;
 use sophie_control::params::{ImuMounting, Params};
 use sophie_control::pilot::rc::ArmChoice;
+use sophie_ports::retained::StartCause;
 use sophie_tasks::links::{Attitude, Links, MixOutput, TendonForce, TendonForces, TendonOrder};
+use sophie_tasks::start::Start;
 use sophie_tasks::start::retained_state::RetainedState;
-use sophie_tasks::start::{Start, StartCause};
 use sophie_tasks::supervision::retained_store::RetainedStore;
 
 use crate::rig::Rig;

@@ -7,11 +7,12 @@ use sophie_control::gripper::retained_grip::GripMemory;
 use sophie_control::params::{Params, ServoMarks};
 use sophie_control::pilot::bench_orders::Place;
 use sophie_control::pilot::rc::ArmChoice;
+use sophie_ports::retained::StartCause;
 use sophie_tasks::links::{ArmAngles, Links, Stamped, TendonForce, TendonForces, TendonOrder};
 use sophie_tasks::perching::servos;
 use sophie_tasks::schedule::timing::Quantity;
+use sophie_tasks::start::Start;
 use sophie_tasks::start::retained_state::RetainedState;
-use sophie_tasks::start::{Start, StartCause};
 
 use crate::rig::{Rig, calibrated};
 use sophie_fakes::FakeServos;

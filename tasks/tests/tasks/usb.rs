@@ -5,7 +5,8 @@ use mavlink_core::{MAVLinkV1MessageRaw, MAVLinkV2MessageRaw, MavHeader, MessageD
 use sophie_control::mode::Mode;
 use sophie_dialect::{HEARTBEAT_DATA, PARAM_REQUEST_LIST_DATA, PARAM_SET_DATA, SERIAL_CONTROL_DATA};
 use sophie_fakes::FakeLine;
-use sophie_mavlink::wire::signing::Stored;
+use sophie_ports::signing::Stored;
+use sophie_tasks::console;
 use sophie_tasks::console::one_of::OneOf;
 use sophie_tasks::console::terminals::Served;
 use sophie_tasks::deadline::TaskId;
@@ -13,7 +14,6 @@ use sophie_tasks::ground_station::console_pipe::Shell;
 use sophie_tasks::ground_station::mavlink::{self, Lines};
 use sophie_tasks::links::{Links, Status as Commander};
 use sophie_tasks::usb::{self, Identity, Memory, Port};
-use sophie_tasks::{console, ports};
 
 use crate::console::{Board, Screen};
 use crate::fake_bus::{FakeBus, Status};
@@ -713,7 +713,7 @@ fn an_unplugged_port_costs_nothing() {
     assert_eq!(timing.overruns, 0);
     assert!((500..=505).contains(&timing.runs), "{}", timing.runs);
     assert!(bench.screen.0.take().len() > 1000);
-    use ports::SerialOutput;
+    use sophie_ports::serial::SerialOutput;
     let port = Port::new();
     let (_, output) = port.mavlink();
     assert!(!output.listens());

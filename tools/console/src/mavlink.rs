@@ -17,7 +17,8 @@ use sophie_dialect::{
 use sophie_mavlink::services::shell::CHUNK;
 use sophie_mavlink::wire::frame::{COMPONENT, Encoder, Frame, SYSTEM};
 use sophie_mavlink::wire::parser::Parser;
-use sophie_mavlink::wire::signing::{Key, Record, Signing, Stored};
+use sophie_mavlink::wire::signing::Signing;
+use sophie_ports::signing::{Key, Record, Stored};
 
 use crate::port::Wire;
 

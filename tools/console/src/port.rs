@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Duration;
 
-use sophie_mavlink::wire::signing::Key;
+use sophie_ports::signing::Key;
 
 use crate::Failure;
 use crate::mavlink::{self, Ends};

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use sophie_mavlink::wire::signing::Key;
+use sophie_ports::signing::Key;
 use sophie_tasks::console::NOT_TEXT;
 
 use crate::Failure;

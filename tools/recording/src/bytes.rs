@@ -6,7 +6,8 @@ use embassy_time::Instant;
 use sophie_control::params::{Params, RcProtocol};
 use sophie_drivers::ground_module::GroundModule;
 use sophie_drivers::{msp, rc_decoder};
-use sophie_tasks::ports::{GroundDecoder, RcDecoder};
+use sophie_ports::receiver::RcDecoder;
+use sophie_ports::sensors::GroundDecoder;
 
 use crate::lines::{Lines, short, time};
 

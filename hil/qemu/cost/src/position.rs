@@ -14,7 +14,7 @@ use sophie_control::params::Params;
 use sophie_control::position_hold::{Felt, PositionHold, Wish};
 use sophie_drivers::ground_module::GroundModule;
 use sophie_drivers::msp::Message;
-use sophie_tasks::ports::GroundDecoder;
+use sophie_ports::sensors::GroundDecoder;
 
 use crate::counter::{Tally, gross};
 use crate::run::line;

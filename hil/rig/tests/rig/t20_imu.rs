@@ -4,15 +4,15 @@
 #[embedded_test::tests]
 mod tests {
     use embassy_time::{Duration, Instant, with_timeout};
+    use sophie_ports::sensors::Imu;
     use sophie_rig::keep_alive;
-    use sophie_tasks::ports::Imu;
 
     /// From the first call to samples.
     const START_UP: Duration = Duration::from_secs(2);
     const SPAN: Duration = Duration::from_secs(1);
 
-    async fn first(imu: &mut sophie_boards::ImuPort) -> sophie_tasks::ports::ImuReading {
-        let mut last = Err(sophie_tasks::ports::PortError::Timeout);
+    async fn first(imu: &mut sophie_boards::ImuPort) -> sophie_control::chain::ImuReading {
+        let mut last = Err(sophie_ports::error::PortError::Timeout);
         let start = Instant::now();
         while start.elapsed() < START_UP {
             if let Ok(read) = with_timeout(START_UP, imu.read()).await {

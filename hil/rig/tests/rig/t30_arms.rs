@@ -3,8 +3,9 @@
 #[embedded_test::tests]
 mod tests {
     use embassy_time::{Duration, Instant, Timer};
+    use sophie_ports::error::PortError;
+    use sophie_ports::sensors::ArmImus;
     use sophie_rig::{absent, keep_alive};
-    use sophie_tasks::ports::{ArmImus, PortError};
 
     /// Reset, configuration, and rest for the gyroscope's calibration.
     const START_UP: Duration = Duration::from_secs(10);

@@ -4,9 +4,9 @@
 mod tests {
     use embassy_time::{Duration, Instant};
     use sophie_boards::{Pupdr, WIRING};
+    use sophie_ports::sensors::Analog;
     use sophie_rig::pads::settle;
     use sophie_rig::{absent, keep_alive};
-    use sophie_tasks::ports::Analog;
 
     /// Longest conversion of all inputs: a quarter of the 2 ms period.
     const LONGEST: Duration = Duration::from_micros(500);

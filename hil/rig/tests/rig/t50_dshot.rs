@@ -8,10 +8,10 @@ mod tests {
     use sophie_drivers::dshot::{BITS, Frame, Speed};
     use sophie_drivers::dshot_decoder::Decoder;
     use sophie_drivers::esc_protocol::EscProtocol;
+    use sophie_ports::actuators::Motors;
     use sophie_rig::pads::joined;
     use sophie_rig::pulses::{MOST, Pulse, record};
     use sophie_rig::{absent, keep_alive};
-    use sophie_tasks::ports::Motors;
 
     /// Motor 1: stop, least throttle, patterns, full.
     const COMMANDS: [f32; 5] = [0.0, 0.001, 0.333, 0.667, 1.0];

@@ -4,10 +4,10 @@
 mod tests {
     use embassy_time::Timer;
     use sophie_boards::WIRING;
+    use sophie_ports::actuators::Servos;
     use sophie_rig::pads::joined;
     use sophie_rig::pulses::record;
     use sophie_rig::{absent, keep_alive};
-    use sophie_tasks::ports::Servos;
 
     /// µs.
     const WIDTHS: [f32; 3] = [550.0, 1500.0, 2450.0];

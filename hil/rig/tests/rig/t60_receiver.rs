@@ -6,9 +6,9 @@ mod tests {
     use embassy_time::{Duration, with_timeout};
     use sophie_boards::WIRING;
     use sophie_control::params::RcProtocol;
+    use sophie_ports::serial::{SerialInput, SerialOutput};
     use sophie_rig::pads::joined;
     use sophie_rig::{absent, keep_alive};
-    use sophie_tasks::ports::{SerialInput, SerialOutput};
 
     /// A frame with sixteen channels.
     const LENGTH: usize = 26;

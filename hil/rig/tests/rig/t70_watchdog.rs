@@ -22,8 +22,8 @@ pub fn bitten(us: u32) -> ! {
 #[embedded_test::tests]
 mod tests {
     use embassy_time::{Instant, Timer};
+    use sophie_ports::chip::Watchdog;
     use sophie_rig::resumable_test::{ResumableTest, leave};
-    use sophie_tasks::ports::Watchdog;
 
     #[test]
     async fn it_bites_a_board_that_stands_still() {

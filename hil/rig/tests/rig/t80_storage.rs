@@ -2,8 +2,8 @@
 
 use embassy_executor::Executor;
 use sophie_control::params::Params;
+use sophie_ports::storage::Storage;
 use sophie_rig::keep_alive;
-use sophie_tasks::ports::Storage;
 use static_cell::StaticCell;
 
 async fn stored(storage: &mut impl Storage) -> Params {
@@ -65,9 +65,9 @@ async fn put_back(was: f32) {
 #[embedded_test::tests]
 mod tests {
     use sophie_control::params::Params;
+    use sophie_ports::chip::Chip;
     use sophie_rig::keep_alive;
     use sophie_rig::resumable_test::{ResumableTest, leave};
-    use sophie_tasks::ports::Chip;
 
     #[test]
     async fn a_parameter_outlives_a_reset() {

@@ -1,8 +1,9 @@
 //! Reading back retained state, torn and stale copies.
 
 use proptest::prelude::*;
+use sophie_ports::retained::{WORDS, Words};
 
-use crate::start::retained_state::*;
+use super::*;
 
 fn held() -> RetainedState {
     RetainedState {

@@ -5,7 +5,7 @@ use core::fmt::Write;
 
 use heapless::String;
 
-use crate::ports::{Look, READ};
+use crate::chip::{Look, READ};
 
 /// Least share of the stack that is to stay unused, parts of it: what no test has reached, such as every level at its
 /// deepest at once or a driver's handler of errors, has this room.
