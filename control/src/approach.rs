@@ -1,4 +1,4 @@
-//! The way onto the pipe and off it: where the pipe is, and the velocities towards it.
+//! The approach to the pipe: place of the pipe, range edges, and the planner of velocities.
 
 pub(crate) mod limits;
 pub mod pipe_target;

@@ -3,5 +3,6 @@
 pub mod attitude_loop;
 pub mod estimator;
 pub mod imu_filter;
+pub mod motion;
 pub mod mounting;
 pub mod rate_loop;

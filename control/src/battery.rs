@@ -4,8 +4,8 @@
 //! last one ages, is stale after 500 ms, and the vehicle lands a second later. Thrusts are compensated for the last voltage
 //! meanwhile. A current that is no measurement costs itself alone.
 
-use crate::contact::contact_force::Held;
 use crate::maths::filter::LowPass;
+use crate::maths::hold_timer::HoldTimer;
 use crate::maths::scalar;
 use crate::params::Params;
 
@@ -139,8 +139,8 @@ pub struct ServoMonitor {
     voltage: Option<LowPass>,
     /// Time since the last voltage, s.
     unread: f32,
-    near_end: Held,
-    low: Held,
+    near_end: HoldTimer,
+    low: HoldTimer,
 }
 
 impl ServoMonitor {

@@ -15,11 +15,11 @@ mod step_clock;
 
 pub use control::{Command, Control, RESTING_ROLL_GAIN};
 pub use messages::{Attitude, Demand, ImuReading, ImuSample, MixOutput, lift};
-pub use mixing::{ArmReading, Mixing, Surroundings};
+pub use mixing::{ArmReading, Mixing, MixingStep, Surroundings};
 pub use sensing::Sensing;
 pub use step_clock::{CONTROL_RATE_HZ, StepClock};
 
-use crate::allocation::mixer::{Allocation, Flexible};
+use crate::allocation::mixer::Flexible;
 use crate::attitude::attitude_loop::Target;
 use crate::attitude::estimator::Estimator;
 use crate::attitude::rate_loop::Feedback;
@@ -58,7 +58,7 @@ pub struct FlightChain<A = Flexible> {
     feedback: Feedback,
 }
 
-impl<A: Allocation> FlightChain<A> {
+impl<A: MixingStep> FlightChain<A> {
     /// A chain at rest for samples at `rate_hz`.
     pub fn new(p: &Params, rate_hz: f32, allocation: A) -> Self {
         Self {

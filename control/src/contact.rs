@@ -1,4 +1,4 @@
-//! What touches the pipe and whether it stays there: contact force, friction limit, lean, slip, fall.
+//! Contact with the pipe or the ground: contact force, friction limit, lean, slip, fall.
 
 pub mod contact_force;
 pub(crate) mod crown_offset;

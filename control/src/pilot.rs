@@ -1,4 +1,4 @@
-//! Pilot inputs: receiver channels, ground-station commands, bench orders.
+//! Inputs of people: receiver channels, stick positions, orders of a ground station and of the bench.
 
 pub mod bench_orders;
 pub mod rc;

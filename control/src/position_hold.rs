@@ -14,9 +14,10 @@ use self::gains::GAINS;
 use self::height::Height;
 use self::lag::Lag;
 use crate::chain::setpoint::Setpoint;
+use crate::maths::frames::about_down;
 use crate::maths::scalar::{self, GRAVITY};
 use crate::maths::vector::{Quat, Vec3};
-use crate::navigation::position_estimator::{Estimate, about_down};
+use crate::navigation::estimate::Estimate;
 use crate::params::Params;
 
 /// Fastest wish, level and vertical, m/s.

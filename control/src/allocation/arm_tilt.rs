@@ -9,7 +9,7 @@
 use core::f32::consts::TAU;
 
 use crate::allocation::arm_deflection::{ArmModel, VALID_TILT};
-use crate::allocation::motor_pulses::least_thrust;
+use crate::allocation::least_thrust::least_thrust;
 use crate::allocation::wrench::PerArm;
 use crate::maths::filter::LowPass;
 use crate::params::Params;

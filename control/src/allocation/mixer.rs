@@ -14,8 +14,6 @@ pub use split::{Split, moment_patterns, stiff};
 use crate::allocation::arm_tilt::TiltModel;
 use crate::allocation::desaturation::Given;
 use crate::allocation::wrench::{PerArm, Wrench};
-use crate::chain::messages::{Demand, MixOutput};
-use crate::chain::mixing::{Mixing, Surroundings};
 
 /// Result of one step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -69,22 +67,5 @@ pub trait Allocation {
         let mix = self.at_idle();
         self.follow(&mix.thrusts, dt);
         mix
-    }
-
-    /// One step of the `mixing` that owns this allocation.
-    ///
-    /// Generic code is built with its caller, on a board for size. The flying allocation repeats this method without
-    /// inlining, to be built with this crate for speed.
-    #[inline(always)]
-    fn step_mixing(
-        mixing: &mut Mixing<Self>,
-        at_us: u64,
-        demand: &Demand,
-        surroundings: &Surroundings,
-        out: &mut MixOutput,
-    ) where
-        Self: Sized,
-    {
-        mixing.compose(at_us, demand, surroundings, out);
     }
 }

@@ -5,15 +5,12 @@
 //! thrust right at every command, and one for a rotor that must turn is raised to the dead zone's end
 //! ([`least_command`]): it is never spread over what is above it.
 
-use crate::allocation::thrust_curve::ThrustCurve;
 use crate::maths::scalar;
 use crate::params::{MotorProtocol, Params};
 
 /// Largest share of the range that may lie below the idle pulse: four rotors that idle at a full battery lift a third of
 /// the default vehicle. ArduPilot refuses beyond the same share (`MOT_SPIN_MIN`); dead zones are 5 to 15 %.
 const DEAD_MAX: f32 = 0.3;
-/// Voltage ratio of a full battery: 4.2 V over 3.7 V a cell.
-const FULL_RATIO: f32 = 4.2 / 3.7;
 /// A step of DShot, which has 2000: such a controller turns its motor at its lowest throttle.
 const DIGITAL: f32 = 0.000_5;
 /// Twice the error of the curve's root, so that it does not fall below the idle pulse: 0.004 µs of 1000.
@@ -88,18 +85,13 @@ pub fn least_command(p: &Params) -> f32 {
     }
 }
 
-/// Least thrust of a rotor that turns, N: `thrust_idle`, or at a full battery that of the least command where it is more.
-#[inline(never)]
-pub fn least_thrust(p: &Params) -> f32 {
-    let least = ThrustCurve::from_params(p).thrust(least_command(p), FULL_RATIO);
-    p.thrust_idle.max(least)
-}
-
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::allocation::least_thrust::{FULL_RATIO, least_thrust};
+    use crate::allocation::thrust_curve::ThrustCurve;
 
     /// Ends, idle pulse.
     const RANGES: [[f32; 3]; 2] = [[1000.0, 1070.0, 2000.0], [1120.0, 1180.0, 1920.0]];

@@ -10,10 +10,11 @@ mod to_target;
 use crate::approach::limits::*;
 use crate::approach::pipe_target::PipeTarget;
 use crate::approach::range_edges::{Edge, Edges};
-use crate::contact::contact_force::Held;
+use crate::maths::frames::about_down;
+use crate::maths::hold_timer::HoldTimer;
 use crate::maths::scalar::{self, clamp, clamp_abs};
 use crate::maths::vector::Vec3;
-use crate::navigation::position_estimator::{Foot, about_down};
+use crate::navigation::range_hit::Foot;
 use crate::params::Params;
 use crate::position_hold::Wish;
 
@@ -140,11 +141,11 @@ pub struct Approach {
     ends: [Option<f32>; 2],
     /// Where the range fell off on the way along, m, and for how long it has seen no pipe at the way's end.
     fell: Option<f32>,
-    lost: Held,
+    lost: HoldTimer,
     /// It was crossed at this height, and looked along.
     crossed: bool,
     looked: bool,
-    settled: Held,
+    settled: HoldTimer,
     /// Speed across a little ago, m/s.
     slow: f32,
     left: bool,
@@ -186,10 +187,10 @@ impl Approach {
             along: 0.0,
             ends: [None; 2],
             fell: None,
-            lost: Held::default(),
+            lost: HoldTimer::default(),
             crossed: false,
             looked: false,
-            settled: Held::default(),
+            settled: HoldTimer::default(),
             slow: 0.0,
             left: false,
             given: false,

@@ -7,9 +7,9 @@ use std::println;
 use super::messages::{Attitude, ImuReading, ImuSample};
 use super::sensing::Sensing;
 use crate::attitude::estimator::Estimator;
+use crate::attitude::motion::Motion;
 use crate::maths::scalar::{GRAVITY, deg};
 use crate::maths::vector::{Quat, Vec3};
-use crate::mode::Motion;
 use crate::params::Params;
 
 /// Readings each second, and full scales, m/s² and rad/s.

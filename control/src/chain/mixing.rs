@@ -30,6 +30,37 @@ pub struct Surroundings {
     pub arms: Option<ArmReading>,
 }
 
+/// An allocation with the whole step of the stage.
+///
+/// Generic code is built with its caller, on a board for size. The flying allocation repeats the method without inlining,
+/// to be built with this crate for speed.
+pub trait MixingStep: Allocation + Sized {
+    /// One step of the `mixing` that owns this allocation.
+    #[inline(always)]
+    fn step_mixing(
+        mixing: &mut Mixing<Self>,
+        at_us: u64,
+        demand: &Demand,
+        surroundings: &Surroundings,
+        out: &mut MixOutput,
+    ) {
+        mixing.compose(at_us, demand, surroundings, out);
+    }
+}
+
+impl MixingStep for Flexible {
+    #[inline(never)]
+    fn step_mixing(
+        mixing: &mut Mixing<Self>,
+        at_us: u64,
+        demand: &Demand,
+        surroundings: &Surroundings,
+        out: &mut MixOutput,
+    ) {
+        mixing.compose(at_us, demand, surroundings, out);
+    }
+}
+
 /// Allocation, arm readings and motor curve.
 #[derive(Clone, Debug)]
 pub struct Mixing<A = Flexible> {
@@ -41,7 +72,7 @@ pub struct Mixing<A = Flexible> {
     readings: Readings,
 }
 
-impl<A: Allocation> Mixing<A> {
+impl<A: MixingStep> Mixing<A> {
     /// Mixing by `allocation`, rotors stopped.
     pub fn new(p: &Params, allocation: A) -> Self {
         Self {
@@ -65,15 +96,9 @@ impl<A: Allocation> Mixing<A> {
         A::step_mixing(self, at_us, demand, surroundings, out);
     }
 
-    /// Default body of [`Allocation::step_mixing`].
+    /// Default body of [`MixingStep::step_mixing`].
     #[inline(always)]
-    pub(crate) fn compose(
-        &mut self,
-        at_us: u64,
-        demand: &Demand,
-        surroundings: &Surroundings,
-        out: &mut MixOutput,
-    ) {
+    fn compose(&mut self, at_us: u64, demand: &Demand, surroundings: &Surroundings, out: &mut MixOutput) {
         let dt = self.clock.step(at_us);
         let ratio = surroundings.battery_ratio.unwrap_or(1.0);
         // On the pipe the arms do not hang free.

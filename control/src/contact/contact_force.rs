@@ -10,6 +10,7 @@
 //!
 //! In hover, an error of 5 % in mass or thrust gives less than 1 N.
 
+use crate::maths::hold_timer::HoldTimer;
 use crate::maths::scalar::{GRAVITY, PI, clamp};
 use crate::params::Params;
 
@@ -40,22 +41,6 @@ const SINK_MEMORY: f32 = 20.0;
 /// Largest sink rate accepted, m/s.
 const SINK_MAX: f32 = 10.0;
 
-/// Unbroken time of a condition, s.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Held(f32);
-
-impl Held {
-    /// One step; returns the time, s, 0 while the condition fails.
-    pub(crate) fn step(&mut self, holds: bool, dt: f32) -> f32 {
-        self.0 = if holds { clamp(self.0 + dt, 0.0, 1e6) } else { 0.0 };
-        self.0
-    }
-
-    pub(crate) fn time(self) -> f32 {
-        self.0
-    }
-}
-
 /// Measurements of one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Felt {
@@ -77,10 +62,10 @@ pub struct Support {
     lift: f32,
     force: f32,
     sink: f32,
-    pressed: Held,
-    unloaded: Held,
-    full: Held,
-    silent: Held,
+    pressed: HoldTimer,
+    unloaded: HoldTimer,
+    full: HoldTimer,
+    silent: HoldTimer,
     resting: bool,
 }
 
@@ -93,10 +78,10 @@ impl Support {
             lift: 0.0,
             force: 0.0,
             sink: 0.0,
-            pressed: Held::default(),
-            unloaded: Held::default(),
-            full: Held::default(),
-            silent: Held::default(),
+            pressed: HoldTimer::default(),
+            unloaded: HoldTimer::default(),
+            full: HoldTimer::default(),
+            silent: HoldTimer::default(),
             resting: false,
         }
     }

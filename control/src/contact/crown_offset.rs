@@ -5,7 +5,6 @@
 
 use crate::contact::contact_force::Support;
 use crate::maths::scalar::clamp;
-use crate::mode::{Inputs, Reason};
 
 /// Time constant of the offset, s.
 const SMOOTHING: f32 = 0.3;
@@ -15,15 +14,24 @@ const LOAD_MIN: f32 = 3.0;
 const OFFSET_MAX: f32 = 0.2;
 const OFFSET_SHOWN: f32 = 0.015;
 
+/// Side of the vehicle on which the crown is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CrownSide {
+    /// To its left.
+    Left,
+    /// To its right.
+    Right,
+}
+
 /// Offset of the vehicle from the crown, m, right positive.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Crown(f32);
 
 impl Crown {
-    /// One step of `dt` s.
-    pub fn step(&mut self, i: &Inputs, support: &Support, dt: f32) {
-        let load = support.weight() - i.lift;
-        let offset = -i.roll_moment / load;
+    /// One step of `dt` s at the rotors' `lift` along body -z, N, and `roll_moment`, right side down positive, N m.
+    pub fn step(&mut self, lift: f32, roll_moment: f32, support: &Support, dt: f32) {
+        let load = support.weight() - lift;
+        let offset = -roll_moment / load;
         if !support.resting() || load < LOAD_MIN || !offset.is_finite() {
             self.0 = 0.0;
             return;
@@ -32,12 +40,12 @@ impl Crown {
         self.0 += (goal - self.0) * dt / (dt + SMOOTHING);
     }
 
-    /// What the pilot reads.
-    pub fn side(self) -> Option<Reason> {
+    /// The side, for an offset that is worth showing.
+    pub fn side(self) -> Option<CrownSide> {
         if self.0 > OFFSET_SHOWN {
-            Some(Reason::CrownLeft)
+            Some(CrownSide::Left)
         } else if self.0 < -OFFSET_SHOWN {
-            Some(Reason::CrownRight)
+            Some(CrownSide::Right)
         } else {
             None
         }

@@ -6,10 +6,11 @@
 //! sin ψ in pitch: the lean is the length of both. Pitch counts from the touch, for before it is the flight's and the pipe's
 //! slope, and so does the heading, of which nothing else is known.
 
-use crate::contact::contact_force::{Held, LEAVING_FORCE, RESTING_FORCE, Support};
+use crate::attitude::motion::Motion;
+use crate::contact::contact_force::{LEAVING_FORCE, RESTING_FORCE, Support};
 use crate::contact::friction_limit::Seat;
+use crate::maths::hold_timer::HoldTimer;
 use crate::maths::scalar::{GRAVITY, deg, sqrt, wrap_pi};
-use crate::mode::Motion;
 use crate::params::Params;
 use crate::pilot::release_throttle::release_thrust;
 
@@ -56,14 +57,14 @@ pub struct Lean {
     lean: f32,
     /// Least lean since the arms began to close or to let go, rad.
     seated: f32,
-    creeping: Held,
-    giving: Held,
-    sliding: Held,
-    leaning: Held,
-    twisting: Held,
-    falling: Held,
+    creeping: HoldTimer,
+    giving: HoldTimer,
+    sliding: HoldTimer,
+    leaning: HoldTimer,
+    twisting: HoldTimer,
+    falling: HoldTimer,
     /// Time since something carried, s.
-    apart: Held,
+    apart: HoldTimer,
 }
 
 impl Lean {
@@ -75,13 +76,13 @@ impl Lean {
             before: None,
             lean: 0.0,
             seated: 0.0,
-            creeping: Held::default(),
-            giving: Held::default(),
-            sliding: Held::default(),
-            leaning: Held::default(),
-            twisting: Held::default(),
-            falling: Held::default(),
-            apart: Held::default(),
+            creeping: HoldTimer::default(),
+            giving: HoldTimer::default(),
+            sliding: HoldTimer::default(),
+            leaning: HoldTimer::default(),
+            twisting: HoldTimer::default(),
+            falling: HoldTimer::default(),
+            apart: HoldTimer::default(),
         }
     }
 

@@ -9,10 +9,10 @@
 //! is excused where the turn stands, and what it rocks more than four where it runs.
 
 use crate::allocation::wrench::{PerArm, SIDE};
-use crate::contact::contact_force::Held;
+use crate::attitude::motion::Motion;
 use crate::maths::filter::LowPass;
+use crate::maths::hold_timer::HoldTimer;
 use crate::maths::scalar::{clamp, deg, slew};
-use crate::mode::{Motion, Reason};
 
 /// Turn since the grip was proven, or tightened last, that is a creep, rad, and the time that it must last, s: a gust
 /// passes. Friction that fails slowly gives so much before it gives way (measured in the plant).
@@ -38,8 +38,8 @@ pub struct Slip {
     bend: Option<LowPass>,
     /// Turn that bending excuses where it stands, rad.
     rocks: f32,
-    creeps: Held,
-    slips: Held,
+    creeps: HoldTimer,
+    slips: HoldTimer,
     /// Since the last answer, s.
     since: f32,
     /// No answer was left.
@@ -92,9 +92,9 @@ impl Slip {
         answers
     }
 
-    /// It goes on turning.
-    pub fn reason(&self) -> Option<Reason> {
-        self.helpless.then_some(Reason::Slips)
+    /// It keeps turning, and the arms do not tighten any more.
+    pub fn helpless(&self) -> bool {
+        self.helpless
     }
 }
 

@@ -1,9 +1,12 @@
 //! Interface of a state: transitions, rotors, tendons, display.
 
 use super::context::{Context, Step};
+use super::inputs::Inputs;
+use super::modes::Mode;
+use super::reason::Reason;
 use super::shared::collective::HAND_OVER_TIME;
-use super::{ClampCommand, Inputs, Mode, Reason, Setpoint};
 use crate::arming::ArmingInhibits;
+use crate::chain::setpoint::{ClampCommand, Setpoint};
 use crate::gripper::retained_grip::GripMemory;
 
 /// One state with its fields.

@@ -1,25 +1,29 @@
 //! What outlives a state: parameters, the pilot's switches, evidence of support and lean, dangers, the collective.
 
+use super::inputs::Inputs;
 use super::inputs::auto_perch::ByItself;
 use super::inputs::bench::Bench;
 use super::inputs::dangers::Dangers;
 use super::inputs::remote::{self, Remote};
+use super::reason::Reason;
 use super::shared::collective::Collective;
 use super::shared::ground_probe::Probe;
 use super::shared::on_pipe::held;
 use super::shared::power_up_grip::PowerUpGripCheck;
-use super::{ClampCommand, Inputs, Reason};
 use crate::arming::{ArmingInhibit, ArmingInhibits, Checks, Gesture, GestureWatch};
-use crate::contact::contact_force::{Felt, Held, Support};
-use crate::contact::crown_offset::Crown;
+use crate::chain::setpoint::ClampCommand;
+use crate::contact::contact_force::{Felt, Support};
+use crate::contact::crown_offset::{Crown, CrownSide};
 use crate::contact::fall::Fall;
 use crate::contact::lean::Lean;
 use crate::gripper::retained_grip::GripMemory;
+use crate::maths::hold_timer::HoldTimer;
 use crate::maths::scalar::clamp;
 use crate::navigation::vertical_fallback::Rise;
 use crate::params::Params;
 use crate::pilot::rc::Sticks;
 use crate::pilot::remote::RemoteOrder;
+use crate::position_hold;
 
 /// Time constant of learning gravity at rest, s, and bounds, m/s²: a part's bias of some 40 mg.
 const GRAVITY_TIME: f32 = 0.5;
@@ -46,7 +50,7 @@ pub struct PerchSwitch {
     /// On since power-up: its position is no wish of the pilot.
     pub left_on: bool,
     /// Time since it was turned off, s.
-    pub off: Held,
+    pub off: HoldTimer,
 }
 
 impl PerchSwitch {
@@ -111,7 +115,7 @@ impl Context {
                 seen_off: false,
                 seen_on: false,
                 left_on: true,
-                off: Held::default(),
+                off: HoldTimer::default(),
             },
             hold_seen_off: false,
             power_up_grip: PowerUpGripCheck::default(),
@@ -161,7 +165,7 @@ impl Context {
             lift: i.lift,
         });
         self.support.step(felt, dt);
-        self.crown.step(i, &self.support, dt);
+        self.crown.step(i.lift, i.roll_moment, &self.support, dt);
         self.sinking = felt.map_or(0.0, |f| f.down);
         self.fall.step(self.sinking, &self.support, dt);
         self.lean.step(i.motion, &self.support, self.collective.now(), dt);
@@ -198,6 +202,14 @@ impl Context {
         } else {
             note
         }
+    }
+
+    /// On which side the crown is, while the vehicle rests beside it.
+    pub fn crown_side(&self) -> Option<Reason> {
+        self.crown.side().map(|side| match side {
+            CrownSide::Left => Reason::CrownLeft,
+            CrownSide::Right => Reason::CrownRight,
+        })
     }
 
     /// Everything against arming with this grip.
@@ -302,6 +314,16 @@ impl Context {
 }
 
 impl Step<'_> {
+    /// Motion of the body, for the position hold.
+    pub fn felt(&self) -> position_hold::Felt {
+        let motion = self.inputs.motion.unwrap_or_default();
+        position_hold::Felt {
+            q: motion.q,
+            rate: motion.rate,
+            carried: self.context.support.resting(),
+        }
+    }
+
     pub fn grip_proven(&self) -> bool {
         self.inputs.grip.is_some_and(|g| g.proven)
     }

@@ -1,6 +1,111 @@
-//! What asks for a mode: autonomous perching, ground station, bench, dangers.
+//! Inputs of the mode logic, and what follows from them alone: autonomous perching, orders of ground station and bench,
+//! dangers.
 
 pub mod auto_perch;
 pub mod bench;
 pub mod dangers;
 pub mod remote;
+
+use crate::allocation::wrench::PerArm;
+use crate::approach::pipe_target::PipeTarget;
+use crate::arming::{ArmingInhibit, ArmingInhibits};
+use crate::attitude::motion::Motion;
+use crate::battery::ServoSupply;
+use crate::gripper::grip::GripState;
+use crate::navigation::estimate::Estimate;
+use crate::navigation::fix_age::{APPROACH_AGE, FRESH_AGE, HEIGHT_AGE, PRESSURE_AGE};
+use crate::pilot::bench_orders::BenchRequest;
+use crate::pilot::rc::Sticks;
+use crate::pilot::remote::RemoteRequest;
+
+/// Inputs of one step; `None` stands for a stale message.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Inputs {
+    /// The pilot's sticks; `None` when the radio is lost.
+    pub sticks: Option<Sticks>,
+    /// Motion of the body.
+    pub motion: Option<Motion>,
+    /// Demanded thrust along body -z, Σ T cos α, N; 0 when stopped.
+    pub lift: f32,
+    /// Demanded roll moment, right side down positive, N m; 0 when stopped.
+    pub roll_moment: f32,
+    /// The grip.
+    pub grip: Option<GripState>,
+    /// Tilts of the arms by their sensors, rad; `None` where not fresh.
+    pub tilts: PerArm<Option<f32>>,
+    /// Pressure sensors that are faulty or silent.
+    pub fsr_fault: PerArm<bool>,
+    /// Battery voltage under load, V.
+    pub battery: Option<f32>,
+    /// The servo battery.
+    pub servo_supply: ServoSupply,
+    /// The flight level misses its deadlines.
+    pub late: bool,
+    /// Arming inhibits of drivers, storage and start-up.
+    pub hardware: ArmingInhibits,
+    /// Request at the console.
+    pub bench: Option<BenchRequest>,
+    /// Order of a remote link.
+    pub remote: Option<RemoteRequest>,
+    /// Where the vehicle is; its own age says since when that is only by the inertial sensor.
+    pub position: Option<Estimate>,
+    /// Where the pipe is, in the axes of the poses.
+    pub target: Option<PipeTarget>,
+}
+
+impl Inputs {
+    /// Why the servo battery allows no perch, nor a longer one.
+    pub fn servo_trouble(&self) -> Option<ArmingInhibit> {
+        match self.servo_supply {
+            ServoSupply::Silent => Some(ArmingInhibit::ServoBatterySilent),
+            ServoSupply::Low => Some(ArmingInhibit::ServoBatteryLow),
+            ServoSupply::NotFitted | ServoSupply::NearEnd | ServoSupply::Good => None,
+        }
+    }
+
+    /// The position is known well enough to begin a hold.
+    pub fn position_fresh(&self) -> bool {
+        self.motion.is_some() && self.position_younger(FRESH_AGE)
+    }
+
+    /// The inertial sensor alone is no longer good for an approach.
+    pub fn position_adrift(&self) -> bool {
+        !self.position_younger(APPROACH_AGE)
+    }
+
+    /// The position, the height included, is no longer known.
+    pub fn position_lost(&self) -> bool {
+        let by_pressure = self.position.is_some_and(|e| e.by_pressure);
+        !self.position_younger(if by_pressure { PRESSURE_AGE } else { HEIGHT_AGE })
+    }
+
+    fn position_younger(&self, age: f32) -> bool {
+        self.position.is_some_and(|e| e.age <= age)
+    }
+
+    /// Drops messages with a non-finite value: NaN must not stay in a filter or in the attitude held on the pipe. An
+    /// arm switch that is off still stops the rotors.
+    pub(super) fn finite(self) -> Self {
+        let sane = |m: &Motion| m.q.is_finite() && m.rate.is_finite() && m.accel.is_finite();
+        let steady = |s: &Sticks| (s.roll + s.pitch + s.yaw + s.throttle).is_finite();
+        Self {
+            sticks: self.sticks.and_then(|s| match (steady(&s), s.arm_switch) {
+                (true, _) => Some(s),
+                (false, true) => None,
+                (false, false) => Some(Sticks {
+                    roll: 0.0,
+                    pitch: 0.0,
+                    yaw: 0.0,
+                    throttle: 0.0,
+                    ..s
+                }),
+            }),
+            motion: self.motion.filter(sane),
+            tilts: self.tilts.map(|tilt| tilt.filter(|t| t.is_finite())),
+            battery: self.battery.filter(|v| v.is_finite()),
+            position: self.position.filter(Estimate::is_finite),
+            target: self.target.filter(PipeTarget::is_finite),
+            ..self
+        }
+    }
+}

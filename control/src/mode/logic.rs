@@ -1,11 +1,14 @@
 //! The state machine, stepped at 100 Hz.
 
 use super::context::{Context, Step};
+use super::inputs::Inputs;
 use super::inputs::bench::Table;
-use super::inputs::remote;
+use super::modes::Mode;
+use super::outputs::Outputs;
+use super::remote_refusal;
+use super::state::State;
 use super::states::calibrating::Calibrating;
 use super::table::transitions::Transition;
-use super::{Inputs, Mode, Outputs, State};
 use crate::arming::ArmingInhibits;
 use crate::gripper::retained_grip::GripMemory;
 use crate::maths::scalar::clamp;
@@ -50,15 +53,22 @@ impl ModeLogic {
     pub fn step(&mut self, inputs: &Inputs, dt: f32) -> Outputs {
         let dt = clamp(dt, 0.0, STEP_MAX);
         let (inputs, before) = (inputs.finite(), self.state.mode());
-        let dropped = self.context.remote.follow(&inputs, &self.state, dt);
+        let dropped = self
+            .context
+            .remote
+            .follow(&inputs, before, self.state.behaviour().grip_memory(), dt);
         self.context.perch_switch.forget(dropped);
         let remote = self.context.remote.take(inputs.remote);
         let refused = remote.and_then(|request| self.weigh(request.order, &inputs, dt));
         let inputs = &self.context.remote.apply(inputs);
         self.context.observe(inputs, rotors_locked(before), dt);
         let sinking = self.context.sinking;
-        self.context.rise.step(before, sinking, inputs, dt);
-        let inputs = &self.context.rise.apply(inputs);
+        let position = inputs.position.as_ref();
+        self.context.rise.step(flies_free(before), sinking, position, dt);
+        let inputs = &Inputs {
+            position: inputs.position.map(|e| self.context.rise.apply(e)),
+            ..*inputs
+        };
         let table = Table::new(
             before,
             self.state.behaviour().grip_memory(),
@@ -92,7 +102,7 @@ impl ModeLogic {
             None => self.state.behaviour_mut().advance(step),
         }
         if let Some(RemoteRequest { number, order }) = remote {
-            let refusal = refused.or_else(|| remote::outcome(order, self.state.mode()));
+            let refusal = refused.or_else(|| remote_refusal::outcome(order, self.state.mode()));
             if refusal.is_some() && refused.is_none() {
                 self.context.remote.turn_back(order);
             }
@@ -109,7 +119,7 @@ impl ModeLogic {
             inputs,
             dt,
         };
-        let refusal = remote::refusal(order, &self.state, step);
+        let refusal = remote_refusal::refusal(order, &self.state, step);
         if refusal.is_none() {
             self.context.remote.turn(order);
         }
@@ -138,6 +148,13 @@ impl ModeLogic {
             remote: context.remote.answer(),
         }
     }
+}
+
+fn flies_free(mode: Mode) -> bool {
+    matches!(
+        mode,
+        Mode::Flight | Mode::Hold | Mode::Approach | Mode::Escaping | Mode::Failsafe
+    )
 }
 
 fn rotors_locked(mode: Mode) -> bool {

@@ -1,4 +1,4 @@
-//! One file a mode: what it does each step and what it watches.
+//! The state of each mode, one file a mode: its fields, its setpoints, the reason that it shows.
 
 pub mod approach;
 pub mod armed;

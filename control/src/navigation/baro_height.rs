@@ -3,7 +3,7 @@
 //! A pressure has no ground. What it is off is learnt while range or pose give the height, so that the height goes on
 //! without a step where they end. docs/hold.md has figures.
 
-use super::position_estimator::seconds;
+use crate::maths::elapsed::seconds;
 use crate::navigation::air_pressure::AirPressure;
 
 /// Height in which the pressure falls by a factor e, m: R T / g of dry air at 15 °C. At 0 and 35 °C a way is 5 and 7 % off.

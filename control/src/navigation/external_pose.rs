@@ -4,11 +4,17 @@
 //! The two ways are compared in a band of s³ω/(s+ω)⁴, m, to which the specific force comes as sω/(s+ω)⁴: slower, an error
 //! of the attitude passes for a way; faster, the pose's noise. docs/hold.md has limits and times.
 
+use super::fix::Fix;
+use super::fix_age::{TAINTED_AGE, UNKNOWN_AGE};
 use super::history::Moment;
-use super::position_estimator::{Fix, Inertial, TAINTED_AGE, TURN_GAIN, UNKNOWN_AGE, about_down, seconds};
+use super::inertial::Inertial;
+use crate::maths::elapsed::seconds;
+use crate::maths::frames::about_down;
 use crate::maths::scalar::{self, GRAVITY};
 use crate::maths::vector::Vec3;
 
+/// Share of a new heading's difference that the turn follows: 1 s at 50 Hz.
+pub(crate) const TURN_GAIN: f32 = 0.02;
 /// Corner of the band, rad/s.
 const CORNER: f32 = 3.0;
 /// Time from where the poses begin, or begin anew, until the beginning has left the band, µs: five of its time constants.
@@ -177,13 +183,13 @@ impl Trust {
     /// Takes what the inertial sensor feels; gives the way in the band, m, in the axes of the vehicle's attitude.
     pub fn feel(&mut self, felt: &Inertial) -> Vec3 {
         let dt = seconds(self.felt_us, felt.at_us);
-        if dt > super::position_estimator::STEP_MAX {
+        if dt > super::inertial::STEP_MAX {
             self.felt = Default::default();
             self.began_us = self.began_us.max(felt.at_us);
         }
         self.felt_us = felt.at_us;
         let acceleration = felt.q.rotate(felt.accel) + Vec3::new(0.0, 0.0, GRAVITY);
-        if dt > super::position_estimator::STEP_MAX || !acceleration.is_finite() {
+        if dt > super::inertial::STEP_MAX || !acceleration.is_finite() {
             return Vec3::ZERO;
         }
         let [first, second, slow, last] = &mut self.felt;

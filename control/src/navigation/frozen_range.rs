@@ -4,8 +4,8 @@
 //! exp(-n / m) for a usual run of m, which is learnt, since a module may send each reading several times. One in centimetres
 //! is coarser than its noise and may stand while the vehicle does: there the inertial sensor must say that it has moved.
 
-use super::position_estimator::seconds;
 use super::range_scale::Climb;
+use crate::maths::elapsed::seconds;
 
 /// Readings that differ by less are equal, m.
 const EQUAL: f32 = 1e-4;

@@ -1,7 +1,8 @@
 //! Where the vehicle was taken to be: a fix is compared with the time of its measurement.
 
 use super::axis_filter::Change;
-use super::position_estimator::{about_down, seconds};
+use crate::maths::elapsed::seconds;
+use crate::maths::frames::about_down;
 use crate::maths::scalar;
 use crate::maths::vector::{Quat, Vec3};
 

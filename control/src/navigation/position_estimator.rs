@@ -7,36 +7,27 @@
 #[cfg(test)]
 mod tests;
 
+use crate::maths::elapsed::seconds;
+use crate::maths::frames::about_down;
 use crate::maths::scalar::{self, GRAVITY};
-use crate::maths::vector::{Quat, Vec3};
+use crate::maths::vector::Vec3;
 use crate::navigation::air_pressure::AirPressure;
 use crate::navigation::axis_filter::{Axis, Change};
 use crate::navigation::baro_height::{Aloft, PressureFault};
-use crate::navigation::external_pose::{PoseFault, TURN_STEP, Trust};
+use crate::navigation::estimate::Estimate;
+use crate::navigation::external_pose::{PoseFault, TURN_GAIN, TURN_STEP, Trust};
+use crate::navigation::fix::Fix;
+use crate::navigation::fix_age::{LOST_AGE, TAINTED_AGE, UNKNOWN_AGE};
 use crate::navigation::flow_range::{Sight, SightFault, beam};
 use crate::navigation::flow_range_sample::{Flow, GroundView};
 use crate::navigation::history::{Moment, Past};
+use crate::navigation::inertial::{Inertial, STEP_MAX};
+use crate::navigation::range_hit::Foot;
 use crate::params::Params;
 
-/// Longest step, s: after a longer silence of the inertial sensor the estimate begins anew.
-pub const STEP_MAX: f32 = 0.05;
-/// Age of the newest fix with which the estimate ends, s: the inertial sensor alone is metres off by then.
-pub const LOST_AGE: f32 = 10.0;
 /// Fixes until the estimate is given out, half a second at 50 Hz, and the velocity's deviation by then, m/s.
 const READY_FIXES: u32 = 25;
 const READY_SPEED: f32 = 0.1;
-/// Farthest from the origin along an axis, m: beyond it a float has steps of a millimetre.
-const POSITION_MAX: f32 = 10_000.0;
-/// Largest heading, rad: a turn. Of a huge one sine and cosine are no numbers.
-const HEADING_MAX: f32 = 2.0 * scalar::PI;
-/// Deviation of a fix whose sender does not say it, m, and the bounds of one that does.
-pub const FIX_DEVIATION: f32 = 0.01;
-const DEVIATION_BOUNDS: (f32, f32) = (0.003, 0.5);
-/// Silence of the poses after which one that is off is no jump, s: what was estimated since may be as far off.
-pub(crate) const UNKNOWN_AGE: f32 = 1.0;
-/// Age that an estimate has once its poses were found to disagree, µs: none coasts on by it (see
-/// [`crate::mode::Mode::Hold`]).
-pub(crate) const TAINTED_AGE: u64 = 1_310_000;
 /// Deviation of a bias that was learnt before the estimate began anew, as after a perch, at least, m/s²: level that of the
 /// attitude, 0.6°, down that of the sensor alone.
 const KEPT_BIAS: [f32; 3] = [0.1, 0.1, 0.03];
@@ -54,105 +45,9 @@ const STANDING: f32 = 0.05;
 const STAND_SPEED: f32 = 0.01;
 /// Time over which the way of the beam across an edge is taken, µs.
 const EDGE_TIME: u64 = 100_000;
-/// Share of a new heading's difference that the turn follows: 1 s at 50 Hz.
-pub(crate) const TURN_GAIN: f32 = 0.02;
 /// Cut-off of the lateral and the vertical disturbance, rad/s.
 const LATERAL_CUTOFF: f32 = 20.0;
 const VERTICAL_CUTOFF: f32 = 8.0;
-
-/// What the inertial sensor says.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Inertial {
-    /// When it was measured, µs.
-    pub at_us: u64,
-    /// Body to world.
-    pub q: Quat,
-    /// Specific force, m/s², body.
-    pub accel: Vec3,
-}
-
-/// A pose that somebody else has measured.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Fix {
-    /// When it was measured, µs.
-    pub at_us: u64,
-    /// In the sender's axes, down as the vehicle's, m.
-    pub position: Vec3,
-    /// Heading of the nose in the sender's axes, rad.
-    pub heading: f32,
-    /// Variance along each axis, m²; `None` where the sender does not say it.
-    pub variance: Option<Vec3>,
-    /// Counts the jumps of the sender's estimate.
-    pub resets: u8,
-}
-
-impl Fix {
-    fn is_sane(&self) -> bool {
-        let far = |x: f32| x.abs() > POSITION_MAX;
-        let p = self.position;
-        p.is_finite() && self.heading.abs() <= HEADING_MAX && !(far(p.x) || far(p.y) || far(p.z))
-    }
-
-    pub(crate) fn variance(&self) -> Vec3 {
-        let (least, most) = DEVIATION_BOUNDS;
-        let given = self.variance.filter(|v| v.is_finite());
-        given.map_or(Vec3::new(1.0, 1.0, 1.0) * (FIX_DEVIATION * FIX_DEVIATION), |v| {
-            v.map(|v| scalar::clamp(v, least * least, most * most))
-        })
-    }
-}
-
-/// Where the vehicle is, as far as the newest fix and the inertial sensor say.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Estimate {
-    /// In the sender's axes, m.
-    pub position: Vec3,
-    /// m/s.
-    pub velocity: Vec3,
-    /// Acceleration that rotors and gravity do not explain, m/s²: wind. Touching something it is no wind.
-    pub disturbance: Vec3,
-    /// Heading in the sender's axes less that of the vehicle's attitude, rad.
-    pub turn: f32,
-    /// Age of the newest fix that was taken, s, below [`LOST_AGE`].
-    pub age: f32,
-    /// The height is by the pressure of the air, since neither range nor pose give it.
-    pub by_pressure: bool,
-    /// Counts where the position has jumped with the sender's origin.
-    pub jumps: u8,
-    /// Where the beam of the range falls.
-    pub foot: Foot,
-}
-
-/// Where the beam of a range has met what is below.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Foot {
-    /// In the estimate's axes, m; `None` where nothing was within reach.
-    pub point: Option<Vec3>,
-    /// Counts the ranges.
-    pub count: u8,
-    /// Since it was measured, s.
-    pub age: f32,
-}
-
-impl Default for Foot {
-    /// None yet.
-    fn default() -> Self {
-        Self {
-            point: None,
-            count: 0,
-            age: f32::MAX,
-        }
-    }
-}
-
-impl Estimate {
-    /// True if every number is finite.
-    pub fn is_finite(&self) -> bool {
-        let foot = self.foot.point.unwrap_or_default();
-        let sum = self.position + self.velocity + self.disturbance + foot;
-        sum.is_finite() && (self.turn + self.age).is_finite() && !self.foot.age.is_nan()
-    }
-}
 
 /// What is measured and left out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -652,15 +547,4 @@ impl Track {
         };
         (self.ready && estimate.is_finite()).then_some(estimate)
     }
-}
-
-/// From `from` to `to`, µs, in s; 0 where it is not after.
-pub(crate) fn seconds(from: u64, to: u64) -> f32 {
-    to.saturating_sub(from) as f32 * 1e-6
-}
-
-/// `v` turned about down by `angle`, rad, clockwise from above.
-pub fn about_down(v: Vec3, angle: f32) -> Vec3 {
-    let (sin, cos) = (scalar::sin(angle), scalar::cos(angle));
-    Vec3::new(v.x * cos - v.y * sin, v.x * sin + v.y * cos, v.z)
 }

@@ -7,7 +7,8 @@
 #[cfg(test)]
 mod tests;
 
-use super::position_estimator::{STEP_MAX, seconds};
+use super::inertial::STEP_MAX;
+use crate::maths::elapsed::seconds;
 use crate::maths::scalar;
 
 /// Noise of the acceleration, m/s²/√Hz, and walk of its bias, m/s²/√s (assumed: ten times that of a quiet sensor). What is

@@ -4,11 +4,10 @@
 #[cfg(test)]
 mod tests;
 
-use crate::contact::contact_force::Held;
+use crate::maths::hold_timer::HoldTimer;
 use crate::maths::scalar::{clamp, clamp_abs};
-use crate::mode::{Inputs, Mode};
+use crate::navigation::estimate::Estimate;
 use crate::navigation::fix_age::{FRESH_AGE, HEIGHT_AGE};
-use crate::navigation::position_estimator::Estimate;
 
 /// Time in which the felt speed follows the estimate's, s, and in which the felt acceleration's error is learnt from that.
 const FOLLOW: f32 = 4.0;
@@ -40,9 +39,9 @@ pub struct Rise {
     /// Downwards, m/s, and the error of the felt acceleration, m/s².
     speed: f32,
     bias: f32,
-    differs: Held,
+    differs: HoldTimer,
     /// Age of the estimate.
-    age: Held,
+    age: HoldTimer,
     /// For how long the felt speed has counted, s; `None` where the estimate's does.
     since: Option<f32>,
     /// A range began it in this step.
@@ -55,12 +54,8 @@ pub struct Rise {
 }
 
 impl Rise {
-    /// One step of `dt` s in `mode` at `down` m/s² along world down.
-    pub fn step(&mut self, mode: Mode, down: f32, inputs: &Inputs, dt: f32) {
-        let flies = matches!(
-            mode,
-            Mode::Flight | Mode::Hold | Mode::Approach | Mode::Escaping | Mode::Failsafe
-        );
+    /// One step of `dt` s at `down` m/s² along world down; it runs while the vehicle `flies` free.
+    pub fn step(&mut self, flies: bool, down: f32, estimate: Option<&Estimate>, dt: f32) {
         let (bias, jumps) = (self.bias, self.jumps);
         let begun = Self {
             bias,
@@ -72,7 +67,7 @@ impl Rise {
             return;
         }
         self.speed = clamp_abs(self.speed + (down - self.bias) * dt, SPEED_MAX);
-        let Some(e) = inputs.position else {
+        let Some(e) = estimate else {
             *self = Self {
                 speed: self.speed,
                 ..begun
@@ -81,7 +76,7 @@ impl Rise {
         };
         let off = e.velocity.z - self.speed;
         let learnt = self.age.step(true, dt) > LEARNING;
-        let (ranged, blind) = (e.foot.age < f32::MAX, blind(&e));
+        let (ranged, blind) = (e.foot.age < f32::MAX, blind(e));
         let steady = core::mem::take(&mut self.steady);
         let limit = match (blind, learnt) {
             (true, _) => BENT,
@@ -107,26 +102,23 @@ impl Rise {
         self.lacks -= self.lacks * clamp(dt / RETURN_TIME, 0.0, 1.0);
     }
 
-    /// `inputs` with the height and the vertical speed by what is felt, where that counts.
-    pub fn apply(&self, inputs: &Inputs) -> Inputs {
-        let mut inputs = *inputs;
-        if let Some(e) = &mut inputs.position {
-            e.position.z += self.lacks;
-            e.jumps = e.jumps.wrapping_add(self.jumps);
-            if let Some(point) = &mut e.foot.point {
-                point.z += self.lacks;
-            }
-            if let Some(since) = self.since {
-                e.velocity.z = self.speed;
-                // What is felt alone is no height for longer.
-                e.age = if since > HEIGHT_AGE {
-                    e.age.max(since)
-                } else {
-                    e.age
-                };
-            }
+    /// The estimate with the inertial height and vertical speed, while these are in use.
+    pub fn apply(&self, mut e: Estimate) -> Estimate {
+        e.position.z += self.lacks;
+        e.jumps = e.jumps.wrapping_add(self.jumps);
+        if let Some(point) = &mut e.foot.point {
+            point.z += self.lacks;
         }
-        inputs
+        if let Some(since) = self.since {
+            e.velocity.z = self.speed;
+            // The inertial sensor alone gives no height for longer.
+            e.age = if since > HEIGHT_AGE {
+                e.age.max(since)
+            } else {
+                e.age
+            };
+        }
+        e
     }
 
     /// The range is found, in this step, not to go as the vehicle does.

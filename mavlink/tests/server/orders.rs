@@ -1,8 +1,9 @@
 //! Orders to the commander, with the mode logic itself behind the server.
 
+use sophie_control::attitude::motion::Motion;
 use sophie_control::chain::setpoint::Setpoint;
 use sophie_control::gripper::grip::GripState;
-use sophie_control::mode::{Inputs, Mode, ModeLogic, Motion, Outputs};
+use sophie_control::mode::{Inputs, Mode, ModeLogic, Outputs};
 use sophie_control::params::Params;
 use sophie_control::pilot::bench_orders::{BenchRequest, BenchView, PULSE_MAX_US, SPIN_TIME};
 use sophie_control::pilot::rc::Sticks;

@@ -2,8 +2,8 @@
 
 use sophie_control::allocation::desaturation::Patterns;
 use sophie_control::allocation::effectiveness::{Effectiveness, Geometry, Inverse, Load};
+use sophie_control::allocation::least_thrust::least_thrust;
 use sophie_control::allocation::mixer::{Split, moment_patterns, stiff};
-use sophie_control::allocation::motor_pulses::least_thrust;
 use sophie_control::allocation::wrench::{Configuration, PerArm, Wrench};
 use sophie_control::maths::filter::LowPass;
 use sophie_control::params::Params;

@@ -3,6 +3,7 @@
 use sophie_control::allocation::arm_tilt::TiltModel;
 use sophie_control::allocation::mixer::{Allocation, Conditions, Limits, Mix, Split};
 use sophie_control::allocation::wrench::{PerArm, Wrench};
+use sophie_control::chain::MixingStep;
 use sophie_control::params::Params;
 
 /// Inputs of a law.
@@ -75,3 +76,5 @@ impl<L: Law> Allocation for WithLimits<L> {
         &mut self.tilt
     }
 }
+
+impl<L: Law> MixingStep for WithLimits<L> {}

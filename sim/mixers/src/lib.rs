@@ -16,6 +16,7 @@ pub use rigid::Rigid;
 use sophie_control::allocation::arm_tilt::TiltModel;
 use sophie_control::allocation::mixer::{Allocation, Conditions, Flexible, Mix};
 use sophie_control::allocation::wrench::{Configuration, PerArm, Wrench};
+use sophie_control::chain::MixingStep;
 use sophie_control::params::Params;
 
 /// The allocation in use.
@@ -96,6 +97,8 @@ impl Allocation for Mixer {
         self.chosen_mut().tilt_mut()
     }
 }
+
+impl MixingStep for Mixer {}
 
 #[cfg(test)]
 mod tests;

@@ -2,8 +2,8 @@
 
 use sophie_control::allocation::arm_deflection::{Algorithm1, ArmModel};
 use sophie_control::allocation::effectiveness::Geometry;
+use sophie_control::allocation::least_thrust::least_thrust;
 use sophie_control::allocation::mixer::{Split, stiff};
-use sophie_control::allocation::motor_pulses::least_thrust;
 use sophie_control::allocation::wrench::{Configuration, PerArm, Wrench};
 use sophie_control::params::Params;
 

@@ -1,7 +1,7 @@
 //! Check rows of yaw, which bending arms change.
 
+use sophie_control::allocation::least_thrust::least_thrust;
 use sophie_control::allocation::mixer::{Allocation, Conditions, YAW_FLOOR};
-use sophie_control::allocation::motor_pulses::least_thrust;
 use sophie_control::allocation::wrench::{PerArm, Wrench, YAW};
 use sophie_mixers::Mixer;
 

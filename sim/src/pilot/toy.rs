@@ -1,11 +1,12 @@
 //! A vehicle just good enough to try the pilot on: a point mass with lags, the real mode logic, a made-up grip.
 
 use glam::{DVec2, DVec3};
+use sophie_control::attitude::motion::Motion;
 use sophie_control::chain::setpoint::{ClampCommand, Setpoint};
 use sophie_control::gripper::grip::{ArmGrip, ArmState, GripState};
 use sophie_control::maths::scalar::GRAVITY;
 use sophie_control::maths::vector::{Quat, Vec3};
-use sophie_control::mode::{Inputs, ModeLogic, Motion, Outputs};
+use sophie_control::mode::{Inputs, ModeLogic, Outputs};
 use sophie_control::pilot::rc::Sticks;
 use uf_crsf::packets::{FlightMode, PacketAddress};
 use uf_crsf::{CrsfParser, Packet, write_packet_to_buffer};

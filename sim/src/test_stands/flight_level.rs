@@ -9,8 +9,8 @@ use crate::scenario::Scenario;
 use crate::sensors::imu::Misfit;
 use crate::target_angles;
 use embassy_time::Instant;
-use sophie_control::allocation::mixer::Allocation;
 use sophie_control::allocation::wrench::Configuration;
+use sophie_control::chain::MixingStep;
 use sophie_control::params::{MotorMap, Params};
 use sophie_tasks::links::{Links, Setpoint};
 
@@ -106,7 +106,7 @@ impl Rig {
     }
 
     /// The same under `allocation`, with the accelerometer's bench-measured bias in the parameters.
-    pub fn calibrated<A: Allocation + 'static>(
+    pub fn calibrated<A: MixingStep + 'static>(
         scenario: &Scenario,
         allocation: impl FnOnce(&Params) -> A + 'static,
     ) -> Self {
@@ -122,7 +122,7 @@ impl Rig {
         Self::assembled(plant, board, params, allocation)
     }
 
-    fn assembled<A: Allocation + 'static>(
+    fn assembled<A: MixingStep + 'static>(
         plant: Plant,
         board: Board,
         params: Params,

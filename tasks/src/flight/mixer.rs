@@ -1,8 +1,7 @@
 //! Allocation at the arms' present tilt, one step for each demand (1 kHz). The [`DEADLINE`] counts from data-ready.
 
 use embassy_time::{Duration, Instant};
-use sophie_control::allocation::mixer::Allocation;
-use sophie_control::chain::{ArmReading, MixOutput, Mixing, Surroundings};
+use sophie_control::chain::{ArmReading, MixOutput, Mixing, MixingStep, Surroundings};
 use sophie_control::params::Params;
 
 use crate::deadline::{TaskId, note_run};
@@ -12,7 +11,7 @@ use crate::links::Links;
 pub const DEADLINE: Duration = TaskId::Mixer.deadline();
 
 /// Allocates at 1 kHz; returns only if the link has no receiver left.
-pub async fn run<A: Allocation>(links: &Links, allocation: impl FnOnce(&Params) -> A) {
+pub async fn run<A: MixingStep>(links: &Links, allocation: impl FnOnce(&Params) -> A) {
     let Some(mut demand) = links.demand.receiver() else {
         return;
     };

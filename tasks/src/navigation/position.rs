@@ -6,7 +6,9 @@
 
 use sophie_control::chain;
 use sophie_control::maths::vector::{Quat, Vec3};
-use sophie_control::navigation::position_estimator::{Fix, Inertial, PositionEstimator};
+use sophie_control::navigation::fix::Fix;
+use sophie_control::navigation::inertial::Inertial;
+use sophie_control::navigation::position_estimator::PositionEstimator;
 
 use crate::deadline::{FixedRate, TaskId};
 use crate::links::Links;

@@ -3,8 +3,9 @@
 //! A miss delays a state machine whose shortest timer is 50 ms; rotors stop when its setpoint is stale.
 
 use embassy_time::{Duration, Instant};
+use sophie_control::attitude::motion::Motion;
 use sophie_control::gripper::tendon::ForceLimit;
-use sophie_control::mode::{Inputs, Mode, ModeLogic, Motion, Outputs};
+use sophie_control::mode::{Inputs, Mode, ModeLogic, Outputs};
 use sophie_control::navigation::flow_range::SightLimit;
 
 use crate::deadline::{FixedRate, Level, TaskId};

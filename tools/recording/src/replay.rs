@@ -5,10 +5,10 @@ use std::path::Path;
 use sophie_control::attitude::estimator::Estimator;
 use sophie_control::chain::{Attitude, ImuSample, Sensing};
 use sophie_control::maths::scalar::GRAVITY;
+use sophie_control::navigation::estimate::Estimate;
 use sophie_control::navigation::flow_range_sample::GroundView;
-use sophie_control::navigation::position_estimator::{
-    Estimate, FLIES, Fault, Inertial, PositionEstimator, STEP_MAX,
-};
+use sophie_control::navigation::inertial::{Inertial, STEP_MAX};
+use sophie_control::navigation::position_estimator::{FLIES, Fault, PositionEstimator};
 use sophie_control::params::Params;
 
 use crate::event::Event;

@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
+use sophie_control::maths::frames::about_down;
 use sophie_control::maths::scalar;
 use sophie_control::maths::vector::{Quat, Vec3};
-use sophie_control::navigation::position_estimator::{Estimate, about_down};
+use sophie_control::navigation::estimate::Estimate;
 
 use crate::lines::{Lines, number, time};
 use crate::table::head;

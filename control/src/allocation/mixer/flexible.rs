@@ -11,8 +11,6 @@ use crate::allocation::desaturation::Patterns;
 use crate::allocation::effectiveness::{Effectiveness, Geometry, Inverse, Load};
 use crate::allocation::mixer::{Allocation, Conditions, Limits, Mix, Split, moment_patterns, stiff};
 use crate::allocation::wrench::{Configuration, PerArm, Wrench};
-use crate::chain::messages::{Demand, MixOutput};
-use crate::chain::mixing::{Mixing, Surroundings};
 use crate::maths::scalar;
 use crate::params::Params;
 
@@ -133,16 +131,5 @@ impl Allocation for Flexible {
     #[inline(always)]
     fn tilt_mut(&mut self) -> &mut TiltModel {
         &mut self.tilt
-    }
-
-    #[inline(never)]
-    fn step_mixing(
-        mixing: &mut Mixing<Self>,
-        at_us: u64,
-        demand: &Demand,
-        surroundings: &Surroundings,
-        out: &mut MixOutput,
-    ) {
-        mixing.compose(at_us, demand, surroundings, out);
     }
 }

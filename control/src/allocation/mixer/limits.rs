@@ -1,8 +1,8 @@
 //! Limits of every allocation: rotor range, least thrust for yaw, share of yaw.
 
 use crate::allocation::desaturation::{Given, desaturate};
+use crate::allocation::least_thrust::least_thrust;
 use crate::allocation::mixer::{Mix, Split};
-use crate::allocation::motor_pulses::least_thrust;
 use crate::allocation::wrench::PerArm;
 use crate::maths::scalar;
 use crate::params::Params;

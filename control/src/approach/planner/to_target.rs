@@ -3,9 +3,10 @@
 use super::{Approach, Doubt, Phase, View};
 use crate::approach::limits::*;
 use crate::approach::pipe_target::PipeTarget;
+use crate::maths::frames::about_down;
 use crate::maths::scalar;
 use crate::maths::vector::Vec3;
-use crate::navigation::position_estimator::{Estimate, about_down};
+use crate::navigation::estimate::Estimate;
 
 impl Approach {
     /// `target` is near the vehicle, and below it.

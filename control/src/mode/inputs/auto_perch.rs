@@ -1,7 +1,8 @@
 //! Perching by itself, beyond the state that flies it: tries, and the pilot's hands on the sticks.
 
 use crate::maths::vector::Vec3;
-use crate::mode::{Inputs, Mode};
+use crate::mode::inputs::Inputs;
+use crate::mode::modes::Mode;
 use crate::pilot::rc::Sticks;
 use crate::pilot::stick_positions::{THROTTLE_CENTRE, centred};
 

@@ -3,7 +3,8 @@
 use crate::allocation::motor_pulses::MotorPulses;
 use crate::arming::ArmingInhibit;
 use crate::gripper::retained_grip::GripMemory;
-use crate::mode::{Inputs, Mode};
+use crate::mode::inputs::Inputs;
+use crate::mode::modes::Mode;
 use crate::params::Params;
 use crate::pilot::bench_orders::{BenchAnswer, BenchOrder, BenchRefusal, BenchRequest, BenchState};
 

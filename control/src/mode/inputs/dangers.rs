@@ -10,9 +10,10 @@
 //! | data-ready line silent | stop | sink, the pilot still steers | reported; release refused |
 
 use crate::arming::ArmingInhibit;
-use crate::contact::contact_force::Held;
+use crate::maths::hold_timer::HoldTimer;
 use crate::maths::scalar::deg;
-use crate::mode::{Inputs, Reason};
+use crate::mode::inputs::Inputs;
+use crate::mode::reason::Reason;
 use crate::params::Params;
 
 /// Sensor silence that stops the rotors for good, s; control has already.
@@ -32,11 +33,11 @@ pub const BATTERY_TIME: f32 = 1.0;
 
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Dangers {
-    imu: Held,
-    tipped: Held,
-    saturated: Held,
+    imu: HoldTimer,
+    tipped: HoldTimer,
+    saturated: HoldTimer,
     turned_unseen: bool,
-    battery: Held,
+    battery: HoldTimer,
     /// No fresh voltage: the guard is blind, and what it guards counts as lost.
     battery_blind: bool,
     /// Set by the port after its own delay.

@@ -3,13 +3,11 @@
 //! The perch switch by order holds until the pilot moves his own, until a mode begins in which there is no grip, and
 //! before it has had an effect for [`GRAB_WAIT`]. Where it ends without him, where his switch stands is no wish.
 
+use super::Inputs;
 use crate::arming::Gesture;
-use crate::mode::context::Step;
-use crate::mode::states::approach;
-use crate::mode::states::perched::Perched;
-use crate::mode::{Inputs, Mode, Reason, State};
+use crate::gripper::retained_grip::GripMemory;
+use crate::mode::modes::Mode;
 use crate::pilot::remote::{RemoteAnswer, RemoteOrder, RemoteRefusal, RemoteRequest};
-use crate::pilot::stick_positions::{centred, keeps_hold};
 
 /// Time for which a grab that was ordered in the air waits for the touch, s: what was ordered for one approach must not
 /// close the arms at a landing much later.
@@ -40,7 +38,7 @@ impl Remote {
     }
 
     /// One step of `dt` s before any order: the pilot's switch wins when it moves. True where the order ends without it.
-    pub fn follow(&mut self, inputs: &Inputs, state: &State, dt: f32) -> bool {
+    pub fn follow(&mut self, inputs: &Inputs, mode: Mode, grip_memory: GripMemory, dt: f32) -> bool {
         self.kill = false;
         if let Some(sticks) = inputs.sticks {
             let moved = self.pilots.is_some_and(|before| before != sticks.perch_switch);
@@ -49,9 +47,9 @@ impl Remote {
                 self.perch = None;
             }
         }
-        let waits = state.mode() == Mode::Flight && self.perch == Some(true);
+        let waits = mode == Mode::Flight && self.perch == Some(true);
         self.waited = if waits { self.waited + dt } else { 0.0 };
-        let open = state.mode() == Mode::Disarmed && at_rest_closed(state).is_err();
+        let open = mode == Mode::Disarmed && grip_memory.arms().is_none();
         (self.waited >= GRAB_WAIT || open) && self.perch.take().is_some()
     }
 
@@ -101,91 +99,11 @@ impl Remote {
     }
 }
 
-/// What speaks against `order` before the step; `step` has the pilot's own switches.
-pub fn refusal(order: RemoteOrder, state: &State, step: &Step<'_>) -> Option<RemoteRefusal> {
-    let mode = state.mode();
-    match order {
-        RemoteOrder::Arm => {
-            let off = step.inputs.sticks.is_some_and(|s| !s.arm_switch);
-            (off && matches!(mode, Mode::Disarmed | Mode::Calibrating)).then_some(RemoteRefusal::ArmSwitchOff)
-        }
-        RemoteOrder::Disarm | RemoteOrder::Kill => None,
-        _ if step.inputs.sticks.is_none() => Some(RemoteRefusal::RadioLost),
-        RemoteOrder::Grab => match mode {
-            Mode::Contact | Mode::Clamping | Mode::Perched => None,
-            Mode::Approach if !step.context.by_itself.leaving => None,
-            Mode::Flight | Mode::Releasing | Mode::Hold if !step.context.perch_switch.seen_off => {
-                Some(RemoteRefusal::SwitchNotOff)
-            }
-            Mode::Flight | Mode::Releasing => None,
-            Mode::Hold => not_approached(step),
-            _ => at_rest_closed(state).err(),
-        },
-        RemoteOrder::Release => match mode {
-            Mode::Flight | Mode::Contact | Mode::Clamping | Mode::Releasing | Mode::Approach => None,
-            Mode::Perched => not_released(step),
-            _ => match at_rest_closed(state) {
-                Ok(()) if step.context.perch_switch.seen_on => None,
-                Ok(()) => Some(RemoteRefusal::SwitchNotOn),
-                Err(why) => Some(why),
-            },
-        },
-    }
-}
-
-/// Disarmed with arms that the perch switch opens.
-fn at_rest_closed(state: &State) -> Result<(), RemoteRefusal> {
-    match state {
-        State::Disarmed(d) if d.grip_memory.arms().is_some() => Ok(()),
-        _ => Err(RemoteRefusal::NotHere),
-    }
-}
-
-/// Why the perch switch turned on would not begin the perching by itself.
-fn not_approached(step: &Step<'_>) -> Option<RemoteRefusal> {
-    approach::obstacle(step).map(|why| match why {
-        Reason::SticksNotCentred => RemoteRefusal::SticksNotCentred,
-        _ => RemoteRefusal::NoWay,
-    })
-}
-
-/// Why the perch switch turned off would not let go now: an order leaves no wish behind that acts later.
-fn not_released(step: &Step<'_>) -> Option<RemoteRefusal> {
-    let sticks = step.inputs.sticks?;
-    let context = &step.context;
-    let by_itself = context.by_itself.active && keeps_hold(&sticks) && centred(&sticks);
-    if !context.perch_switch.seen_on {
-        Some(RemoteRefusal::SwitchNotOn)
-    } else if !sticks.arm_switch {
-        Some(RemoteRefusal::ArmSwitchOff)
-    } else if context.dangers.landing().is_some() || step.inputs.motion.is_none() {
-        Some(RemoteRefusal::MustStay)
-    } else if context.lean.too_far_to_release() {
-        Some(RemoteRefusal::LeansTooFar)
-    } else if !(by_itself || Perched::throttle_set(&sticks, &context.params)) {
-        Some(RemoteRefusal::Throttle)
-    } else {
-        None
-    }
-}
-
 /// The gesture that `order` stands for.
 pub fn gesture(order: RemoteOrder) -> Option<Gesture> {
     match order {
         RemoteOrder::Arm => Some(Gesture::Arm),
         RemoteOrder::Disarm | RemoteOrder::Kill => Some(Gesture::Disarm),
         RemoteOrder::Grab | RemoteOrder::Release => None,
-    }
-}
-
-/// What `order` has come to in `mode`, after the step.
-pub fn outcome(order: RemoteOrder, mode: Mode) -> Option<RemoteRefusal> {
-    match (order, mode) {
-        (RemoteOrder::Arm, Mode::Disarmed | Mode::Calibrating) => Some(RemoteRefusal::Checks),
-        (RemoteOrder::Disarm, Mode::Perched) => Some(RemoteRefusal::ArmSwitchOn),
-        // Something came up in this very step.
-        (RemoteOrder::Release, Mode::Perched) => Some(RemoteRefusal::MustStay),
-        (RemoteOrder::Disarm, mode) if !mode.rotors_stand() => Some(RemoteRefusal::Flying),
-        _ => None,
     }
 }

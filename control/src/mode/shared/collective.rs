@@ -1,9 +1,9 @@
 //! From sticks to a demand, without a step in the collective and never out of range.
 
 use crate::allocation::wrench::Wrench;
+use crate::chain::setpoint::Setpoint;
 use crate::maths::scalar::{clamp, clamp_abs};
 use crate::maths::vector::Vec3;
-use crate::mode::Setpoint;
 use crate::params::Params;
 use crate::pilot::rc::{StickMode, Sticks};
 

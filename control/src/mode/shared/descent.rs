@@ -1,8 +1,8 @@
 //! The failsafe's descent: level, sinking slowly, [probing](super::ground_probe) for support.
 
 use super::collective;
+use crate::chain::setpoint::Setpoint;
 use crate::maths::scalar::clamp;
-use crate::mode::Setpoint;
 use crate::mode::context::Context;
 use crate::pilot::rc::{StickMode, Sticks};
 

@@ -1,14 +1,16 @@
 //! The spot on which the failsafe comes down where the position is known: straight below, or beside the pipe that is there.
 
+use super::coasting_hold::CoastingHold;
 use super::collective::HAND_OVER_TIME;
 use super::descent::descent;
+use super::stick_velocity::wished;
+use crate::chain::setpoint::Setpoint;
 use crate::contact::contact_force::HINT_FORCE;
+use crate::maths::frames::about_down;
 use crate::maths::scalar;
 use crate::maths::vector::Vec3;
 use crate::mode::context::{Context, Step};
-use crate::mode::states::hold::{self, Place, felt};
-use crate::mode::{Setpoint, State};
-use crate::navigation::position_estimator::{Estimate, about_down};
+use crate::navigation::estimate::Estimate;
 use crate::pilot::rc::Sticks;
 use crate::position_hold::{PositionHold, Wish};
 
@@ -30,24 +32,55 @@ struct Aside {
     limit: f32,
 }
 
+impl Aside {
+    fn towards(direction: Vec3) -> Self {
+        Self {
+            direction,
+            left: ASIDE_TIME,
+            limit: ASIDE_MAX,
+        }
+    }
+}
+
+/// The level direction to the side of the nose to which the vehicle moves, length 1, in the estimate's axes.
+fn sideways(step: &Step<'_>) -> Option<Vec3> {
+    let (estimate, motion) = (step.inputs.position?, step.inputs.motion?);
+    let nose = motion.q.to_euler().2 + estimate.turn;
+    let right = about_down(Vec3::new(0.0, 1.0, 0.0), nose);
+    let onwards = if right.dot(estimate.velocity) < 0.0 {
+        -1.0
+    } else {
+        1.0
+    };
+    Some(right * onwards)
+}
+
 /// Holds the vehicle over the spot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spot {
-    place: Place,
+    hold: CoastingHold,
     aside: Option<Aside>,
     wanted: Setpoint,
 }
 
 impl Spot {
-    /// Below the vehicle, or beside the pipe if `from` was about to perch or to leave it; `None` without a fresh position,
-    /// but what `from` holds is held on.
-    pub fn under(from: &State, step: &mut Step<'_>) -> Option<Self> {
-        let place = match from {
-            State::Hold(hold) => hold.place,
-            State::Approach(approach) => Place::new(approach.law),
-            _ => return Self::from_here(Self::aside(from, step), step),
-        };
-        Some(Self::begin(place, Self::aside(from, step), step))
+    /// Where `hold` holds the vehicle.
+    pub fn held(hold: CoastingHold, step: &mut Step<'_>) -> Self {
+        Self::begin(hold, None, step)
+    }
+
+    /// Where `law` holds the vehicle, or beside the pipe in the direction `off_pipe`: level, length 1, in the estimate's axes.
+    pub fn off_approach(law: PositionHold, off_pipe: Option<Vec3>, step: &mut Step<'_>) -> Self {
+        let aside = off_pipe
+            .filter(|_| step.inputs.motion.is_some())
+            .map(Aside::towards);
+        Self::begin(CoastingHold::new(law), aside, step)
+    }
+
+    /// Beside the pipe, which lies along the nose, on the side to which the vehicle moves; `None` without a fresh position.
+    pub fn beside_pipe(step: &mut Step<'_>) -> Option<Self> {
+        let aside = sideways(step).map(Aside::towards);
+        Self::from_here(aside, step)
     }
 
     /// Below the vehicle; `None` without a fresh position.
@@ -56,41 +89,19 @@ impl Spot {
     }
 
     fn from_here(aside: Option<Aside>, step: &mut Step<'_>) -> Option<Self> {
-        let estimate = step.inputs.position.filter(|_| hold::fresh(step.inputs))?;
-        let law = PositionHold::begin(&step.context.params, &estimate, &felt(step));
-        Some(Self::begin(Place::new(law), aside, step))
+        let estimate = step.inputs.position.filter(|_| step.inputs.position_fresh())?;
+        let law = PositionHold::begin(&step.context.params, &estimate, &step.felt());
+        Some(Self::begin(CoastingHold::new(law), aside, step))
     }
 
-    fn begin(place: Place, aside: Option<Aside>, step: &mut Step<'_>) -> Self {
+    fn begin(hold: CoastingHold, aside: Option<Aside>, step: &mut Step<'_>) -> Self {
         let mut spot = Self {
-            place,
+            hold,
             aside,
             wanted: Setpoint::Stop,
         };
         spot.step(None, step);
         spot
-    }
-
-    /// Away from the pipe, which lies along the nose unless the approach knows better.
-    fn aside(from: &State, step: &Step<'_>) -> Option<Aside> {
-        let (estimate, motion) = (step.inputs.position?, step.inputs.motion?);
-        let nose = motion.q.to_euler().2 + estimate.turn;
-        let right = about_down(Vec3::new(0.0, 1.0, 0.0), nose);
-        let onwards = if right.dot(estimate.velocity) < 0.0 {
-            -1.0
-        } else {
-            1.0
-        };
-        let direction = match from {
-            State::Approach(approach) => approach.off_pipe(estimate.position)?,
-            State::Releasing(_) | State::Escaping(_) => right * onwards,
-            _ => return None,
-        };
-        Some(Aside {
-            direction,
-            left: ASIDE_TIME,
-            limit: ASIDE_MAX,
-        })
     }
 
     /// One step, steered at the velocities that the sticks of the `pilot` ask for: where he steers, no way off is flown.
@@ -101,9 +112,9 @@ impl Spot {
         let estimate = step.inputs.position.unwrap_or_default();
         let wish = match self.way_off(&estimate, step) {
             Some(wish) => wish,
-            None => hold::wished(&pilot.unwrap_or_default(), 0.0, step.context),
+            None => wished(&pilot.unwrap_or_default(), 0.0, step.context),
         };
-        self.wanted = self.place.step(&estimate, &wish, step);
+        self.wanted = self.hold.step(&estimate, &wish, step);
     }
 
     /// What the way off the pipe asks for, until it has ended.

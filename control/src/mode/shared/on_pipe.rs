@@ -1,10 +1,12 @@
 //! Holding on the pipe: attitude, share of the collective, grip.
 
 use crate::allocation::wrench::Wrench;
-use crate::gripper::grip::{ArmGrip, ArmState};
+use crate::chain::setpoint::Setpoint;
+use crate::gripper::grip::{ArmGrip, ArmState, GripState};
 use crate::gripper::grip_geometry::Misfit;
 use crate::maths::scalar::clamp_abs;
-use crate::mode::{GripState, Inputs, Reason, Setpoint};
+use crate::mode::inputs::Inputs;
+use crate::mode::reason::Reason;
 use crate::params::Params;
 use crate::pilot::rc::ArmChoice;
 

@@ -9,7 +9,7 @@
 
 use crate::allocation::wrench::PerArm;
 use crate::gripper::retained_grip::GripMemory;
-use crate::mode::Inputs;
+use crate::mode::inputs::Inputs;
 use crate::params::Params;
 use crate::pilot::rc::ArmChoice;
 

@@ -1,16 +1,17 @@
 //! Free flight onto the pipe, or off it, by itself.
 
-use super::hold::{felt, fresh};
 use crate::approach::limits::RANGE_AGE;
 use crate::approach::planner::{Approach as Law, Doubt, View};
 use crate::arming::ArmingInhibits;
+use crate::chain::setpoint::Setpoint;
 use crate::contact::contact_force::HINT_FORCE;
 use crate::maths::vector::Vec3;
 use crate::mode::behaviour::Behaviour;
 use crate::mode::context::{Context, Step};
+use crate::mode::inputs::Inputs;
 use crate::mode::inputs::auto_perch::TRIES;
-use crate::mode::{Inputs, Reason, Setpoint};
-use crate::navigation::position_estimator::Estimate;
+use crate::mode::reason::Reason;
+use crate::navigation::estimate::Estimate;
 use crate::pilot::stick_positions::{centred, keeps_hold};
 use crate::position_hold::{PositionHold, Wish};
 
@@ -43,7 +44,7 @@ pub fn obstacle(step: &Step<'_>) -> Option<Reason> {
         Some(Reason::Check(why))
     } else if !centred(&sticks) {
         Some(Reason::SticksNotCentred)
-    } else if !fresh(step.inputs) {
+    } else if !step.inputs.position_fresh() {
         Some(Reason::NoPosition)
     } else if let (Some(target), Some(e)) = (step.inputs.target, step.inputs.position) {
         (!Law::reaches(&target, &e)).then_some(Reason::TargetFar)
@@ -80,7 +81,7 @@ impl Approach {
         way: impl Fn(&Step<'_>, &View, &Estimate) -> Law,
     ) -> Self {
         let estimate = step.inputs.position.unwrap_or_default();
-        let law = law.unwrap_or_else(|| PositionHold::begin(&step.context.params, &estimate, &felt(step)));
+        let law = law.unwrap_or_else(|| PositionHold::begin(&step.context.params, &estimate, &step.felt()));
         let way = way(step, &view(&law, &estimate, step), &estimate);
         let mut approach = Self {
             law,
@@ -143,7 +144,7 @@ impl Approach {
             }
             Wish::default()
         });
-        self.wanted = self.law.step(estimate, &felt(step), &wish, true, step.dt);
+        self.wanted = self.law.step(estimate, &step.felt(), &wish, true, step.dt);
     }
 
     /// Another try, once, unless it is `proven`; then up and away.

@@ -1,8 +1,9 @@
 //! Rotors idle on the ground, throttle low.
 
+use crate::chain::setpoint::Setpoint;
 use crate::mode::behaviour::Behaviour;
 use crate::mode::context::Context;
-use crate::mode::{Inputs, Setpoint};
+use crate::mode::inputs::Inputs;
 
 /// Longest idling of the rotors, s.
 pub const IDLE_MAX: f32 = 30.0;

@@ -2,10 +2,12 @@
 
 use super::disarmed::first;
 use crate::arming::{ArmingInhibit, ArmingInhibits};
+use crate::chain::setpoint::Setpoint;
 use crate::gripper::retained_grip::GripMemory;
 use crate::mode::behaviour::Behaviour;
 use crate::mode::context::{Context, Step};
-use crate::mode::{Inputs, Reason, Setpoint};
+use crate::mode::inputs::Inputs;
+use crate::mode::reason::Reason;
 
 /// See [`crate::mode::Mode::Calibrating`].
 #[derive(Clone, Copy, Debug, PartialEq)]

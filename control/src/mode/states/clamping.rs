@@ -1,12 +1,14 @@
 //! Closes the chosen arms under the pressure loop, then spools the rotors down once the grip is proven.
 
 use crate::arming::ArmingInhibits;
+use crate::chain::setpoint::Setpoint;
 use crate::gripper::retained_grip::GripMemory;
 use crate::maths::scalar::clamp;
 use crate::mode::behaviour::Behaviour;
 use crate::mode::context::{Context, Step};
+use crate::mode::inputs::Inputs;
+use crate::mode::reason::Reason;
 use crate::mode::shared::on_pipe::{Hold, SPOOL_DOWN_TIME, SPOOL_TIME, Spool, held, hopeless};
-use crate::mode::{Inputs, Reason, Setpoint};
 
 /// Time from the ramp's end to standing rotors, s: six motor time constants.
 pub const STOP_TIME: f32 = 0.3;
@@ -160,6 +162,6 @@ impl Behaviour for Clamping {
     }
 
     fn reason(&self, context: &Context, inputs: &Inputs, _: ArmingInhibits) -> Option<Reason> {
-        context.reason(inputs, true).or(context.crown.side())
+        context.reason(inputs, true).or(context.crown_side())
     }
 }

@@ -1,10 +1,13 @@
 //! Resting on the pipe with running rotors; attitude held, yaw given up.
 
 use crate::arming::ArmingInhibits;
+use crate::chain::setpoint::Setpoint;
 use crate::mode::behaviour::Behaviour;
 use crate::mode::context::{Context, Step};
+use crate::mode::inputs::Inputs;
+use crate::mode::modes::Mode;
+use crate::mode::reason::Reason;
 use crate::mode::shared::on_pipe::Hold;
-use crate::mode::{Inputs, Mode, Reason, Setpoint};
 
 /// Time on the pipe before the tendons close, s.
 pub const CONTACT_TIME: f32 = 0.2;
@@ -33,6 +36,6 @@ impl Behaviour for Contact {
     }
 
     fn reason(&self, context: &Context, inputs: &Inputs, _: ArmingInhibits) -> Option<Reason> {
-        context.reason(inputs, true).or(context.crown.side())
+        context.reason(inputs, true).or(context.crown_side())
     }
 }

@@ -1,10 +1,12 @@
 //! Motors stopped, ready to be armed.
 
 use crate::arming::ArmingInhibits;
+use crate::chain::setpoint::{ClampCommand, Setpoint};
 use crate::gripper::retained_grip::GripMemory;
 use crate::mode::behaviour::Behaviour;
 use crate::mode::context::{Context, Step};
-use crate::mode::{ClampCommand, Inputs, Reason, Setpoint};
+use crate::mode::inputs::Inputs;
+use crate::mode::reason::Reason;
 use crate::pilot::bench_orders::BenchOrder;
 
 /// See [`crate::mode::Mode::Disarmed`].

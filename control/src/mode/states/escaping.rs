@@ -4,14 +4,16 @@
 //! vehicle fall, and so would the pilot's, set for resting: the collective is set here until the throttle stick reaches
 //! hover. If it never moves, the failsafe lands the vehicle.
 
-use super::hold::fresh;
 use crate::arming::ArmingInhibits;
+use crate::chain::setpoint::{ClampCommand, Setpoint};
 use crate::contact::contact_force::HINT_FORCE;
 use crate::gripper::retained_grip::GripMemory;
 use crate::maths::scalar::{clamp, clamp_abs, deg};
 use crate::mode::behaviour::Behaviour;
 use crate::mode::context::{Context, Step};
-use crate::mode::{ClampCommand, Inputs, Mode, Reason, Setpoint};
+use crate::mode::inputs::Inputs;
+use crate::mode::modes::Mode;
+use crate::mode::reason::Reason;
 use crate::pilot::release_throttle::release_thrust;
 
 /// Collective without climb, share of the weight: 3.4 m/s² upwards.
@@ -183,7 +185,7 @@ impl Behaviour for Escaping {
 
     fn reason(&self, context: &Context, inputs: &Inputs, _: ArmingInhibits) -> Option<Reason> {
         let waits = self.rise >= self.clear_after() + WAIT_TIME && self.clear(context);
-        let adrift = waits && context.by_itself.acts() && !fresh(inputs);
+        let adrift = waits && context.by_itself.acts() && !inputs.position_fresh();
         let lands = context.dangers.battery_critical() || inputs.sticks.is_none();
         if adrift && !lands {
             Some(Reason::PositionLost)

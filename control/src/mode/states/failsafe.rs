@@ -1,12 +1,13 @@
 //! Radio lost or battery empty: descends, stops on whatever carries.
 
-use super::hold;
 use crate::arming::ArmingInhibits;
+use crate::chain::setpoint::Setpoint;
 use crate::mode::behaviour::Behaviour;
 use crate::mode::context::{Context, Step};
+use crate::mode::inputs::Inputs;
+use crate::mode::reason::Reason;
 use crate::mode::shared::descent::descent;
 use crate::mode::shared::landing_point::Spot;
-use crate::mode::{Inputs, Reason, Setpoint, State};
 use crate::pilot::rc::Sticks;
 use crate::pilot::stick_positions;
 
@@ -20,18 +21,19 @@ pub const RESUME_STICK: f32 = 0.3;
 pub struct Failsafe {
     pub cause: Reason,
     /// Where it comes down; `None` without a position, or where the pilot steers by angles.
-    spot: Option<Spot>,
+    pub spot: Option<Spot>,
 }
 
 impl Failsafe {
-    /// Begins for `cause`.
-    pub fn begin(from: &State, step: &mut Step<'_>, cause: Reason) -> Self {
+    /// Begins for `cause`; `spot` gives where it comes down, if a position is known.
+    pub fn begin(
+        cause: Reason,
+        step: &mut Step<'_>,
+        spot: impl FnOnce(&mut Step<'_>) -> Option<Spot>,
+    ) -> Self {
         let mut failsafe = Self { cause, spot: None };
         if failsafe.holds(step.inputs) {
-            failsafe.spot = match from {
-                State::Failsafe(before) => before.spot,
-                _ => Spot::under(from, step),
-            };
+            failsafe.spot = spot(step);
         }
         failsafe
     }
@@ -44,7 +46,7 @@ impl Failsafe {
     /// There is a position, and no pilot whose sticks ask for angles.
     fn holds(&self, inputs: &Inputs) -> bool {
         inputs.motion.is_some()
-            && !hold::lost(inputs)
+            && !inputs.position_lost()
             && self
                 .pilot(inputs)
                 .as_ref()

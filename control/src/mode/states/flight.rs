@@ -1,11 +1,13 @@
 //! Free flight under the pilot's sticks.
 
-use super::hold;
+use crate::chain::setpoint::Setpoint;
 use crate::mode::behaviour::Behaviour;
 use crate::mode::context::{Context, Step};
+use crate::mode::inputs::Inputs;
+use crate::mode::modes::Mode;
+use crate::mode::reason::Reason;
 use crate::mode::shared::collective;
 use crate::mode::shared::descent::descent;
-use crate::mode::{Inputs, Mode, Reason, Setpoint};
 use crate::pilot::stick_positions;
 
 /// Time for the throttle to follow the perch switch, s.
@@ -51,7 +53,7 @@ impl Behaviour for Flight {
         {
             if !step.context.hold_seen_off {
                 step.context.note(Some(Reason::HoldSwitchNotOff));
-            } else if !hold::fresh(step.inputs) {
+            } else if !step.inputs.position_fresh() {
                 step.context.note(Some(Reason::NoPosition));
             }
         }

@@ -2,67 +2,22 @@
 
 use super::approach;
 use crate::arming::ArmingInhibits;
-use crate::maths::scalar::{GRAVITY, clamp, clamp_abs, tan};
-use crate::maths::vector::Vec3;
+use crate::chain::setpoint::Setpoint;
+use crate::maths::scalar::clamp;
 use crate::mode::behaviour::Behaviour;
 use crate::mode::context::{Context, Step};
-use crate::mode::shared::collective;
-use crate::mode::{Inputs, Reason, Setpoint};
-use crate::navigation::fix_age::{APPROACH_AGE, COAST_AGE, FRESH_AGE, HEIGHT_AGE, PRESSURE_AGE};
-use crate::navigation::position_estimator::Estimate;
-use crate::pilot::rc::Sticks;
+use crate::mode::inputs::Inputs;
+use crate::mode::reason::Reason;
+use crate::mode::shared::coasting_hold::CoastingHold;
+use crate::mode::shared::stick_velocity::wished;
+use crate::navigation::estimate::Estimate;
 use crate::pilot::stick_positions::{THROTTLE_CENTRE, THROTTLE_ZONE};
-use crate::position_hold::{CLIMB_MAX, Felt, PositionHold, SPEED_MAX, Wish};
-
-/// There is a position to begin with.
-pub fn fresh(i: &Inputs) -> bool {
-    i.motion.is_some() && younger(i, FRESH_AGE)
-}
-
-/// The inertial sensor alone is no longer good for an approach.
-pub fn adrift(i: &Inputs) -> bool {
-    !younger(i, APPROACH_AGE)
-}
-
-/// Nothing is known any more.
-pub fn lost(i: &Inputs) -> bool {
-    let by_pressure = i.position.is_some_and(|e| e.by_pressure);
-    !younger(i, if by_pressure { PRESSURE_AGE } else { HEIGHT_AGE })
-}
-
-fn younger(i: &Inputs, age: f32) -> bool {
-    i.position.is_some_and(|e| e.age <= age)
-}
-
-/// The law with a position that may go and come back.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
-    pub law: PositionHold,
-    /// The position is none at present.
-    adrift: bool,
-}
-
-impl Place {
-    pub fn new(law: PositionHold) -> Self {
-        Self { law, adrift: false }
-    }
-
-    /// One step: up to [`COAST_AGE`] of the estimate it holds, then it keeps level, and holds where the vehicle is once there
-    /// is a position again.
-    pub fn step(&mut self, estimate: &Estimate, wish: &Wish, step: &Step<'_>) -> Setpoint {
-        let adrift = estimate.age > COAST_AGE;
-        if self.adrift && !adrift {
-            self.law.anchor_at(estimate);
-        }
-        self.adrift = adrift;
-        self.law.step(estimate, &felt(step), wish, !adrift, step.dt)
-    }
-}
+use crate::position_hold::PositionHold;
 
 /// See [`crate::mode::Mode::Hold`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hold {
-    pub place: Place,
+    pub place: CoastingHold,
     wanted: Setpoint,
     /// The throttle was centred since the hold began: until then, where it stands is no wish.
     centred: bool,
@@ -72,7 +27,7 @@ impl Hold {
     /// Holds where the vehicle is.
     pub fn here(step: &mut Step<'_>) -> Self {
         let estimate = step.inputs.position.unwrap_or_default();
-        let law = PositionHold::begin(&step.context.params, &estimate, &felt(step));
+        let law = PositionHold::begin(&step.context.params, &estimate, &step.felt());
         Self::begin(law, false, step)
     }
 
@@ -80,7 +35,7 @@ impl Hold {
     pub fn after(law: Option<PositionHold>, step: &mut Step<'_>) -> Self {
         let estimate = step.inputs.position.unwrap_or_default();
         let mut law =
-            law.unwrap_or_else(|| PositionHold::begin(&step.context.params, &estimate, &felt(step)));
+            law.unwrap_or_else(|| PositionHold::begin(&step.context.params, &estimate, &step.felt()));
         law.anchor_at(&estimate);
         Self::begin(law, true, step)
     }
@@ -88,7 +43,7 @@ impl Hold {
     fn begin(law: PositionHold, centred: bool, step: &mut Step<'_>) -> Self {
         let estimate = step.inputs.position.unwrap_or_default();
         let mut hold = Self {
-            place: Place::new(law),
+            place: CoastingHold::new(law),
             wanted: Setpoint::Stop,
             centred,
         };
@@ -105,35 +60,11 @@ impl Hold {
     }
 }
 
-/// What the sticks ask for, `climb` being a share of the fastest one, -1..1.
-pub fn wished(s: &Sticks, climb: f32, context: &Context) -> Wish {
-    let lean = |stick: f32| GRAVITY * tan(clamp_abs(stick * context.params.stick_angle, 1.0));
-    let yaw_rate = match collective::from_sticks(s, &context.params) {
-        Setpoint::Angle { yaw_rate, .. } => yaw_rate,
-        _ => 0.0,
-    };
-    Wish {
-        velocity: Vec3::new(-s.pitch * SPEED_MAX, s.roll * SPEED_MAX, -climb * CLIMB_MAX),
-        yaw_rate,
-        lean: [-lean(s.pitch), lean(s.roll)],
-    }
-}
-
 /// Share of the fastest climb that a throttle asks for, -1..1.
 fn climb(throttle: f32) -> f32 {
     let off = throttle - THROTTLE_CENTRE;
     let beyond = clamp(off.abs() - THROTTLE_ZONE, 0.0, 1.0) / (THROTTLE_CENTRE - THROTTLE_ZONE);
     clamp(if off < 0.0 { -beyond } else { beyond }, -1.0, 1.0)
-}
-
-/// What the inertial sensor says, for the law.
-pub fn felt(step: &Step<'_>) -> Felt {
-    let motion = step.inputs.motion.unwrap_or_default();
-    Felt {
-        q: motion.q,
-        rate: motion.rate,
-        carried: step.context.support.resting(),
-    }
 }
 
 impl Behaviour for Hold {

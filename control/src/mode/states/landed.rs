@@ -1,8 +1,9 @@
 //! On the ground again, rotors idle, about to disarm.
 
+use crate::chain::setpoint::Setpoint;
 use crate::mode::behaviour::Behaviour;
 use crate::mode::context::Context;
-use crate::mode::{Inputs, Setpoint};
+use crate::mode::inputs::Inputs;
 
 /// Time from landing to disarming, s.
 pub const LANDED_TIME: f32 = 2.0;

@@ -1,6 +1,7 @@
 //! Grip proven, rotors stopped.
 
 use crate::arming::ArmingInhibits;
+use crate::chain::setpoint::Setpoint;
 use crate::contact::slip::{Slip, bending};
 use crate::gripper::TIGHTENINGS;
 use crate::gripper::grip::{ArmState, GripDemand};
@@ -8,7 +9,8 @@ use crate::gripper::retained_grip::GripMemory;
 use crate::gripper::tendon::ForceLimit;
 use crate::mode::behaviour::Behaviour;
 use crate::mode::context::{Context, Step};
-use crate::mode::{Inputs, Reason, Setpoint};
+use crate::mode::inputs::Inputs;
+use crate::mode::reason::Reason;
 use crate::params::Params;
 use crate::pilot::rc::Sticks;
 use crate::pilot::release_throttle::RELEASE_THROTTLE_MIN;
@@ -66,8 +68,8 @@ impl Perched {
             Some(Reason::ClampSilent)
         } else if !context.grasps(i, self.grip_memory) {
             Some(Reason::GripLost)
-        } else if let Some(slips) = self.slip.reason() {
-            Some(slips)
+        } else if self.slip.helpless() {
+            Some(Reason::Slips)
         } else if i.sticks.is_none() {
             Some(Reason::RADIO_LOST)
         } else if i.motion.is_none() {

@@ -1,11 +1,13 @@
 //! Rotors spool up again, then tendons pay out until every arm is proven free.
 
+use crate::chain::setpoint::{ClampCommand, Setpoint};
 use crate::gripper::retained_grip::GripMemory;
 use crate::maths::scalar::clamp;
 use crate::mode::behaviour::Behaviour;
 use crate::mode::context::{Context, Step};
+use crate::mode::inputs::Inputs;
+use crate::mode::reason::Reason;
 use crate::mode::shared::on_pipe::{Hold, SPOOL_TIME, held};
-use crate::mode::{ClampCommand, Inputs, Reason, Setpoint};
 use crate::pilot::release_throttle::RELEASE_THROTTLE_MIN;
 
 /// Time of free arms before flight, s.

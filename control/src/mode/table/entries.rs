@@ -4,7 +4,10 @@ use crate::gripper::retained_grip::GripMemory;
 use crate::maths::scalar;
 use crate::mode::context::Step;
 use crate::mode::inputs::auto_perch::ByItself;
+use crate::mode::reason::Reason;
+use crate::mode::shared::landing_point::Spot;
 use crate::mode::shared::on_pipe::{Hold, Spool, pressed};
+use crate::mode::state::State;
 use crate::mode::states::approach::Approach;
 use crate::mode::states::armed::Armed;
 use crate::mode::states::clamping::Clamping;
@@ -17,7 +20,6 @@ use crate::mode::states::hold;
 use crate::mode::states::landed::Landed;
 use crate::mode::states::perched::Perched;
 use crate::mode::states::releasing::Releasing;
-use crate::mode::{Reason, State};
 use crate::pilot::rc::ArmChoice;
 use crate::pilot::release_throttle::release_thrust;
 
@@ -251,7 +253,17 @@ pub fn giving_up(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Escapi
 
 /// The failsafe acts for the reason of the transition.
 pub fn failsafe(from: &State, step: &mut Step<'_>, why: Option<Reason>) -> Failsafe {
-    Failsafe::begin(from, step, why.unwrap_or(Reason::RADIO_LOST))
+    Failsafe::begin(why.unwrap_or(Reason::RADIO_LOST), step, |step| match from {
+        State::Failsafe(before) => before.spot,
+        State::Hold(hold) => Some(Spot::held(hold.place, step)),
+        State::Approach(approach) => {
+            let position = step.inputs.position;
+            let off_pipe = position.and_then(|e| approach.off_pipe(e.position));
+            Some(Spot::off_approach(approach.law, off_pipe, step))
+        }
+        State::Releasing(_) | State::Escaping(_) => Spot::beside_pipe(step),
+        _ => Spot::here(step),
+    })
 }
 
 fn present_heading(step: &Step<'_>) -> f32 {

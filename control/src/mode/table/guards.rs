@@ -4,16 +4,16 @@ use crate::arming::Gesture;
 use crate::contact::contact_force::HINT_FORCE;
 use crate::gripper::retained_grip::GripMemory;
 use crate::mode::context::Step;
+use crate::mode::reason::Reason;
+use crate::mode::state::State;
 use crate::mode::states::approach::{self, Approach};
 use crate::mode::states::clamping::Clamping;
 use crate::mode::states::contact::{CONTACT_MARGIN, CONTACT_TIME};
 use crate::mode::states::escaping::{TAKE_OVER_TIME, takes_over};
 use crate::mode::states::failsafe::{RESUME_STICK, RESUME_TIME};
 use crate::mode::states::flight::Flight;
-use crate::mode::states::hold;
 use crate::mode::states::perched::Perched;
 use crate::mode::states::releasing::{FREE_TIME, Releasing};
-use crate::mode::{Reason, State};
 use crate::pilot::rc::Sticks;
 use crate::pilot::stick_positions::{self, centred};
 
@@ -65,10 +65,10 @@ guards! {
     HOLD_OFF = "hold switch off, or sticks in another mode", |_, s| sticks(s, |t| !stick_positions::keeps_hold(t));
     HOLD_KEPT = "hold switch on, sticks in angle mode", |_, s| sticks(s, stick_positions::keeps_hold);
     HOLD_TURNED = "hold switch was off since the last try", |_, s| s.context.hold_seen_off;
-    POSITION_FRESH = "position known", |_, s| hold::fresh(s.inputs);
-    POSITION_LOST = "position lost for too long", |_, s| hold::lost(s.inputs);
+    POSITION_FRESH = "position known", |_, s| s.inputs.position_fresh();
+    POSITION_LOST = "position lost for too long", |_, s| s.inputs.position_lost();
 
-    POSITION_ADRIFT = "position stale", |_, s| hold::adrift(s.inputs);
+    POSITION_ADRIFT = "position stale", |_, s| s.inputs.position_adrift();
 
     ASKED_TO_PERCH = "perch switch turned on", |_, s| approach::asked(s);
     SERVOS_FED = "servo battery, if measured, not low", |_, s| s.inputs.servo_trouble().is_none();

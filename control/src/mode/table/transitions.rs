@@ -3,7 +3,9 @@
 use super::entries;
 use super::guards::*;
 use crate::mode::context::Step;
-use crate::mode::{Entry, Mode, Reason, State};
+use crate::mode::modes::Mode;
+use crate::mode::reason::Reason;
+use crate::mode::state::{Entry, State};
 
 /// What the pilot reads because of a transition.
 #[derive(Clone, Copy, Debug)]

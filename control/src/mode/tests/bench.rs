@@ -3,12 +3,16 @@
 use proptest::prelude::*;
 
 use super::rig::{DT, Rig};
-use crate::arming::ArmingInhibit;
+use crate::arming::{ArmingInhibit, ArmingInhibits};
+use crate::attitude::motion::Motion;
+use crate::chain::setpoint::{ClampCommand, Setpoint};
+use crate::gripper::retained_grip::GripMemory;
 use crate::mode::*;
 use crate::pilot::bench_orders::{
-    BenchAnswer, BenchOrder, BenchRefusal, BenchState, Place, SPIN_DRIVE, SPIN_DRIVE_MAX, SPIN_TIME, Spin,
+    BenchAnswer, BenchOrder, BenchRefusal, BenchRequest, BenchState, Place, SPIN_DRIVE, SPIN_DRIVE_MAX,
+    SPIN_TIME, Spin,
 };
-use crate::pilot::rc::ArmChoice;
+use crate::pilot::rc::{ArmChoice, Sticks};
 
 const SPIN: BenchOrder = BenchOrder::Spin(Spin::at(2, SPIN_DRIVE));
 const PLACE: BenchOrder = BenchOrder::Place(Place {

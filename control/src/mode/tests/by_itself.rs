@@ -1,13 +1,20 @@
 //! Perching by itself: how it begins, how the pilot takes over from every part of it, tries, and the way back.
 
 use super::rig::Rig;
+use crate::approach::pipe_target::PipeTarget;
+use crate::attitude::motion::Motion;
+use crate::chain::setpoint::Setpoint;
 use crate::gripper::grip::ArmState;
+use crate::maths::vector::Vec3;
 use crate::mode::inputs::auto_perch::TRIES;
 use crate::mode::shared::on_pipe::SPOOL_DOWN_TIME;
+use crate::mode::state::State;
 use crate::mode::states::clamping::STOP_TIME;
 use crate::mode::states::contact::CONTACT_TIME;
 use crate::mode::*;
-use crate::navigation::position_estimator::{Estimate, Foot};
+use crate::navigation::estimate::Estimate;
+use crate::navigation::range_hit::Foot;
+use crate::pilot::rc::Sticks;
 use crate::pilot::remote::RemoteOrder::{Grab, Release};
 use crate::pilot::remote::RemoteRefusal;
 

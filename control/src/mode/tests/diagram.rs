@@ -7,7 +7,7 @@ use std::format;
 use std::string::{String, ToString};
 use std::vec::Vec;
 
-use crate::mode::Mode;
+use crate::mode::modes::Mode;
 use crate::mode::table::transitions::{Origin, TRANSITIONS};
 
 /// Half the size of a mode's box, px.

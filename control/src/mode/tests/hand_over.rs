@@ -1,8 +1,11 @@
 //! Hand-over between states: the collective, the held attitude, the failsafe's command.
 
 use super::rig::{DT, Rig};
+use crate::attitude::motion::Motion;
+use crate::chain::setpoint::Setpoint;
 use crate::gripper::grip::ArmState;
 use crate::maths::scalar::GRAVITY;
+use crate::maths::vector::Quat;
 use crate::mode::shared::collective::HAND_OVER_TIME;
 use crate::mode::shared::on_pipe::SPOOL_DOWN_TIME;
 use crate::mode::states::failsafe::RESUME_TIME;

@@ -1,10 +1,12 @@
 //! Holding a position: how it begins, what ends it, and what the sticks ask for meanwhile.
 
 use super::rig::Rig;
+use crate::chain::setpoint::Setpoint;
+use crate::maths::vector::Vec3;
 use crate::mode::*;
+use crate::navigation::estimate::Estimate;
 use crate::navigation::fix_age::{COAST_AGE, FRESH_AGE, HEIGHT_AGE};
-use crate::navigation::position_estimator::Estimate;
-use crate::pilot::rc::StickMode;
+use crate::pilot::rc::{StickMode, Sticks};
 
 /// Flying with a position that is `age` s old.
 fn placed(age: f32) -> Rig {

@@ -1,8 +1,12 @@
 //! Escapes: start, course and end; arms that do not let go.
 
 use super::rig::{DT, Rig};
+use crate::attitude::motion::Motion;
+use crate::chain::setpoint::{ClampCommand, Setpoint};
 use crate::gripper::grip::ArmState;
+use crate::gripper::retained_grip::GripMemory;
 use crate::maths::scalar::{GRAVITY, deg};
+use crate::maths::vector::{Quat, Vec3};
 use crate::mode::states::escaping::{FREE_MAX, TAKE_OVER_SHARE, TAKE_OVER_TIME};
 use crate::mode::*;
 use crate::params::Params;

@@ -2,7 +2,10 @@
 //! rotors carry, and the state becomes that of an undisturbed vehicle.
 
 use super::rig::Rig;
+use crate::attitude::motion::Motion;
+use crate::chain::setpoint::{ClampCommand, Setpoint};
 use crate::gripper::grip::ArmState;
+use crate::maths::vector::{Quat, Vec3};
 use crate::mode::states::clamping::HOPELESS_TIME;
 use crate::mode::states::releasing::FREE_TIME;
 use crate::mode::*;

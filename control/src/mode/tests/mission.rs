@@ -2,14 +2,17 @@
 
 use super::rig::{DT, Rig};
 use crate::allocation::wrench::Wrench;
+use crate::attitude::motion::Motion;
+use crate::chain::setpoint::{ClampCommand, Setpoint};
 use crate::gripper::grip::ArmState;
 use crate::maths::scalar::deg;
+use crate::maths::vector::{Quat, Vec3};
 use crate::mode::shared::on_pipe::{SPOOL_DOWN_TIME, SPOOL_TIME};
 use crate::mode::states::armed::IDLE_MAX;
 use crate::mode::states::landed::LANDED_TIME;
 use crate::mode::states::releasing::FREE_TIME;
 use crate::mode::*;
-use crate::pilot::rc::{ArmChoice, StickMode};
+use crate::pilot::rc::{ArmChoice, StickMode, Sticks};
 
 #[test]
 fn a_whole_mission_passes_every_state_in_order() {

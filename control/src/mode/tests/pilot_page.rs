@@ -15,7 +15,7 @@ use crate::gripper::grip_fault::GripFault;
 use crate::maths::scalar::deg;
 use crate::mode::*;
 use crate::params::Params;
-use crate::pilot::rc::{CHANNELS, RAW_CENTRE, RAW_HIGH, RAW_LOW};
+use crate::pilot::rc::{CHANNELS, RAW_CENTRE, RAW_HIGH, RAW_LOW, Sticks};
 use crate::pilot::release_throttle::RELEASE_THROTTLE_MIN;
 
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/pilot.md");

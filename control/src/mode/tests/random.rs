@@ -1,9 +1,14 @@
 //! Random pilots, sensors and grips against invariants.
 
 extern crate std;
-use crate::gripper::grip::ArmGrip;
+use crate::attitude::motion::Motion;
+use crate::chain::setpoint::{ClampCommand, Setpoint};
+use crate::gripper::grip::{ArmGrip, GripState};
 use crate::gripper::grip_geometry::Misfit;
-use crate::pilot::rc::ArmChoice;
+use crate::gripper::retained_grip::GripMemory;
+use crate::maths::vector::{Quat, Vec3};
+use crate::pilot::rc::{ArmChoice, Sticks};
+use crate::pilot::remote::RemoteRequest;
 use std::vec::Vec;
 
 use proptest::prelude::*;
@@ -11,7 +16,8 @@ use proptest::prelude::*;
 use super::rig::Rig;
 use crate::gripper::grip::ArmState;
 use crate::mode::*;
-use crate::navigation::position_estimator::{Estimate, Foot};
+use crate::navigation::estimate::Estimate;
+use crate::navigation::range_hit::Foot;
 use crate::pilot::rc::StickMode;
 use crate::pilot::release_throttle::RELEASE_THROTTLE_MIN;
 use crate::pilot::remote::RemoteOrder;

@@ -1,8 +1,9 @@
 //! Reasons shown to the pilot, and their priority.
 
 use super::rig::Rig;
-use crate::arming::ArmingInhibit;
+use crate::arming::{ArmingInhibit, ArmingInhibits};
 use crate::mode::*;
+use crate::pilot::rc::Sticks;
 
 #[test]
 fn a_vehicle_on_the_ground_says_what_is_broken_and_what_keeps_it_from_arming() {

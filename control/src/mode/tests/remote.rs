@@ -2,13 +2,15 @@
 
 use super::rig::{DT, Rig};
 use crate::arming::{ArmingInhibit, GESTURE_TIME};
+use crate::attitude::motion::Motion;
+use crate::chain::setpoint::{ClampCommand, Setpoint};
 use crate::gripper::grip::ArmState;
 use crate::mode::inputs::remote::GRAB_WAIT;
 use crate::mode::*;
 use crate::pilot::bench_orders::{BenchOrder, BenchRefusal, BenchRequest, BenchState, SPIN_DRIVE, Spin};
 use crate::pilot::rc::ArmChoice;
 use crate::pilot::remote::RemoteOrder::{self, Arm, Disarm, Grab, Kill, Release};
-use crate::pilot::remote::RemoteRefusal;
+use crate::pilot::remote::{RemoteRefusal, RemoteRequest};
 
 impl Rig {
     /// Gives `order` under a new number, renewed for some steps; what it was answered with after the first.

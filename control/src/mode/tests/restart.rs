@@ -1,11 +1,15 @@
 //! Starts on and off the pipe: nothing opens by itself, nothing turns before arming.
 
 use super::rig::Rig;
-use crate::arming::ArmingInhibit;
+use crate::arming::{ArmingInhibit, ArmingInhibits};
+use crate::attitude::motion::Motion;
+use crate::chain::setpoint::{ClampCommand, Setpoint};
 use crate::gripper::grip::ArmState;
+use crate::gripper::retained_grip::GripMemory;
+use crate::maths::vector::Quat;
 use crate::mode::shared::power_up_grip::AVERAGING_TIME;
 use crate::mode::*;
-use crate::pilot::rc::ArmChoice;
+use crate::pilot::rc::{ArmChoice, Sticks};
 
 const ALL: ClampCommand = ClampCommand::Close { arms: ArmChoice::All };
 

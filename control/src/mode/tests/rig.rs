@@ -1,13 +1,16 @@
 //! The mode logic in a simple world that carries it or does not.
 
-use crate::gripper::grip::{ArmGrip, ArmState};
+use crate::attitude::motion::Motion;
+use crate::chain::setpoint::{ClampCommand, Setpoint};
+use crate::gripper::grip::{ArmGrip, ArmState, GripState};
 use crate::maths::scalar::GRAVITY;
+use crate::maths::vector::Vec3;
 use crate::mode::shared::on_pipe::SPOOL_DOWN_TIME;
 use crate::mode::states::clamping::STOP_TIME;
 use crate::mode::states::contact::CONTACT_TIME;
 use crate::mode::*;
 use crate::params::Params;
-use crate::pilot::rc::ArmChoice;
+use crate::pilot::rc::{ArmChoice, Sticks};
 
 pub(super) const DT: f32 = 0.01;
 

@@ -4,9 +4,10 @@ use super::holding::angles;
 use super::rig::Rig;
 use crate::gripper::grip::ArmState;
 use crate::maths::scalar::deg;
+use crate::maths::vector::Vec3;
 use crate::mode::*;
+use crate::navigation::estimate::Estimate;
 use crate::navigation::fix_age::{FRESH_AGE, HEIGHT_AGE};
-use crate::navigation::position_estimator::Estimate;
 
 fn at(r: &mut Rig, position: Vec3, age: f32) {
     r.inputs.position = Some(Estimate {

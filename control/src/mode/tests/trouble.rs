@@ -2,9 +2,13 @@
 
 use super::rig::Rig;
 use crate::arming::{ArmingInhibit, ArmingInhibits};
+use crate::attitude::motion::Motion;
+use crate::battery::ServoSupply;
+use crate::chain::setpoint::{ClampCommand, Setpoint};
 use crate::gripper::grip::ArmState;
 use crate::gripper::grip_geometry::Misfit;
 use crate::maths::scalar::{GRAVITY, deg};
+use crate::maths::vector::{Quat, Vec3};
 use crate::mode::inputs::dangers::{BATTERY_TIME, IMU_LOST_TIME, TIPPED_TIME};
 use crate::mode::shared::on_pipe::SPOOL_DOWN_TIME;
 use crate::mode::states::clamping::{HOPELESS_TIME, STOP_TIME};
@@ -12,7 +16,7 @@ use crate::mode::states::contact::CONTACT_TIME;
 use crate::mode::states::failsafe::RESUME_TIME;
 use crate::mode::*;
 use crate::params::{ImuGyroRange, Params};
-use crate::pilot::rc::{ArmChoice, StickMode};
+use crate::pilot::rc::{ArmChoice, StickMode, Sticks};
 
 #[test]
 fn the_arm_switch_stops_the_rotors_in_one_step_and_never_opens_a_grip() {

@@ -3,13 +3,13 @@
 use super::*;
 use crate::maths::scalar::sin;
 use crate::maths::vector::Vec3;
-use crate::navigation::position_estimator::Foot;
+use crate::navigation::range_hit::Foot;
 
 const DT: f32 = 0.01;
 
 struct World {
     rise: Rise,
-    inputs: Inputs,
+    estimate: Option<Estimate>,
     /// Down, m and m/s.
     at: f32,
     speed: f32,
@@ -30,7 +30,7 @@ impl World {
     fn new() -> Self {
         Self {
             rise: Rise::default(),
-            inputs: Inputs::default(),
+            estimate: None,
             at: -2.0,
             speed: 0.0,
             time: 0.0,
@@ -70,9 +70,9 @@ impl World {
                 age: self.age,
                 ..Estimate::default()
             };
-            self.inputs.position = Some(estimate);
+            self.estimate = Some(estimate);
             self.rise.steady = self.steady;
-            self.rise.step(Mode::Approach, down, &self.inputs, DT);
+            self.rise.step(true, down, self.estimate.as_ref(), DT);
             self.named |= self.rise.misfit();
         }
     }
@@ -84,17 +84,17 @@ impl World {
     }
 
     fn out(&self) -> Estimate {
-        self.rise.apply(&self.inputs).position.unwrap()
+        self.rise.apply(self.estimate.unwrap())
     }
 }
 
 #[test]
 fn a_sound_estimate_stays_what_it_is() {
     let w = World::learnt();
-    assert_eq!(Some(w.out()), w.inputs.position);
+    assert_eq!(Some(w.out()), w.estimate);
     let mut w = w.blinded();
     w.run(3.0);
-    assert_eq!(Some(w.out()), w.inputs.position);
+    assert_eq!(Some(w.out()), w.estimate);
 }
 
 /// The range of a vehicle that went off the flank of a pipe with a wrong scale was out of reach: it sank at the wrong speed.
@@ -107,7 +107,7 @@ fn where_nothing_gives_the_height_a_bent_speed_is_not_flown_by() {
     assert!((out.velocity.z - w.speed).abs() < 0.05, "{out:?} {}", w.speed);
     // A tenth of a second passes before it counts.
     assert!((out.position.z - w.at).abs() < 0.1, "{out:?} {}", w.at);
-    assert!((out.position.z - w.inputs.position.unwrap().position.z) > 0.3);
+    assert!((out.position.z - w.estimate.unwrap().position.z) > 0.3);
     assert!(!w.named);
     // Longer than a height may be carried by what is felt the position is none.
     assert!(out.age < 0.3);
@@ -151,7 +151,7 @@ fn a_range_that_goes_another_way_is_named_once_its_bias_is_learnt() {
     let mut w = World::learnt();
     (w.foot, w.bent) = (Foot::default(), 0.5);
     w.run(1.0);
-    assert_eq!(Some(w.out()), w.inputs.position);
+    assert_eq!(Some(w.out()), w.estimate);
 }
 
 /// At the gate, 10 cm over the crown, a range that becomes 1.6 times too long bends it by no more than 0.12 m/s.
@@ -181,7 +181,7 @@ fn what_was_flown_by_it_is_given_back_or_is_another_origin() {
         let before = w.out().position.z;
         // The foot stays as far below the vehicle.
         let way = |e: &Estimate| e.foot.point.unwrap().z - e.position.z;
-        assert!((way(&w.out()) - way(&w.inputs.position.unwrap())).abs() < 1e-5);
+        assert!((way(&w.out()) - way(&w.estimate.unwrap())).abs() < 1e-5);
         (w.bent, w.off) = (0.0, 0.4 * seconds);
         w.run(0.03);
         let out = w.out();
@@ -192,7 +192,7 @@ fn what_was_flown_by_it_is_given_back_or_is_another_origin() {
             "{seconds}: {out:?}"
         );
         w.run(5.0);
-        let given = (w.out().position.z - w.inputs.position.unwrap().position.z).abs();
+        let given = (w.out().position.z - w.estimate.unwrap().position.z).abs();
         assert!(given < 1e-3, "{seconds}: {given}");
     }
 }
@@ -202,7 +202,7 @@ fn on_the_pipe_it_stands() {
     let mut w = World::learnt();
     w.bent = 0.4;
     w.run(0.5);
-    assert!(w.out() != w.inputs.position.unwrap());
-    w.rise.step(Mode::Perched, 0.5, &w.inputs, DT);
-    assert!(w.out().velocity == w.inputs.position.unwrap().velocity);
+    assert!(w.out() != w.estimate.unwrap());
+    w.rise.step(false, 0.5, w.estimate.as_ref(), DT);
+    assert!(w.out().velocity == w.estimate.unwrap().velocity);
 }

@@ -2,6 +2,7 @@
 
 extern crate std;
 use super::Rig;
+use crate::maths::vector::Quat;
 use crate::navigation::position_estimator::*;
 use std::string::String;
 use std::vec::Vec;

@@ -1,6 +1,7 @@
 //! Ranges that stand still and ranges that only seem to, in millimetres and centimetres, at 24 to 100 readings a second.
 
 extern crate std;
+use crate::maths::vector::Quat;
 use crate::navigation::flow_range::SightFault;
 use crate::navigation::flow_range_sample::Range;
 use crate::navigation::frozen_range::Frozen;

@@ -1,0 +1,30 @@
+//! Outputs of the mode logic.
+
+use super::modes::Mode;
+use super::reason::Reason;
+use crate::arming::ArmingInhibits;
+use crate::chain::setpoint::{ClampCommand, Setpoint};
+use crate::gripper::retained_grip::GripMemory;
+use crate::pilot::bench_orders::BenchAnswer;
+use crate::pilot::remote::RemoteAnswer;
+
+/// Outputs of one step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Outputs {
+    /// Mode.
+    pub mode: Mode,
+    /// Rotors.
+    pub rotors: Setpoint,
+    /// Tendons.
+    pub tendons: ClampCommand,
+    /// Grip to retain across a reset.
+    pub grip_memory: GripMemory,
+    /// Why arming is refused, the failsafe acts or the last state was left; `None` if nothing is wrong.
+    pub reason: Option<Reason>,
+    /// Everything against arming; empty while armed.
+    pub inhibits: ArmingInhibits,
+    /// Answer to the newest bench order.
+    pub bench: BenchAnswer,
+    /// Answer to the newest order of a remote link.
+    pub remote: RemoteAnswer,
+}
