@@ -3,6 +3,7 @@
 pub mod aircraft;
 mod failure_detail;
 mod judge;
+pub mod live;
 mod recorder;
 pub mod stack;
 

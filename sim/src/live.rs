@@ -1,7 +1,6 @@
 //! A flight at the pace of real time, with MAVLink on a UDP socket.
 
 mod chip;
-mod flight;
 mod pace;
 mod udp;
 
@@ -10,7 +9,6 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use self::chip::ThisChip;
-pub use self::flight::LiveFlight;
 pub use self::pace::Pace;
 pub use self::udp::Udp;
 use crate::clock::VirtualTime;

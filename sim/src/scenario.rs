@@ -10,9 +10,11 @@ pub mod faults;
 pub mod keys;
 mod load;
 mod nearest;
+mod overrides;
 mod read;
 mod read_steps;
 pub mod settings;
+mod source;
 mod steps;
 #[cfg(test)]
 mod tests;
@@ -20,7 +22,7 @@ mod tests;
 pub use defaults::MISSION;
 pub use error::{Place, ScenarioError};
 pub use faults::Faults;
-pub use load::Overrides;
+pub use overrides::Overrides;
 pub use steps::{STEPS, StepKind, StepNumber};
 
 use glam::DVec3;

@@ -4,7 +4,7 @@ use sophie_tasks::image_id;
 use sophie_tasks::parameters::table_id;
 use sophie_tasks::ports::{Chip, Look, NotSet};
 
-use super::Line;
+use crate::devices::line::Line;
 
 /// The chip of the board on this line.
 #[derive(Clone, Copy)]

@@ -7,7 +7,7 @@ use toml::Spanned;
 use toml::de::DeTable;
 
 use super::error::{Place, ScenarioError};
-use super::read::{Result, Source, Value};
+use super::source::{Result, Source, Value};
 use super::{Scenario, Vehicle};
 use crate::plant::{GRAVITY, arm_spec};
 
@@ -132,7 +132,7 @@ fn named<'t, 'i>(
     table: &str,
     keys: &[&str],
 ) -> Option<(String, &'t Value<'i>)> {
-    let content = super::read::table(root, table)?;
+    let content = super::source::table(root, table)?;
     keys.iter().find_map(|name| {
         let (_, value) = content.iter().find(|(key, _)| key.get_ref() == *name)?;
         Some((format!("{table}.{name}"), value))

@@ -7,8 +7,7 @@ use sophie_tasks::parameters::Allowed;
 use toml::de::{DeTable, DeValue};
 
 use super::error::ScenarioError;
-use super::load::read_text;
-use super::read::{Result, Source, as_number, in_order};
+use super::source::{Result, Source, as_number, in_order, read_text};
 
 /// A parameter with the value that a file gives it.
 #[derive(Clone, Copy, Debug)]

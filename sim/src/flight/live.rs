@@ -2,10 +2,10 @@
 
 use sophie_control::mode::Mode;
 
-use super::Live;
-use crate::flight::World;
-use crate::flight::aircraft::Aircraft;
-use crate::flight::stack::Stack;
+use super::World;
+use super::aircraft::Aircraft;
+use super::stack::Stack;
+use crate::live::Live;
 use crate::record::{FlightRecord, Observer};
 use crate::scenario::Scenario;
 
@@ -50,8 +50,8 @@ mod tests {
     use std::sync::atomic::{AtomicBool, Ordering};
     use std::time::{Duration, Instant};
 
-    use super::super::{Pace, Udp};
     use super::*;
+    use crate::live::{Pace, Udp};
     use crate::record::Silent;
     use crate::scenario::Step;
 
