@@ -17,7 +17,7 @@ use self::judge::Judge;
 use self::recorder::{Ending, Recorder};
 use self::stack::Stack;
 use crate::devices::sbus::Receiver;
-use crate::pilot::{Pilot, PilotOutput, Seen};
+use crate::pilot::{Pilot, PilotOutput, VisibleState};
 use crate::plant::Plant;
 use crate::record::{FlightRecord, Observer, Outcome};
 use crate::scenario::{Scenario, Step};
@@ -235,10 +235,10 @@ impl Uplink {
     }
 }
 
-fn seen(plant: &Plant, t: f64) -> Seen {
+fn seen(plant: &Plant, t: f64) -> VisibleState {
     let pose = plant.pose();
     let [roll, pitch, yaw] = plant.euler();
-    Seen {
+    VisibleState {
         t,
         position: pose.position,
         velocity: pose.velocity,

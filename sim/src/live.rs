@@ -119,7 +119,7 @@ impl Live {
 
     /// Sends what the board has said.
     pub(crate) fn end(&mut self) {
-        while let Some(frame) = self.line.said() {
+        while let Some(frame) = self.line.take_write() {
             if let Some(refused) = self.udp.send(&frame) {
                 (self.notice)(&refused);
             }

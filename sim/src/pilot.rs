@@ -40,7 +40,7 @@ use crate::scenario::{Scenario, Step};
 
 /// The vehicle as it looks from outside, now.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Seen {
+pub struct VisibleState {
     /// Simulated time, s.
     pub t: f64,
     /// Position of the centre of mass, NED from the take-off point on the ground, m.
@@ -100,7 +100,7 @@ pub struct Pilot {
     display_delay: usize,
     mission: Mission,
     sticks: StickDynamics,
-    wish: StickTarget,
+    target: StickTarget,
     referee: Referee,
     /// When the radio is lost for good, s after power-up.
     radio_lost_at: f64,
@@ -125,7 +125,7 @@ impl Pilot {
             display_delay: (limits.delay * FRAME_HZ) as usize,
             mission: Mission::new(scenario),
             sticks: StickDynamics::new(limits.bandwidth, scenario.arms),
-            wish: StickTarget::default(),
+            target: StickTarget::default(),
             referee: Referee::default(),
             radio_lost_at: scenario.faults.radio_at.unwrap_or(f64::INFINITY),
             now: 0.0,
@@ -133,7 +133,7 @@ impl Pilot {
     }
 
     /// One step of `dt` s (at most a few ms): what there is to see now, and the bytes that the vehicle sent.
-    pub fn step(&mut self, dt: f64, seen: Seen, telemetry_bytes: &[u8]) -> PilotOutput {
+    pub fn step(&mut self, dt: f64, seen: VisibleState, telemetry_bytes: &[u8]) -> PilotOutput {
         let mut out = PilotOutput {
             step: self.index,
             ..Default::default()
@@ -156,7 +156,7 @@ impl Pilot {
             if self.outcome.is_none() {
                 self.think(seen, 1.0 / FRAME_HZ, &mut out);
             }
-            let sticks = self.sticks.move_to(&self.wish, 1.0 / FRAME_HZ);
+            let sticks = self.sticks.move_to(&self.target, 1.0 / FRAME_HZ);
             if self.linked() {
                 out.rc_bytes = Some(rc_frame(&sticks));
                 out.channels = Some(sticks.to_channels());
@@ -196,7 +196,7 @@ impl Pilot {
         &self.telemetry
     }
 
-    fn think(&mut self, now: Seen, dt: f64, out: &mut PilotOutput) {
+    fn think(&mut self, now: VisibleState, dt: f64, out: &mut PilotOutput) {
         let seen = self.perception.look(now, dt);
         self.display.push_back(self.telemetry.mode);
         while self.display.len() > self.display_delay + 1 {
@@ -223,9 +223,9 @@ impl Pilot {
             text: &self.telemetry.reason,
         };
         match self.mission.fly(&step, &view, self.sticks.at(), dt) {
-            Progress::Going(wish) => self.wish = wish,
-            Progress::Done(wish) => {
-                self.wish = wish;
+            Progress::Going(target) => self.target = target,
+            Progress::Done(target) => {
+                self.target = target;
                 out.events.push(StepEvent::Ended {
                     index: self.index,
                     done: true,

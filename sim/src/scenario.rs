@@ -175,7 +175,7 @@ pub struct Pilot {
     /// How fast he may drift across the pipe then, m/s.
     pub touch_drift: f64,
     /// What he takes the pipe to be.
-    pub believes: Assumed,
+    pub assumed: Assumed,
 }
 
 /// What the pilot takes the pipe to be, each value `None` where it is the true one.
@@ -224,7 +224,7 @@ pub enum Assist {
     /// Hovering and flying to a point in the mode HOLD.
     Hold,
     /// Perching, and leaving the pipe: he holds within a metre of it and turns the perch switch.
-    Itself,
+    Autonomous,
 }
 
 /// Sensors beside those of every board.

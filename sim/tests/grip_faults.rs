@@ -233,7 +233,7 @@ fn four_different_servos_close_hold_and_let_go_at_every_frame_rate() {
 }
 
 #[test]
-fn no_pulse_goes_out_before_the_clamp_loop_has_spoken_and_none_pulls_before_it_is_told_to() {
+fn no_servo_pulse_precedes_the_clamp_loop_and_none_pulls_before_its_order() {
     let (time, links, servos) = (VirtualTime::new(), links(), FakeServos::default());
     time.spawn(sophie_tasks::servos::run(links, servos.clone()));
     time.run_until(1_000_000);
@@ -370,7 +370,7 @@ fn all_tilts_stale_stop_all_servos_within_a_tenth_of_a_second() {
 }
 
 #[test]
-fn an_arm_whose_pressure_does_not_rise_any_more_stops_and_says_so() {
+fn an_arm_whose_pressure_stops_rising_stops_with_a_reason() {
     let mut b = Bench::new();
     b.arms[0].most = 600.0;
     b.command = Some(CLOSE);

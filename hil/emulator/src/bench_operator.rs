@@ -24,7 +24,7 @@ const TURNS: f64 = 20.0;
 
 /// What hands do.
 #[derive(Clone, Debug)]
-pub struct Held {
+pub struct Handling {
     /// The side that lies below; the vehicle is turned there.
     pub below: Face,
     /// On each pad, Pa.
@@ -41,7 +41,7 @@ pub struct Held {
 
 /// What eyes see, and a multimeter.
 #[derive(Clone, Debug, Default)]
-pub struct Seen {
+pub struct Observation {
     /// Time since power-on, ms.
     pub ms: u64,
     /// The rotor that turned last, 0 to 3.
@@ -55,20 +55,20 @@ pub struct Seen {
 }
 
 struct Table {
-    held: Held,
-    seen: Seen,
+    held: Handling,
+    seen: Observation,
 }
 
 /// Shared by the builder and the board.
 #[derive(Clone)]
-pub struct Hands {
+pub struct BenchOperator {
     table: Arc<Mutex<Table>>,
     attitude: DQuat,
 }
 
-impl Default for Hands {
+impl Default for BenchOperator {
     fn default() -> Self {
-        let held = Held {
+        let held = Handling {
             below: Face::Belly,
             pressed: [0.0; 4],
             bent: [0.0; 4],
@@ -76,7 +76,7 @@ impl Default for Hands {
             sticks: None,
             wiring: MotorMap::M1234,
         };
-        let seen = Seen::default();
+        let seen = Observation::default();
         Self {
             table: Arc::new(Mutex::new(Table { held, seen })),
             attitude: DQuat::IDENTITY,
@@ -84,19 +84,19 @@ impl Default for Hands {
     }
 }
 
-impl Hands {
+impl BenchOperator {
     fn table(&self) -> MutexGuard<'_, Table> {
         self.table.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Does something else from now on.
-    pub fn change(&self, change: impl FnOnce(&mut Held)) {
+    pub fn change(&self, change: impl FnOnce(&mut Handling)) {
         change(&mut self.table().held);
     }
 
     /// What is seen now.
     #[must_use]
-    pub fn look(&self) -> Seen {
+    pub fn look(&self) -> Observation {
         self.table().seen.clone()
     }
 
@@ -107,11 +107,11 @@ impl Hands {
     }
 
     /// A millisecond of hands; notes what is seen.
-    pub(crate) fn step(&mut self, pins: &Pins, plant: &Plant) -> InHands {
+    pub(crate) fn step(&mut self, pins: &Pins, plant: &Plant) -> HandledVehicle {
         let mut table = self.table.lock().unwrap_or_else(PoisonError::into_inner);
         let rotors = plant.rotor_speed();
         let fastest = (0..4).max_by(|a, b| rotors[*a].total_cmp(&rotors[*b]));
-        table.seen = Seen {
+        table.seen = Observation {
             ms: pins.ms,
             turned: fastest
                 .filter(|rotor| rotors[*rotor] > TURNS)
@@ -126,7 +126,7 @@ impl Hands {
         let before = self.attitude;
         self.attitude = before.rotate_towards(wanted, TURN * STEP).normalize();
         let turn = before.conjugate() * self.attitude;
-        InHands {
+        HandledVehicle {
             attitude: self.attitude,
             rate: turn.to_scaled_axis() / STEP,
             pressed: held.pressed,
@@ -147,7 +147,7 @@ fn lying(side: Face) -> DQuat {
 }
 
 /// A vehicle in hands in this millisecond.
-pub struct InHands {
+pub struct HandledVehicle {
     /// Body to world.
     pub attitude: DQuat,
     /// rad/s, body.
@@ -161,7 +161,7 @@ pub struct InHands {
     sticks: Option<Sticks>,
 }
 
-impl InHands {
+impl HandledVehicle {
     /// Specific force, m/s², body.
     #[must_use]
     pub fn force(&self) -> DVec3 {

@@ -132,7 +132,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_one_flight_lacks_is_a_dash() {
+    fn a_value_missing_from_one_flight_prints_as_a_dash() {
         let text = "steps = [{ do = 'arm' }, { do = 'take-off', height_m = 1 }]\n";
         let scenario = Scenario::parse(text, "hop.toml", &Overrides::default()).unwrap();
         let host = fly(&scenario, &mut Silent);

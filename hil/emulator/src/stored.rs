@@ -85,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_saved_is_loaded() {
+    fn saved_parameters_are_loaded() {
         let params = Params {
             rate_p: 11.0,
             ..Params::default()

@@ -91,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_typed_and_said_crosses_and_a_user_may_go() {
+    fn bytes_cross_both_ways_and_a_user_may_disconnect() {
         let (port, mut terminal) = terminal();
         let complaint = Terminal::listen("--telemetry", port).err().unwrap();
         assert!(

@@ -120,7 +120,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_row_says_what_it_lacks() {
+    fn a_failing_row_names_its_shortfall() {
         let row = Row::new("thrust to weight", 1.128, "", Limit::AtLeast(1.38));
         assert!(!row.pass);
         assert_eq!(row.shortfall(), "thrust to weight 1.13, at least 1.38 needed");
@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn no_number_keeps_no_limit() {
+    fn a_nan_keeps_no_limit() {
         for limit in [Limit::AtLeast(0.0), Limit::AtMost(0.0)] {
             let row = Row::new("x", f64::NAN, "N", limit);
             assert!(!row.pass && row.shown() == "none N");

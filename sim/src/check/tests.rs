@@ -39,7 +39,7 @@ fn the_default_vehicle_can_fly() {
 }
 
 #[test]
-fn vehicles_that_cannot_fly_are_told_why() {
+fn the_check_names_why_a_vehicle_cannot_fly() {
     for (text, names) in [
         ("[vehicle]\nmass_kg = 3.0", &["thrust to weight"][..]),
         ("[vehicle]\nthrust_max_n = 5", &["thrust to weight"]),

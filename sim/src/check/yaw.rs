@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn who_knows_the_arms_gives_what_is_asked_and_who_does_not_gives_1_less_c() {
+    fn the_flexible_mixer_gives_the_whole_yaw_moment_and_the_rigid_one_1_less_c() {
         let (a, b) = (Configuration::A, Configuration::B);
         assert!((given_by(Variant::Flexible, b, 7.75) - 1.0).abs() < 0.02);
         let mut s = Scenario::default_mission();

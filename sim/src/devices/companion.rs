@@ -37,7 +37,7 @@ impl Companion {
     pub fn new(scenario: &Scenario, shared: Option<&'static Line>) -> Self {
         let sensors = &scenario.sensors;
         // It knows of the pipe what the pilot does.
-        let pipe = scenario.pilot.believes.pipe(&scenario.world);
+        let pipe = scenario.pilot.assumed.pipe(&scenario.world);
         let [north, east] = pipe.position;
         let streams = scenario.streams();
         Self {
@@ -77,7 +77,7 @@ impl Companion {
             }
         }
         // No one reads what the board says on a line of its own.
-        while !self.shared && self.line.said().is_some() {}
+        while !self.shared && self.line.take_write().is_some() {}
     }
 
     /// Loses what is on the line, as at a reset of the board.

@@ -44,7 +44,7 @@ impl Line {
     }
 
     /// Takes the oldest write of the board.
-    pub fn said(&self) -> Option<Vec<u8>> {
+    pub fn take_write(&self) -> Option<Vec<u8>> {
         self.output.borrow_mut().pop_front()
     }
 
@@ -105,7 +105,7 @@ mod tests {
         block_on(port.write(b"one")).unwrap();
         block_on(port.write(b"two")).unwrap();
         assert_eq!(
-            (line.said(), line.said(), line.said()),
+            (line.take_write(), line.take_write(), line.take_write()),
             (Some(b"one".to_vec()), Some(b"two".to_vec()), None)
         );
     }
@@ -126,6 +126,6 @@ mod tests {
         for n in 0..=OUTPUT {
             block_on(port.write(&n.to_le_bytes())).unwrap();
         }
-        assert_eq!(line.said(), Some(1_usize.to_le_bytes().to_vec()));
+        assert_eq!(line.take_write(), Some(1_usize.to_le_bytes().to_vec()));
     }
 }

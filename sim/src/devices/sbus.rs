@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn it_goes_on_with_the_last_channels_and_says_so() {
+    fn a_receiver_without_radio_repeats_the_last_channels_and_flags_it() {
         let mut r = Receiver::new(0);
         assert!(run(&mut r, 1.0, None).is_empty(), "nothing heard, nothing to say");
         let good = run(&mut r, 1.0, Some([1200; CHANNELS]));

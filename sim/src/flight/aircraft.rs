@@ -27,13 +27,13 @@ pub trait Aircraft {
     fn run_until(&mut self, us: u64) -> Result<(), String>;
 
     /// Reported state; `None` before the first report.
-    fn status(&self) -> Option<Said<'_>>;
+    fn status(&self) -> Option<ReportedStatus<'_>>;
 
     /// State of the grip, as far as known.
     fn grip(&self) -> Option<GripState>;
 
     /// Estimates and demands of the stack.
-    fn belief(&self) -> Belief;
+    fn estimate(&self) -> StackEstimate;
 
     /// Motor commands, 0..1.
     fn motors(&self) -> PerArm<f64>;
@@ -76,7 +76,7 @@ pub struct Reset {
 
 /// Reported state of a stack.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Said<'a> {
+pub struct ReportedStatus<'a> {
     /// State of the vehicle.
     pub mode: Mode,
     /// Reason of the mode, or for staying in it; may be empty.
@@ -87,7 +87,7 @@ pub struct Said<'a> {
 
 /// Estimates and demands of a stack; NaN where unknown.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Belief {
+pub struct StackEstimate {
     /// Estimated roll, pitch, yaw, rad.
     pub attitude: [f64; 3],
     /// Roll, pitch, yaw aimed at, rad; NaN if none.

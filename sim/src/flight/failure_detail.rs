@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn swings_are_told_and_a_manoeuvre_is_not() {
+    fn swings_are_reported_and_a_manoeuvre_is_not() {
         let swinging = attitude(|t| 0.3 * (2.0 * PI * 3.0 * t).sin());
         assert!(swings(&swinging).unwrap().starts_with("pitch swings by 34 deg"));
         assert_eq!(swings(&attitude(|t| 0.08 * (2.0 * PI * 3.0 * t).sin())), None);

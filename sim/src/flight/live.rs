@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mission_that_ends_in_the_air_lands_by_itself_while_it_waits() {
+    fn a_mission_that_ends_in_the_air_lands_autonomously_while_it_waits() {
         let mut scenario = hop();
         scenario.steps.truncate(2);
         let stop = Arc::new(AtomicBool::new(false));

@@ -16,7 +16,7 @@ use sophie_tasks::links::{GripState, Links, Newest, Stamped, Status};
 use sophie_tasks::retained_state::Words;
 use sophie_tasks::start::{Start, StartCause};
 
-use super::aircraft::{Aircraft, Belief, Reset, Said};
+use super::aircraft::{Aircraft, ReportedStatus, Reset, StackEstimate};
 use crate::board::{Board, Port};
 use crate::clock::VirtualTime;
 use crate::devices::companion::Companion;
@@ -220,14 +220,14 @@ impl Aircraft for Stack {
         Ok(())
     }
 
-    fn status(&self) -> Option<Said<'_>> {
+    fn status(&self) -> Option<ReportedStatus<'_>> {
         let Status {
             mode,
             reason,
             warning,
             ..
         } = self.links.status.latest()?.value;
-        Some(Said {
+        Some(ReportedStatus {
             mode,
             reason: reason.map_or("", Reason::text),
             warning,
@@ -238,7 +238,7 @@ impl Aircraft for Stack {
         self.links.grip.latest().map(|g| g.value)
     }
 
-    fn belief(&self) -> Belief {
+    fn estimate(&self) -> StackEstimate {
         let links = self.links;
         let wide = |v: PerArm<f32>| v.map(f64::from);
         let mix = links.mix.latest().map(|m| m.value).unwrap_or_default();
@@ -263,7 +263,7 @@ impl Aircraft for Stack {
             .latest()
             .map_or([0.0; 4], |order| order.value.forces().arms.map(|arm| arm.force));
         let (range, flow) = self.range_and_flow();
-        Belief {
+        StackEstimate {
             attitude: [estimate.0, estimate.1, estimate.2].map(f64::from),
             setpoint: target.filter(|_| mix.running).unwrap_or([f64::NAN; 3]),
             tilt_measured: links.tilts().values().map(|a| a.map_or(f64::NAN, f64::from)),
@@ -354,13 +354,13 @@ mod tests {
     fn the_log_has_no_pressure_while_none_is_fresh() {
         let scenario = Scenario::default_mission();
         let mut stack = Stack::new(&scenario);
-        assert!(stack.belief().pressure.iter().all(|p| p.is_nan()));
+        assert!(stack.estimate().pressure.iter().all(|p| p.is_nan()));
         stack.run_until(50_000).unwrap();
-        assert!(stack.belief().pressure.iter().all(|p| p.is_finite()));
+        assert!(stack.estimate().pressure.iter().all(|p| p.is_finite()));
         // The newest conversion is 21 ms old.
         let contact = stack.links.contact.latest().unwrap();
         let old = embassy_time::Instant::now() - embassy_time::Duration::from_millis(21);
         stack.links.contact.send(old, contact.value);
-        assert!(stack.belief().pressure.iter().all(|p| p.is_nan()));
+        assert!(stack.estimate().pressure.iter().all(|p| p.is_nan()));
     }
 }

@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn a_host_that_is_too_slow_is_told_of_once_with_what_it_reaches() {
+    fn a_host_that_is_too_slow_is_reported_once_with_its_speed() {
         let (wall, reported, _) = run(4.0, 40.0, |_| 0.5e-3);
         assert!((19.9..20.2).contains(&wall), "{wall} s");
         assert_eq!(reported.len(), 1);

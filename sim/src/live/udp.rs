@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn a_refusal_of_the_host_is_told_of_once() {
+    fn a_refusal_of_the_host_is_reported_once() {
         // Broadcasts are not enabled.
         let mut udp = Udp::open((Ipv4Addr::BROADCAST, 14550).into()).unwrap();
         let reported = udp.send(b"hello").unwrap();

@@ -28,12 +28,12 @@ impl Mission {
         match self.enter_hold(v, self.spot, self.height, dt) {
             Err(progress) => progress,
             Ok(()) => {
-                let wish = self.centred(v);
+                let target = self.centred(v);
                 if self.held_for(true, seconds, dt) {
                     self.hold_switch = false;
-                    Progress::Done(wish)
+                    Progress::Done(target)
                 } else {
-                    Progress::Going(wish)
+                    Progress::Going(target)
                 }
             }
         }
@@ -55,7 +55,7 @@ impl Mission {
         } else {
             ZONE.copysign(climb)
         };
-        let wish = StickTarget {
+        let target = StickTarget {
             roll: body.y,
             pitch: -body.x,
             throttle: CENTRE + zone + climb * (CENTRE - ZONE),
@@ -65,9 +65,9 @@ impl Mission {
         let there = off < REACHED && v.seen.velocity.length() < REACHED_SPEED;
         if self.held_for(there, 1.0, dt) {
             self.hold_switch = false;
-            Progress::Done(wish)
+            Progress::Done(target)
         } else {
-            Progress::Going(wish)
+            Progress::Going(target)
         }
     }
 

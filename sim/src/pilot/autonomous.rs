@@ -44,7 +44,7 @@ impl Mission {
     }
 
     /// Turns the perch switch and waits for what ends `step`.
-    pub(super) fn perch_by_itself(&mut self, step: &Step, v: &View<'_>, dt: f64) -> Progress {
+    pub(super) fn perch_autonomously(&mut self, step: &Step, v: &View<'_>, dt: f64) -> Progress {
         let done = match step {
             Step::Touch => matches!(v.mode, Some(Mode::Contact | Mode::Clamping | Mode::Perched)),
             Step::Clamp { .. } => matches!(v.mode, Some(Mode::Clamping | Mode::Perched)),
@@ -72,11 +72,11 @@ impl Mission {
                 Ok(()) => self.enter(Phase::Descend),
             },
         }
-        let wish = self.idle();
+        let target = self.idle();
         if done {
-            Progress::Done(wish)
+            Progress::Done(target)
         } else {
-            Progress::Going(wish)
+            Progress::Going(target)
         }
     }
 
@@ -88,7 +88,7 @@ impl Mission {
 
     /// Turns the perch switch off and waits until the vehicle holds its place above the pipe. Where it cannot, he flies on by
     /// hand.
-    pub(super) fn release_by_itself(&mut self, step: &Step, v: &View<'_>, dt: f64) -> Progress {
+    pub(super) fn release_autonomously(&mut self, step: &Step, v: &View<'_>, dt: f64) -> Progress {
         if self.phase == Phase::Fly {
             return self.release(v, dt);
         }
@@ -101,9 +101,9 @@ impl Mission {
             self.spot = v.seen.position.truncate();
             self.enter(Phase::Fly);
         }
-        let wish = self.idle();
+        let target = self.idle();
         if left {
-            return Progress::Going(wish);
+            return Progress::Going(target);
         }
         if self.phase == Phase::Start {
             self.height = v.height();
@@ -119,9 +119,9 @@ impl Mission {
         };
         if self.held_for(done, 0.5, dt) {
             self.hold_switch &= matches!(step, Step::Open);
-            Progress::Done(wish)
+            Progress::Done(target)
         } else {
-            Progress::Going(wish)
+            Progress::Going(target)
         }
     }
 

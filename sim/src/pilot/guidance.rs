@@ -6,7 +6,7 @@
 use glam::{DVec2, DVec3};
 use sophie_control::params::Params;
 
-use super::Seen;
+use super::VisibleState;
 use super::perception::Foresight;
 use super::stick_dynamics::StickTarget;
 use crate::plant::GRAVITY;
@@ -122,7 +122,7 @@ impl Guidance {
     }
 
     /// Updates the foresight from where the sticks are (roll, pitch, yaw, throttle).
-    pub fn foresee(&mut self, seen: &Seen, now: f64, sticks: [f64; 4], dt: f64) {
+    pub fn foresee(&mut self, seen: &VisibleState, now: f64, sticks: [f64; 4], dt: f64) {
         let [roll, pitch, _, throttle] = sticks;
         let body = DVec2::new(
             -GRAVITY * (pitch * self.stick_angle).tan(),
@@ -136,7 +136,7 @@ impl Guidance {
     }
 
     /// Steers along `course` for `dt` s.
-    pub fn steer(&mut self, seen: &Seen, course: &Course, dt: f64) -> StickTarget {
+    pub fn steer(&mut self, seen: &VisibleState, course: &Course, dt: f64) -> StickTarget {
         let (position, velocity) = self.ahead;
         let away = course.target - position.truncate();
         let speed = (away * POSITION_GAIN).clamp_length_max(SPEED_MAX);
@@ -158,7 +158,7 @@ impl Guidance {
 
     /// Roll and pitch stick that hold the vehicle still in the air: against the wind, and against the error of what
     /// it takes for level.
-    pub fn trim(&self, seen: &Seen) -> (f64, f64) {
+    pub fn trim(&self, seen: &VisibleState) -> (f64, f64) {
         let body = DVec2::from_angle(-seen.yaw).rotate(self.wind);
         let (roll, pitch) = ((body.y / GRAVITY).atan(), -(body.x / GRAVITY).atan());
         (roll / self.stick_angle, pitch / self.stick_angle)
@@ -183,7 +183,7 @@ impl Guidance {
     }
 
     /// Yaw stick that turns the nose to `heading`, which itself moves at `turning` rad/s.
-    pub fn rudder(&self, seen: &Seen, heading: f64, turning: f64) -> f64 {
+    pub fn rudder(&self, seen: &VisibleState, heading: f64, turning: f64) -> f64 {
         ((HEADING_GAIN * super::wrap(heading - seen.yaw) + turning) / self.stick_yaw_rate).clamp(-1.0, 1.0)
     }
 }

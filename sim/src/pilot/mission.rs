@@ -6,7 +6,7 @@ use sophie_control::mode::{Mode, Reason};
 use super::guidance::{Course, Guidance, Vertical};
 use super::limits;
 use super::stick_dynamics::StickTarget;
-use super::{Seen, wrap};
+use super::{VisibleState, wrap};
 use crate::scenario::{Assist, Scenario, Step};
 
 /// Heading flown but after a turn, rad: north, along the pipe.
@@ -21,7 +21,7 @@ const WITHIN: f64 = 0.1;
 #[derive(Clone, Copy, Debug)]
 pub struct View<'a> {
     /// Delayed, noisy state.
-    pub seen: Seen,
+    pub seen: VisibleState,
     /// Time now, s.
     pub now: f64,
     /// Mode read from the display.
@@ -130,7 +130,7 @@ pub struct Mission {
 impl Mission {
     /// A pilot for `scenario`.
     pub fn new(scenario: &Scenario) -> Self {
-        let pipe = scenario.pilot.believes.pipe(&scenario.world);
+        let pipe = scenario.pilot.assumed.pipe(&scenario.world);
         Self {
             guidance: Guidance::new(&scenario.params, scenario.pilot.delay),
             pipe: DVec2::from_array(pipe.position),
@@ -163,9 +163,9 @@ impl Mission {
     }
 
     /// Begins a step.
-    pub fn begin(&mut self, seen: &Seen) {
+    pub fn begin(&mut self, seen: &VisibleState) {
         // By itself the vehicle takes a switch turned off as the wish to fly by hand.
-        self.hold_switch &= self.assist == Assist::Itself;
+        self.hold_switch &= self.assist == Assist::Autonomous;
         self.enter(Phase::Start);
         self.step_time = 0.0;
         self.missed = 0;
@@ -196,16 +196,16 @@ impl Mission {
             Step::FlyTo { north, east, height } if self.assist == Assist::Hold => {
                 self.fly_to_held(view, DVec2::new(north, east), height, dt)
             }
-            Step::FlyToPipe if self.assist == Assist::Itself => self.fly_to_pipe_held(view, dt),
-            Step::Touch | Step::Clamp { .. } | Step::Perch { .. } if self.assist == Assist::Itself => {
-                self.perch_by_itself(step, view, dt)
+            Step::FlyToPipe if self.assist == Assist::Autonomous => self.fly_to_pipe_held(view, dt),
+            Step::Touch | Step::Clamp { .. } | Step::Perch { .. } if self.assist == Assist::Autonomous => {
+                self.perch_autonomously(step, view, dt)
             }
-            Step::Hold { seconds, .. } if self.assist == Assist::Itself => {
+            Step::Hold { seconds, .. } if self.assist == Assist::Autonomous => {
                 let held = self.hold(view, seconds, dt);
                 self.hands_off(held)
             }
-            Step::Open | Step::Release if self.assist == Assist::Itself => {
-                self.release_by_itself(step, view, dt)
+            Step::Open | Step::Release if self.assist == Assist::Autonomous => {
+                self.release_autonomously(step, view, dt)
             }
             Step::Hover { seconds } => self.hover(view, seconds, dt),
             Step::Yaw { heading, seconds } => self.yaw(view, heading, seconds, dt),
@@ -229,8 +229,8 @@ impl Mission {
                 "not done after {limit:.0} s: {}",
                 self.shortfall(step, view)
             )),
-            Progress::Going(wish) => Progress::Going(self.switches(Self::take_over(step, view, wish))),
-            Progress::Done(wish) => Progress::Done(self.switches(wish)),
+            Progress::Going(target) => Progress::Going(self.switches(Self::take_over(step, view, target))),
+            Progress::Done(target) => Progress::Done(self.switches(target)),
             failed @ Progress::Failed(_) => failed,
         }
     }
@@ -275,12 +275,12 @@ impl Mission {
         })
     }
 
-    fn switches(&self, wish: StickTarget) -> StickTarget {
+    fn switches(&self, target: StickTarget) -> StickTarget {
         StickTarget {
             arm_switch: self.arm_switch,
             perch_switch: self.perch_switch,
             hold_switch: self.hold_switch,
-            ..wish
+            ..target
         }
     }
 

@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 
-use super::Seen;
+use super::VisibleState;
 use crate::streams::Streams;
 
 /// Correlation time of the visual error, s (assumed).
@@ -25,7 +25,7 @@ pub struct Perception {
     position_error: DVec3,
     velocity_error: DVec3,
     yaw_error: f64,
-    queue: VecDeque<Seen>,
+    queue: VecDeque<VisibleState>,
 }
 
 impl Perception {
@@ -43,7 +43,7 @@ impl Perception {
     }
 
     /// Takes the true state `dt` s after the last one; returns what the pilot sees.
-    pub fn look(&mut self, now: Seen, dt: f64) -> Seen {
+    pub fn look(&mut self, now: VisibleState, dt: f64) -> VisibleState {
         let keep = (1.0 - dt / ERROR_TIME).max(0.0);
         let push = (1.0 - keep * keep).sqrt();
         let rng = &mut self.rng;
@@ -52,7 +52,7 @@ impl Perception {
         self.position_error = self.position_error * keep + vector(self.noise) * push;
         self.velocity_error = self.velocity_error * keep + vector(VELOCITY_ERROR * self.noise) * push;
         self.yaw_error = self.yaw_error * keep + vector(YAW_ERROR).x * push;
-        self.queue.push_back(Seen {
+        self.queue.push_back(VisibleState {
             position: now.position + self.position_error,
             velocity: now.velocity + self.velocity_error,
             yaw: now.yaw + self.yaw_error,
@@ -111,7 +111,7 @@ impl Foresight {
     }
 
     /// Position and velocity, NED, predicted for when the sticks act.
-    pub fn ahead(&self, seen: &Seen, dt: f64) -> (DVec3, DVec3) {
+    pub fn ahead(&self, seen: &VisibleState, dt: f64) -> (DVec3, DVec3) {
         let (mut position, mut velocity) = (seen.position, seen.velocity);
         for (_, level, down) in &self.past {
             velocity += level.extend(*down) * dt;

@@ -98,11 +98,11 @@ impl Mission {
     }
 
     pub(super) fn fly_to_pipe(&mut self, v: &View<'_>, dt: f64) -> Progress {
-        let wish = self.go_to(v, self.pipe, self.pipe_top + OVER, dt);
+        let target = self.go_to(v, self.pipe, self.pipe_top + OVER, dt);
         if self.settled(v, dt) {
-            Progress::Done(wish)
+            Progress::Done(target)
         } else {
-            Progress::Going(wish)
+            Progress::Going(target)
         }
     }
 
@@ -115,17 +115,17 @@ impl Mission {
     }
 
     pub(super) fn touch(&mut self, v: &View<'_>, stick: f64, dt: f64) -> Progress {
-        let (wish, felt) = self.approach(v, stick, dt);
+        let (target, on_pipe) = self.approach(v, stick, dt);
         if self.missed >= TRIES {
             return Progress::Failed(format!(
                 "missed the pipe {TRIES} times, last {:.2} m beside it",
                 (v.seen.position.y - self.pipe.y).abs()
             ));
         }
-        if felt {
-            Progress::Done(wish)
+        if on_pipe {
+            Progress::Done(target)
         } else {
-            Progress::Going(wish)
+            Progress::Going(target)
         }
     }
 
@@ -135,11 +135,11 @@ impl Mission {
         let over = v.height() - self.pipe_top;
         let off = v.seen.position.truncate() - self.pipe;
         if self.phase == Phase::GoAround {
-            let wish = self.go_to(v, self.pipe, self.pipe_top + OVER_AGAIN, dt);
+            let target = self.go_to(v, self.pipe, self.pipe_top + OVER_AGAIN, dt);
             if over > 0.75 * OVER_AGAIN && off.length() < BACK {
                 self.enter(Phase::Descend);
             }
-            return (wish, false);
+            return (target, false);
         }
         let (position, velocity) = self.guidance.ahead();
         let away = position.truncate() - self.pipe;
@@ -192,21 +192,21 @@ impl Mission {
         let stands = v.height() - self.pipe_top < STANDS && v.seen.velocity.z.abs() < STOPPED;
         // Most of the weight is still on the rotors: without the trim it would slide.
         let (roll, pitch) = self.guidance.trim(&v.seen);
-        let wish = StickTarget {
+        let target = StickTarget {
             roll,
             pitch,
             ..self.throttle_to(firm, firm_ease, dt)
         };
-        let felt = self.held_for(stands && self.throttle <= firm, STOPPED_TIME, dt);
-        if felt {
+        let on_pipe = self.held_for(stands && self.throttle <= firm, STOPPED_TIME, dt);
+        if on_pipe {
             self.height = v.height();
         }
-        (wish, felt)
+        (target, on_pipe)
     }
 
     pub(super) fn clamp(&mut self, v: &View<'_>, throttle: f64, stick: f64, dt: f64) -> Progress {
         match self.perch(v, throttle, stick, dt) {
-            Progress::Going(wish) if v.mode == Some(Mode::Clamping) => Progress::Done(wish),
+            Progress::Going(target) if v.mode == Some(Mode::Clamping) => Progress::Done(target),
             other => other,
         }
     }
@@ -216,11 +216,11 @@ impl Mission {
             self.phase,
             Phase::GoAround | Phase::Descend | Phase::Commit | Phase::Plant
         ) {
-            let (wish, felt) = self.approach(v, stick, dt);
-            if felt {
+            let (target, on_pipe) = self.approach(v, stick, dt);
+            if on_pipe {
                 self.enter(Phase::Throttle);
             }
-            return Progress::Going(wish);
+            return Progress::Going(target);
         }
         if self.phase == Phase::Start {
             self.enter(Phase::Throttle);
@@ -254,11 +254,11 @@ impl Mission {
         }
         let perched = v.mode == Some(Mode::Perched);
         let throttle = if perched { 0.0 } else { self.closing(throttle) };
-        let wish = self.throttle_to(throttle, EASE * self.lightly(), dt);
+        let target = self.throttle_to(throttle, EASE * self.lightly(), dt);
         if perched && self.throttle <= 0.0 {
-            Progress::Done(wish)
+            Progress::Done(target)
         } else {
-            Progress::Going(wish)
+            Progress::Going(target)
         }
     }
 
@@ -273,17 +273,17 @@ impl Mission {
         if self.held_for(v.shows(Reason::GripLost), GRIP_LOST_TIME, dt) {
             return Progress::Failed(format!("grip lost after {:.1} s", self.step_time));
         }
-        let wish = StickTarget::default();
+        let target = StickTarget::default();
         if self.step_time >= seconds {
-            Progress::Done(wish)
+            Progress::Done(target)
         } else {
-            Progress::Going(wish)
+            Progress::Going(target)
         }
     }
 
     pub(super) fn open(&mut self, v: &View<'_>, dt: f64) -> Progress {
         match self.release(v, dt) {
-            Progress::Going(wish) if v.mode == Some(Mode::Releasing) => Progress::Done(wish),
+            Progress::Going(target) if v.mode == Some(Mode::Releasing) => Progress::Done(target),
             other => other,
         }
     }
@@ -305,12 +305,12 @@ impl Mission {
                     self.perch_switch = true;
                     self.enter(Phase::Throttle);
                 }
-                let wish = self.throttle_to(opening, ease, dt);
+                let target = self.throttle_to(opening, ease, dt);
                 if self.held_for(self.throttle >= opening, 0.5, dt) {
                     self.perch_switch = false;
                     self.enter(Phase::Wait);
                 }
-                Progress::Going(wish)
+                Progress::Going(target)
             }
             Phase::Wait => {
                 if matches!(v.mode, Some(Mode::Flight | Mode::Escaping)) {
@@ -325,15 +325,15 @@ impl Mission {
                 Progress::Going(self.throttle_to(opening, ease, dt))
             }
             _ => {
-                let mut wish = self.go_to(v, self.spot, self.height + OVER, dt);
+                let mut target = self.go_to(v, self.spot, self.height + OVER, dt);
                 if v.height() < self.height + CLEAR {
-                    (wish.roll, wish.pitch, wish.yaw) = (0.0, 0.0, 0.0);
+                    (target.roll, target.pitch, target.yaw) = (0.0, 0.0, 0.0);
                 }
                 let there = (v.height() - self.height - OVER).abs() < 0.2 && v.seen.velocity.length() < 0.3;
                 if self.held_for(there, 0.5, dt) {
-                    Progress::Done(wish)
+                    Progress::Done(target)
                 } else {
-                    Progress::Going(wish)
+                    Progress::Going(target)
                 }
             }
         }

@@ -83,27 +83,27 @@ impl Mission {
             }
             self.enter(Phase::Fly);
         }
-        let wish = self.go_to(v, self.spot, height, dt);
+        let target = self.go_to(v, self.spot, height, dt);
         // What gusts leave him no time to settle, the hold does at the pipe.
-        let patient = self.assist != Assist::Itself || self.step_time < PATIENCE;
+        let patient = self.assist != Assist::Autonomous || self.step_time < PATIENCE;
         let speed = if patient { REACHED_SPEED } else { NEAR_SPEED };
         let there = (v.height() - height).abs() < REACHED && v.seen.velocity.length() < speed;
         if self.held_for(there, 1.0, dt) {
-            Progress::Done(wish)
+            Progress::Done(target)
         } else {
-            Progress::Going(wish)
+            Progress::Going(target)
         }
     }
 
     pub(super) fn land(&mut self, v: &View<'_>, dt: f64) -> Progress {
         match self.phase {
             Phase::Throttle => {
-                let wish = self.throttle_to(0.0, GIVE_BACK, dt);
+                let target = self.throttle_to(0.0, GIVE_BACK, dt);
                 let stands = matches!(v.mode, Some(Mode::Landed | Mode::Disarmed));
                 if stands && self.throttle <= 0.0 {
-                    Progress::Done(wish)
+                    Progress::Done(target)
                 } else {
-                    Progress::Going(wish)
+                    Progress::Going(target)
                 }
             }
             _ => {
@@ -116,15 +116,15 @@ impl Mission {
                 } else {
                     LAST_DESCENT
                 };
-                let wish = self.climb_over(v, self.spot, -rate, dt);
+                let target = self.climb_over(v, self.spot, -rate, dt);
                 let stands = v.height() < STANDS && v.seen.velocity.z.abs() < STOPPED;
                 // A failsafe or the vehicle itself may have ended the flight.
                 let over = matches!(v.mode, Some(Mode::Landed | Mode::Disarmed));
                 if self.held_for(stands || over, STOPPED_TIME, dt) {
-                    self.throttle = wish.throttle;
+                    self.throttle = target.throttle;
                     self.enter(Phase::Throttle);
                 }
-                Progress::Going(wish)
+                Progress::Going(target)
             }
         }
     }

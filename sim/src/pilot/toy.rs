@@ -11,7 +11,7 @@ use sophie_control::vector::{Quat, Vec3};
 use uf_crsf::packets::{FlightMode, PacketAddress};
 use uf_crsf::{CrsfParser, Packet, write_packet_to_buffer};
 
-use super::{Pilot, PilotOutput, Seen};
+use super::{Pilot, PilotOutput, VisibleState};
 use crate::plant::gust::Gust;
 use crate::scenario::Scenario;
 
@@ -23,7 +23,7 @@ const CLOSING: f64 = 3.0;
 
 pub struct Toy {
     pub pilot: Pilot,
-    pub seen: Seen,
+    pub seen: VisibleState,
     pub out: Outputs,
     pub sticks: Option<Sticks>,
     /// Steady force of the wind, N.
@@ -53,7 +53,7 @@ impl Toy {
     pub fn new(scenario: &Scenario) -> Self {
         Self {
             pilot: Pilot::new(scenario),
-            seen: Seen {
+            seen: VisibleState {
                 position: DVec3::new(0.0, 0.0, -BELLY),
                 ..Default::default()
             },
@@ -130,12 +130,12 @@ impl Toy {
         let s = &self.seen;
         let q = Quat::from_euler(s.roll as f32, s.pitch as f32, s.yaw as f32);
         let [north, east, down] = self.acceleration.to_array().map(|a| a as f32);
-        let felt = q.rotate_inverse(Vec3::new(north, east, down - GRAVITY));
+        let on_pipe = q.rotate_inverse(Vec3::new(north, east, down - GRAVITY));
         let inputs = Inputs {
             sticks: self.sticks.filter(|_| !self.deaf),
             motion: Some(Motion {
                 q,
-                accel: felt,
+                accel: on_pipe,
                 calibrated: s.t > 2.0,
                 ..Default::default()
             }),

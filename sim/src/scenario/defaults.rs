@@ -65,7 +65,7 @@ impl Default for Pilot {
             assist: Assist::None,
             touch_within: None,
             touch_drift: 0.08,
-            believes: Assumed::default(),
+            assumed: Assumed::default(),
         }
     }
 }

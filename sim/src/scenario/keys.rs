@@ -248,7 +248,7 @@ pub fn barometer_fault(word: &str) -> BarometerFault {
 pub fn assist(word: &str) -> Assist {
     match word {
         "hold" => Assist::Hold,
-        "self" => Assist::Itself,
+        "self" => Assist::Autonomous,
         _ => Assist::None,
     }
 }
@@ -294,7 +294,7 @@ pub const fn assist_word(assist: Assist) -> &'static str {
     match assist {
         Assist::None => "none",
         Assist::Hold => "hold",
-        Assist::Itself => "self",
+        Assist::Autonomous => "self",
     }
 }
 
@@ -540,13 +540,13 @@ pub const KEYS: &[Key] = &[
         Range::new(0.01, 0.5, "m/s"),
         pilot.touch_drift
     ),
-    optional!("pilot.believes_pipe_north_m", PIPE_PLACE, pilot.believes.north),
-    optional!("pilot.believes_pipe_east_m", PIPE_PLACE, pilot.believes.east),
-    optional!("pilot.believes_pipe_top_m", PIPE_TOP, pilot.believes.top),
+    optional!("pilot.believes_pipe_north_m", PIPE_PLACE, pilot.assumed.north),
+    optional!("pilot.believes_pipe_east_m", PIPE_PLACE, pilot.assumed.east),
+    optional!("pilot.believes_pipe_top_m", PIPE_TOP, pilot.assumed.top),
     optional!(
         "pilot.believes_pipe_diameter_m",
         PIPE_DIAMETER,
-        pilot.believes.diameter
+        pilot.assumed.diameter
     ),
     number!("faults.at_s", Range::new(0.0, 3600.0, "s"), faults.at),
     fault!("faults.pressure", faults::PRESSURE, pressure, faults::pressure),

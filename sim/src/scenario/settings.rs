@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_parameter_or_beyond_its_range_is_refused_with_its_line() {
+    fn an_unknown_parameter_or_a_value_out_of_range_is_refused_with_its_line() {
         for (text, why) in [
             (
                 "[params]\ninfil = 8",

@@ -420,7 +420,7 @@ mod tests {
 
     /// Turning about the centre of mass moves a lens that is beside it: by its lever times the rate.
     #[test]
-    fn a_lens_beside_the_centre_of_mass_sees_its_own_way_and_what_is_below_itself() {
+    fn a_lens_beside_the_centre_of_mass_measures_at_its_own_place() {
         let lens = DVec3::new(-0.2, 0.1, 0.05);
         let yawing = |t: f64| (DVec3::new(-8.0, 0.0, -1.05), DQuat::from_rotation_z(0.5 * t));
         // 0.5 rad/s clockwise: omega x r is (-0.05, -0.1, 0) m/s.

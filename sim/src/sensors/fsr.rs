@@ -51,7 +51,7 @@ pub struct FsrSensor {
     gain: f64,
     exponent: f64,
     divider: f64,
-    felt: f64,
+    force: f64,
     creep: f64,
     broken: Option<FsrBreak>,
     /// What breaks, and when, s after power-up.
@@ -72,7 +72,7 @@ impl FsrSensor {
             gain: GAIN * within("gain", 1.0 - PART_ERROR, 1.0 + PART_ERROR),
             exponent: within("exponent", EXPONENT_MIN, 1.0),
             divider: DIVIDER.0 * within("divider", 1.0 - DIVIDER.1, 1.0 + DIVIDER.1),
-            felt: 0.0,
+            force: 0.0,
             creep: 0.0,
             broken: None,
             breaks: None,
@@ -114,8 +114,8 @@ impl FsrSensor {
         let mut normal = || -> f64 { StandardNormal.sample(rng) };
         let force = pressure.max(0.0) * AREA;
         // Play: the felt force moves only when pushed by either edge.
-        self.felt = self
-            .felt
+        self.force = self
+            .force
             .clamp(force * (1.0 - HYSTERESIS), force * (1.0 + HYSTERESIS));
         let keep = (-dt / CREEP.1).exp();
         self.creep = self.creep * keep + CREEP.0 * (1.0 - keep * keep).sqrt() * normal();
@@ -125,7 +125,7 @@ impl FsrSensor {
             None | Some(FsrBreak::Stuck) if force < THRESHOLD => 0.0,
             None | Some(FsrBreak::Stuck) => {
                 let drift = 1.0 + self.creep + NOISE * normal();
-                let load = self.gain * self.felt.powf(self.exponent) * drift * self.divider;
+                let load = self.gain * self.force.powf(self.exponent) * drift * self.divider;
                 load / (1.0 + load)
             }
         };
@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn it_feels_nothing_below_its_threshold_and_remembers_where_it_came_from() {
+    fn it_reads_nothing_below_its_threshold_and_has_hysteresis() {
         let mut s = FsrSensor::new(0, Streams::new(3));
         assert!(s.sample(60.0, 0.002) == 0);
         let mut mean = |p: f64| (0..2000).map(|_| f64::from(s.sample(p, 0.0))).sum::<f64>() / 2000.0;

@@ -43,7 +43,7 @@ mod tests {
     }
 
     #[test]
-    fn a_time_that_a_bus_does_not_want_is_told() {
+    fn a_wrong_bus_timing_is_reported() {
         let wrong = |fields| wrong(register(fields), 100e6, ArmBusSpeed::Fast);
         assert_eq!(wrong([2, 13, 8, 26, 54]), None);
         for (fields, complaint) in [

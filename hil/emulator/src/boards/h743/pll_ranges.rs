@@ -61,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pll_outside_its_range_is_told() {
+    fn a_pll_outside_its_range_is_reported() {
         assert_eq!(first(1, 100, 3, 0), None);
         assert_eq!(first(4, 100, 1, 0), None);
         for ((divider, multiplier, input, medium), complaint) in [
