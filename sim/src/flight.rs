@@ -60,8 +60,8 @@ pub fn fly_with<A: Aircraft>(
     (record, world.stack)
 }
 
-/// Lets the vehicle of `scenario` stand on the ground without a transmitter, `make` as in [`fly_with`], until `over` of it;
-/// returns the aircraft.
+/// Runs the vehicle of `scenario` on the ground without a transmitter until `over` returns true; `make` as in
+/// [`fly_with`]. Returns the aircraft.
 ///
 /// # Errors
 /// One line: why the aircraft cannot run on.
@@ -176,7 +176,7 @@ impl<A: Aircraft> World<A> {
         recorder.finish(scenario, &self.stack, ending, observer)
     }
 
-    /// What the mission did to the vehicle ends: no push, a board that was off is on.
+    /// Ends the mission's effects on the vehicle: no push, and a board that was off starts.
     pub(crate) fn leave_alone(&mut self) {
         self.plant.push = DVec3::ZERO;
         if !self.stack.runs() {

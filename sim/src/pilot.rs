@@ -1,9 +1,8 @@
 //! The simulated pilot: flies the steps of a scenario with sticks alone.
 //!
-//! He sees the vehicle from outside (position, speed, attitude: late and with errors) and the transmitter's
-//! display, or hears the log read aloud where there is no telemetry; his sticks move with a limited bandwidth. What
-//! leaves him are channel frames of the radio. He knows nothing else, and the flight stack learns nothing of him but
-//! those bytes.
+//! Inputs: the vehicle's position, velocity and attitude, late and with errors, and the transmitter's display, or the
+//! vehicle's log without telemetry. Output: channel frames of the radio; the sticks move with a limited bandwidth.
+//! Pilot and flight stack exchange no other data.
 
 mod assisted;
 mod autonomous;
@@ -38,7 +37,7 @@ use crate::devices::crsf::{FRAME_HZ, Frame, Telemetry, rc_frame};
 use crate::record::Outcome;
 use crate::scenario::{Scenario, Step};
 
-/// The vehicle as it looks from outside, now.
+/// The vehicle's true state that an observer on the ground sees.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct VisibleState {
     /// Simulated time, s.
@@ -69,18 +68,18 @@ pub enum StepEvent {
     },
 }
 
-/// What the pilot did in one step of time.
+/// Output of the pilot in one step of time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PilotOutput {
     /// A channel frame from a receiver of CRSF, [`FRAME_HZ`] a second while the transmitter is on.
     pub rc_bytes: Option<Frame>,
-    /// The same channels as they come over the air, for a receiver that speaks another protocol.
+    /// The same channels as sent over the air, for a receiver of another protocol.
     pub channels: Option<[u16; CHANNELS]>,
     /// Index of the step being flown; the number of steps once all are done.
     pub step: usize,
     /// Steps that began or ended just now.
     pub events: Vec<StepEvent>,
-    /// How the mission ended, in the call in which it did.
+    /// Outcome of the mission, in the one call in which it ends.
     pub outcome: Option<Outcome>,
 }
 
@@ -95,16 +94,16 @@ pub struct Pilot {
     elapsed: f64,
     telemetry: Telemetry,
     perception: Perception,
-    /// What the display showed over the last reaction time.
+    /// Modes shown on the display over the last reaction time.
     display: VecDeque<Option<Mode>>,
     display_delay: usize,
     mission: Mission,
     sticks: StickDynamics,
     target: StickTarget,
     referee: Referee,
-    /// When the radio is lost for good, s after power-up.
+    /// Time of the permanent loss of the radio, s after power-up.
     radio_lost_at: f64,
-    /// Since power-up, s.
+    /// Time since power-up, s.
     now: f64,
 }
 
@@ -132,7 +131,7 @@ impl Pilot {
         }
     }
 
-    /// One step of `dt` s (at most a few ms): what there is to see now, and the bytes that the vehicle sent.
+    /// Advances by `dt` s (at most a few ms) with the visible state and the telemetry bytes of the vehicle.
     pub fn step(&mut self, dt: f64, seen: VisibleState, telemetry_bytes: &[u8]) -> PilotOutput {
         let mut out = PilotOutput {
             step: self.index,
@@ -166,14 +165,14 @@ impl Pilot {
         out
     }
 
-    /// Somebody reads the vehicle's log aloud: with a receiver that has no way back the display shows nothing.
+    /// Gives the pilot mode and reason from the vehicle's log, for a receiver without telemetry.
     pub fn hear(&mut self, mode: Mode, reason: &str) {
         if self.linked() {
             self.telemetry.report(mode, reason);
         }
     }
 
-    /// The transmitter is on, and heard.
+    /// The transmitter is on and the radio works.
     fn linked(&self) -> bool {
         self.mission.transmits() && self.now < self.radio_lost_at
     }
@@ -190,7 +189,7 @@ impl Pilot {
         self.sticks.at()[3]
     }
 
-    /// What the transmitter's display shows.
+    /// Contents of the transmitter's display.
     #[must_use]
     pub fn telemetry(&self) -> &Telemetry {
         &self.telemetry

@@ -8,9 +8,9 @@ use crate::scenario::Scenario;
 /// A flown flight.
 #[derive(Clone, Debug)]
 pub struct FlightRecord {
-    /// What was flown.
+    /// The flown scenario.
     pub scenario: Scenario,
-    /// Whether it succeeded, and if not, why.
+    /// Outcome, with the reason of a failure.
     pub outcome: Outcome,
     /// Samples at [`SAMPLE_HZ`].
     pub samples: Vec<Sample>,
@@ -57,13 +57,13 @@ pub struct Sample {
     pub attitude: [f64; 3],
     /// Estimated roll, pitch, yaw, rad.
     pub attitude_estimate: [f64; 3],
-    /// Target roll, pitch, yaw, rad; NaN if none.
+    /// Target roll, pitch, yaw, rad; NaN without a target.
     pub attitude_setpoint: [f64; 3],
     /// True angular rate, rad/s, body.
     pub rate: [f64; 3],
     /// True, rad.
     pub tilt: PerArm<f64>,
-    /// By the arm's sensor, rad; NaN if none.
+    /// By the arm's sensor, rad; NaN without a fresh one.
     pub tilt_measured: PerArm<f64>,
     /// By the mixer's model, rad.
     pub tilt_model: PerArm<f64>,
@@ -123,9 +123,9 @@ pub struct Phase {
 /// An event.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Event {
-    /// When, s.
+    /// Time, s.
     pub t: f64,
-    /// What, one line.
+    /// Description, one line.
     pub text: String,
 }
 

@@ -44,7 +44,7 @@ pub struct ClosedLoop<'a> {
     settings: Settings,
     sensors: Sensors,
     flow_module: Option<FlowSender>,
-    /// `None`: the vehicle is left to itself.
+    /// `None`: the vehicle stands alone.
     hands: Option<BenchOperator>,
     plan: Plan,
     wires: Wires,
@@ -137,7 +137,7 @@ impl<'a> ClosedLoop<'a> {
             accel_bias_x,
             accel_bias_y,
             accel_bias_z,
-            // The simulated board has its module's task without it.
+            // The simulated board reads its module whatever the port.
             flow_port: flow_module
                 .as_ref()
                 .map_or(scenario.params.flow_port, |_| FlowPort::Msp),
@@ -182,7 +182,7 @@ impl<'a> ClosedLoop<'a> {
         }
     }
 
-    /// The same vehicle in `hands`, out of its bag: nothing has been calibrated.
+    /// The same vehicle, uncalibrated, with a bench operator.
     #[must_use]
     pub fn in_hands(mut self, hands: BenchOperator) -> Self {
         let Params {
@@ -329,7 +329,7 @@ impl Aircraft for ClosedLoop<'_> {
                 let angle = self.params.stick_angle;
                 [sticks.roll * angle, sticks.pitch * angle, f32::NAN].map(f64::from)
             }
-            // What sensors send between frames leaves it.
+            // Answers of sensors between frames use the same line.
             (Mode::Flight, None) => self.setpoint,
             _ => [f64::NAN; 3],
         };
@@ -402,7 +402,7 @@ impl Aircraft for ClosedLoop<'_> {
             tension_asked: self.tension(),
             pressure: self.pressure(),
             saturated: false,
-            // Nothing of the position is in the frames that the bench reads.
+            // The frames read here carry no position.
             position: None,
             pose: None,
             range: None,
@@ -412,7 +412,7 @@ impl Aircraft for ClosedLoop<'_> {
 
     fn motors(&self) -> PerArm<f64> {
         let restarted = self.resets.last().map_or(f64::NEG_INFINITY, |(at, _)| *at);
-        // Over a reset the controllers hold their last command until they miss it: nothing asks for it.
+        // During a reset the controllers keep their last command until they time out; no code asks for it.
         if self.dead || self.pins.ms as f64 - restarted < SILENCE as f64 * 1e-6 {
             return [0.0; 4];
         }

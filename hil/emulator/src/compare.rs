@@ -1,4 +1,4 @@
-//! The same flight on host and chip, phase by phase.
+//! Compares one flight on the host and on the emulated chip, phase by phase.
 //!
 //! The attitude error is against the controller's target on the host, against the sticks on the chip, which does not
 //! report a target. The chip's pins act a millisecond later, and its self-test shifts pilot against gusts.

@@ -1,4 +1,4 @@
-//! A flight of an image on the bench, with its verdict.
+//! A flight of an image in closed loop, with its verdict.
 
 use sophie_sim::flight::{fly_with, stand_with};
 use sophie_sim::record::{FlightRecord, Observer};
@@ -65,7 +65,8 @@ pub struct Stood {
     pub gaps: Vec<Gap>,
 }
 
-/// Runs the board of `scenario`'s vehicle without a pilot, on the ground or in `hands`, until `over`; else as [`fly`].
+/// Runs the board of `scenario`'s vehicle without a pilot, on the ground or with a bench operator, until `over`;
+/// otherwise as [`fly`].
 ///
 /// # Errors
 /// As [`fly`].

@@ -5,7 +5,7 @@ use sophie_tasks::stack_use::{AT_START, SINCE, StackUse};
 
 use crate::log::Line;
 
-/// A check.
+/// A start-up check of the chip.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct SiliconCheck {
     /// Name.
@@ -32,7 +32,7 @@ pub fn parse(text: &str) -> Option<SiliconCheck> {
     })
 }
 
-/// The last row of each name in `lines`, in the order in which they came first: those of the stack come again as it grows.
+/// The last row of each name in `lines`, ordered by first appearance. The stack's rows repeat as its depth grows.
 #[must_use]
 pub fn rows(lines: &[Line]) -> Vec<SiliconCheck> {
     let mut rows = Vec::<SiliconCheck>::new();

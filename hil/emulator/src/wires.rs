@@ -1,4 +1,4 @@
-//! Data between emulated board and world, independent of the emulator.
+//! Data between the emulated board and the simulated world, free of the emulator's types.
 
 use std::collections::BTreeMap;
 
@@ -45,7 +45,7 @@ pub enum BoardFault {
     ArmUnplugged(usize, bool),
     /// Arm bus 0 or 1: clock stretched by this many µs after each byte; 0: none.
     ClockHeld(usize, u32),
-    /// Arm bus 0 or 1: bus errors flagged where there are none, one in about this many bytes; 0: none.
+    /// Arm bus 0 or 1: one spurious bus error in about this many bytes; 0 turns them off.
     BusErrors(usize, u32),
     /// The sensor of arm 0 to 3 does not acknowledge (true) the byte that resets it, and resets.
     ArmRefusesReset(usize, bool),
@@ -117,7 +117,7 @@ pub struct FarEnd {
 /// Results of a run.
 #[derive(Clone, Debug, Default)]
 pub struct Run {
-    /// What the emulator lacked or found wrong.
+    /// Gaps and mistakes that the emulator found.
     pub gaps: Vec<Gap>,
     /// Instructions executed.
     pub instructions: u64,
@@ -137,7 +137,7 @@ pub struct Run {
     pub pins_digest: u64,
     /// Steps with counted instructions.
     pub counted: Counted,
-    /// What was read on the arms' buses.
+    /// Readings from the arms' buses.
     pub reads: Reads,
 }
 
@@ -148,7 +148,7 @@ pub struct Reads {
     pub barometer: Vec<u64>,
     /// Of the sensor of each arm.
     pub arms: PerArm<Vec<u64>>,
-    /// What each arm's sensor was written, register first, and how often.
+    /// Writes to each arm's sensor, register first, with their counts.
     pub written: PerArm<BTreeMap<Vec<u8>, u32>>,
 }
 
@@ -226,7 +226,7 @@ impl Latency {
     }
 }
 
-/// Something that the emulator cannot vouch for.
+/// A gap of the emulation: behaviour that the emulator does not model or finds wrong.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Gap {
     /// `unmapped`, `refused`, `unimplemented`, `undefined`, `unrouted`, `told` or `miswired`.

@@ -1,4 +1,4 @@
-//! A serial line of the simulated board whose far end is datagrams.
+//! A serial line of the simulated board; its far end sends and receives datagrams.
 
 use std::cell::{Cell, RefCell};
 use std::collections::VecDeque;
@@ -7,12 +7,12 @@ use embassy_sync::pipe::Pipe;
 use sophie_tasks::links::Raw;
 use sophie_tasks::ports::{PortError, SerialInput, SerialOutput};
 
-/// Bytes towards the board that wait for its task: what a fast client sends within a millisecond is less.
+/// Bytes towards the board that wait for its task: more than a fast client sends within a millisecond.
 const INPUT: usize = 4096;
 /// Writes of the board that wait for the next millisecond.
 const OUTPUT: usize = 256;
 
-/// Both directions. What the board writes at once stays together.
+/// Both directions. Each write of the board stays one datagram.
 pub struct Line {
     input: Pipe<Raw, INPUT>,
     output: RefCell<VecDeque<Vec<u8>>>,
@@ -21,7 +21,7 @@ pub struct Line {
 }
 
 impl Line {
-    /// A line with nothing on it.
+    /// An empty line.
     pub const fn new() -> Self {
         Self {
             input: Pipe::new(),
@@ -58,7 +58,7 @@ impl Line {
         self.restart.take()
     }
 
-    /// Loses everything on it.
+    /// Discards all bytes in both directions.
     pub fn clear(&self) {
         self.input.clear();
         self.output.borrow_mut().clear();

@@ -245,7 +245,7 @@ impl Judge {
     }
 }
 
-/// Both numbers with enough digits to differ, at least three significant.
+/// Both numbers printed with enough digits to differ, at least three significant.
 fn printed_apart(value: f64, allowed: f64) -> (String, String) {
     let least = if allowed < 100.0 { 2 } else { 0 };
     let written = |digits: usize| (format!("{value:.digits$}"), format!("{allowed:.digits$}"));

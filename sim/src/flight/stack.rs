@@ -26,7 +26,7 @@ use crate::plant::Plant;
 use crate::scenario::{PositionSensor, Scenario};
 use crate::target_angles;
 
-/// The step of a reset that no step of the mission made.
+/// Step index of a reset that a client ordered, not the mission.
 const NO_STEP: usize = usize::MAX;
 
 /// The stack of one flight.
@@ -139,7 +139,7 @@ impl Stack {
 }
 
 impl Stack {
-    /// The estimated position as one in the true axes.
+    /// The estimated position in world axes, m.
     fn position(&self) -> Option<[f64; 3]> {
         let position = self.links.position.fresh().map(|e| e.position);
         match &self.flow_module {
@@ -169,7 +169,7 @@ impl Stack {
         )
     }
 
-    /// A position in the axes of the companion computer as one in the true axes.
+    /// Converts a position from the companion computer's axes to world axes, m.
     fn in_world(&self, position: Vec3) -> Option<[f64; 3]> {
         let companion = self.companion.as_ref()?;
         let position = DVec3::from_array(position.to_array().map(f64::from));
@@ -247,7 +247,7 @@ impl Aircraft for Stack {
             .latest()
             .map(|a| a.value.q.to_euler())
             .unwrap_or_default();
-        // The wanted heading arrives relative to the present one.
+        // The target heading is relative to the present one.
         let target = links.target.latest().map(|v| {
             let [roll, pitch, ahead] = target_angles::angles(v.value);
             let heading = math::wrap_pi(estimate.2 + ahead as f32);

@@ -15,7 +15,7 @@ impl Chip for ThisChip {
         self.0.restart();
     }
 
-    /// It has no loader: the firmware starts again at once.
+    /// The simulation has no loader; the firmware restarts at once.
     fn enter_loader(&mut self) {
         self.0.restart();
     }
@@ -24,7 +24,7 @@ impl Chip for ThisChip {
         "a simulated board"
     }
 
-    /// It has no image: what it knows of parameters stands for one.
+    /// The simulation has no image; the parameter table stands for its identity.
     fn build(&self) -> u32 {
         image_id::of([table_id()])
     }

@@ -1,10 +1,10 @@
-//! Virtual time held to wall time.
+//! Holds virtual time to wall time.
 
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// Wall time by which a flight may fall behind and catch up: a host's usual delays. More moves the pace, so that no burst
-/// follows.
+/// Largest delay that a flight catches up, in wall time: a host's usual delays. A longer one shifts the schedule, so
+/// that no burst follows.
 const SLACK: Duration = Duration::from_millis(20);
 /// Wall time over which the reached speed is measured.
 const WINDOW: Duration = Duration::from_secs(2);
@@ -39,7 +39,7 @@ impl Pace {
         }
     }
 
-    /// Waits until `us` of virtual time is due. Says once, in one line, that the host is too slow.
+    /// Waits until `us` of virtual time is due. Returns a message once, in one line, if the host is too slow.
     pub fn wait(&mut self, us: u64) -> Option<String> {
         let began = *self.began.get_or_insert_with(Instant::now);
         let virtual_time = us as f64 * 1e-6;

@@ -1,4 +1,4 @@
-//! What the steps of the mission share.
+//! State and helpers that all steps of a mission share.
 
 use glam::DVec2;
 use sophie_control::mode::{Mode, Reason};
@@ -9,7 +9,7 @@ use super::stick_dynamics::StickTarget;
 use super::{VisibleState, wrap};
 use crate::scenario::{Assist, Scenario, Step};
 
-/// Heading flown but after a turn, rad: north, along the pipe.
+/// Heading flown unless a step turns the vehicle, rad: north, along the pipe.
 const HEADING: f64 = 0.0;
 /// Speed at which the nose is swept round, rad/s.
 const SWEEP: f64 = 0.5;
@@ -99,7 +99,7 @@ pub struct Mission {
     pub(super) pipe: DVec2,
     pub(super) pipe_top: f64,
     pub(super) pipe_radius: f64,
-    /// How far beside the crown he sets down, m, and how fast he may drift across then, m/s.
+    /// Largest distance from the crown at the touch, m, and largest drift across the pipe, m/s.
     pub(super) within: f64,
     pub(super) drift: f64,
     pub(super) stick_angle: f64,
@@ -114,14 +114,14 @@ pub struct Mission {
     /// Time since the step and the phase began, s.
     pub(super) step_time: f64,
     pub(super) phase_time: f64,
-    /// Time for which the awaited condition has held, s.
+    /// Time for which the awaited condition has been true, s.
     pub(super) held: f64,
     /// Point to hold: north, east, m; height at the step's beginning.
     pub(super) spot: DVec2,
     pub(super) height: f64,
     /// Throttle set by hand when not flying.
     pub(super) throttle: f64,
-    /// Touches that came to nothing.
+    /// Number of failed touches.
     pub(super) missed: u32,
     /// The displayed reason of the failsafe that ended the flight.
     pub(super) trouble: Option<String>,
@@ -164,7 +164,7 @@ impl Mission {
 
     /// Begins a step.
     pub fn begin(&mut self, seen: &VisibleState) {
-        // By itself the vehicle takes a switch turned off as the wish to fly by hand.
+        // An autonomous vehicle reads a switch turned off as a change to flight by hand.
         self.hold_switch &= self.assist == Assist::Autonomous;
         self.enter(Phase::Start);
         self.step_time = 0.0;
@@ -235,8 +235,7 @@ impl Mission {
         }
     }
 
-    /// Why a step that needs its rotors must end: they stand still. The pilot flies until then: a vehicle that sinks by
-    /// itself is still steered.
+    /// Reason to end a step that needs rotors: they stand still. Until then the pilot steers, even in a failsafe.
     fn stopped(&self, step: &Step, v: &View<'_>) -> Option<String> {
         let rotors = match step {
             Step::TakeOff { .. }
@@ -317,7 +316,7 @@ impl Mission {
         }
     }
 
-    /// What was not reached, as the reason of a failure.
+    /// Reason of a failure that names the value not reached.
     fn shortfall(&self, step: &Step, v: &View<'_>) -> String {
         let p = v.seen.position;
         let off = |target: DVec2| (p.truncate() - target).length();

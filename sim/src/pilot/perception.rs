@@ -42,7 +42,7 @@ impl Perception {
         }
     }
 
-    /// Takes the true state `dt` s after the last one; returns what the pilot sees.
+    /// Takes the true state, `dt` s after the last one; returns the state as the pilot sees it.
     pub fn look(&mut self, now: VisibleState, dt: f64) -> VisibleState {
         let keep = (1.0 - dt / ERROR_TIME).max(0.0);
         let push = (1.0 - keep * keep).sqrt();
@@ -95,7 +95,7 @@ impl Foresight {
         }
     }
 
-    /// Notes the accelerations asked for by the sticks, m/s², without the trims that only hold against wind and weight.
+    /// Records the accelerations commanded by the sticks, m/s², without the trims against wind and weight.
     pub fn note(&mut self, t: f64, level: DVec2, down: f64, dt: f64) {
         self.level += (level - self.level) * (dt / (dt + LEAN_TIME));
         self.down += (down - self.down) * (dt / (dt + THRUST_TIME));
@@ -105,7 +105,7 @@ impl Foresight {
         }
     }
 
-    /// Clears the notes: the vehicle stood on something, and the sticks did not move it.
+    /// Clears the record: the vehicle stood, and the sticks did not move it.
     pub fn forget(&mut self) {
         *self = Self::new(self.delay);
     }
@@ -117,7 +117,7 @@ impl Foresight {
             velocity += level.extend(*down) * dt;
             position += velocity * dt;
         }
-        // For the part of the delay without notes: constant velocity.
+        // Constant velocity for the part of the delay without a record.
         position += velocity * (self.delay - self.past.len() as f64 * dt).max(0.0);
         velocity += (self.level * AHEAD_LEVEL).extend(self.down * AHEAD_DOWN);
         (position, velocity)

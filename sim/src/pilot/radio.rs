@@ -1,4 +1,4 @@
-//! A vehicle that does not answer: transmitter off, recovery from its failsafe, restart of the board.
+//! Steps without a link: transmitter off, recovery from the failsafe, restart of the board.
 
 use sophie_control::mode::{Mode, Reason};
 

@@ -18,7 +18,7 @@ const RISING: f64 = 0.2;
 /// Height error (m) and speed (m/s) that count as reached.
 const REACHED: f64 = 0.15;
 const REACHED_SPEED: f64 = 0.25;
-/// Time after which he goes on with [`NEAR_SPEED`] where the vehicle is to hold by itself, s.
+/// Time after which [`NEAR_SPEED`] suffices if HOLD takes over at the pipe, s.
 const PATIENCE: f64 = 12.0;
 /// Rates of descent, m/s: high up, and below [`LAST_BIT`].
 const DESCENT: f64 = 0.4;
@@ -84,7 +84,7 @@ impl Mission {
             self.enter(Phase::Fly);
         }
         let target = self.go_to(v, self.spot, height, dt);
-        // What gusts leave him no time to settle, the hold does at the pipe.
+        // Gusts may keep the pilot from settling; HOLD settles at the pipe.
         let patient = self.assist != Assist::Autonomous || self.step_time < PATIENCE;
         let speed = if patient { REACHED_SPEED } else { NEAR_SPEED };
         let there = (v.height() - height).abs() < REACHED && v.seen.velocity.length() < speed;

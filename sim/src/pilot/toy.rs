@@ -1,4 +1,4 @@
-//! A vehicle just good enough to try the pilot on: a point mass with lags, the real mode logic, a made-up grip.
+//! A simple vehicle for the pilot's tests: a point mass with lags, the real mode logic and a scripted grip.
 
 use glam::{DVec2, DVec3};
 use sophie_control::grip::GripState;
@@ -16,7 +16,7 @@ use crate::plant::gust::Gust;
 use crate::scenario::Scenario;
 
 pub const DT: f64 = 0.002;
-/// Height of the centre of mass over what it stands on, m.
+/// Height of the centre of mass over the ground or pipe at rest, m.
 const BELLY: f64 = 0.04;
 /// Time that the arms take to close and to open, s.
 const CLOSING: f64 = 3.0;
@@ -212,7 +212,7 @@ impl Toy {
     }
 }
 
-/// Height of what is below, m: the upper half of 2 m of pipe, or the ground.
+/// Height of the surface below, m: the upper half of 2 m of pipe, or the ground.
 fn floor(scenario: &Scenario, position: DVec3) -> f64 {
     let w = &scenario.world;
     let radius = 0.5 * w.pipe_diameter;

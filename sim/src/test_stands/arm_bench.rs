@@ -1,5 +1,5 @@
-//! One arm closes on a pipe, as on the paper's test bench: body fixed, gripper and tendon drive the flight stack's, the
-//! rest the plant's.
+//! Test stand of one arm that closes on a pipe, as in the paper: the body is fixed, gripper and tendon drive are the
+//! flight stack's, the other parts the plant's.
 
 use std::collections::VecDeque;
 
@@ -27,11 +27,11 @@ use crate::plant::{GRAVITY, STEP};
 use crate::sensors::fsr::{FsrBreak, FsrSensor};
 use crate::streams::Streams;
 
-/// Before closing, s.
+/// Rest before the closing, s.
 const REST: f64 = 1.0;
 /// Damping ratio of a [`Closing`]'s arm.
 const DAMPING: f64 = 0.15;
-/// RMS of the arm sensor, rad.
+/// RMS noise of the arm sensor, rad.
 const TILT_NOISE: f64 = 0.004;
 /// Of a [`Closing`]: rotor, s, and pipe.
 const ROTOR_TAU: f64 = 0.05;
@@ -92,7 +92,7 @@ pub struct BenchArm {
     pub servo: ServoSpec,
     /// s.
     pub rotor_tau: f64,
-    /// May differ from the true arm.
+    /// Parameters of the stack; they may differ from the true arm.
     pub params: Params,
     /// Outer, m.
     pub diameter: f64,

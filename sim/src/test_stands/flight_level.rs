@@ -1,4 +1,4 @@
-//! The flight level alone under given setpoints.
+//! Test stand of the flight level alone (inertial sensor to motors) under given setpoints.
 
 use crate::board::{Board, Port};
 use crate::clock::VirtualTime;

@@ -1,4 +1,4 @@
-//! Checks an I2C's times against its mode: the emulator's chips answer at any.
+//! Checks the timing of an I2C interface against its mode. The emulator's chips answer at any timing.
 
 use sophie_control::params::ArmBusSpeed;
 

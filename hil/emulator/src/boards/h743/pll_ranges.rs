@@ -1,4 +1,4 @@
-//! Checks the PLLs' ranges: the emulator's lock in any, real ones do not.
+//! Checks the frequency ranges of the PLLs. The emulator's PLLs lock at any frequency, real ones do not.
 
 /// Clock registers: `CR`, `PLLCKSELR`, `PLLCFGR` and each PLL's `DIVR`.
 pub struct Settings {
