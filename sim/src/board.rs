@@ -47,7 +47,7 @@ pub struct Board {
     truth: Cell<AnalogTruth>,
     /// `None`: no answer.
     arm_gravity: Cell<PerArm<Option<Vec3>>>,
-    /// Hz.
+    /// Sample rate of the inertial sensor, Hz.
     imu_rate: f64,
     /// Memory that outlives a reset.
     pub memory: Cell<[Words; 2]>,

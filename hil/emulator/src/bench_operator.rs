@@ -150,7 +150,7 @@ fn lying(side: Face) -> DQuat {
 pub struct HandledVehicle {
     /// Body to world.
     pub attitude: DQuat,
-    /// rad/s, body.
+    /// Angular rate, rad/s, body axes.
     pub rate: DVec3,
     /// Pressure on the pads, Pa.
     pub pressed: PerArm<f64>,

@@ -127,11 +127,11 @@ pub struct Run {
     pub latency_us: Latency,
     /// The motors' pins at the processor's last standstill.
     pub hung: Option<Hung>,
-    /// Per sector, by first address.
+    /// Erases of each sector, by first address.
     pub erases: BTreeMap<u64, u32>,
     /// The outputs around resets.
     pub outputs: Vec<Output>,
-    /// At the end, µs; 0: none.
+    /// Servo pulses at the end, µs; 0: none.
     pub servos: PerArm<f64>,
     /// Digest of motor edges, servo pulses and telemetry.
     pub pins_digest: u64,
@@ -146,7 +146,7 @@ pub struct Run {
 pub struct Reads {
     /// Pressures of the barometer.
     pub barometer: Vec<u64>,
-    /// Of the sensor of each arm.
+    /// Measurements of each arm's sensor.
     pub arms: PerArm<Vec<u64>>,
     /// Writes to each arm's sensor, register first, with their counts.
     pub written: PerArm<BTreeMap<Vec<u8>, u32>>,
@@ -175,7 +175,7 @@ pub struct Output {
     pub pin: String,
     /// Pulled up until the firmware drives it.
     pub pulled_up: bool,
-    /// From each start until driven, µs; `None`: never.
+    /// Time from each start until driven, µs; `None`: never.
     pub after_us: Vec<Option<f64>>,
 }
 
@@ -207,7 +207,7 @@ pub struct Latency {
     pub count: u64,
     /// Sum, µs.
     pub sum: f64,
-    /// Largest, µs.
+    /// Largest value, µs.
     pub worst: f64,
 }
 

@@ -10,7 +10,7 @@ pub enum Limit {
 }
 
 impl Limit {
-    /// Its number.
+    /// The limit's number.
     #[must_use]
     pub fn value(self) -> f64 {
         match self {
@@ -41,7 +41,7 @@ impl Limit {
 pub struct Row {
     /// Quantity.
     pub name: String,
-    /// Not finite where there is no such value.
+    /// Not finite if the value does not exist.
     pub value: f64,
     /// Unit of value and limit; empty for a pure number.
     pub unit: &'static str,
@@ -49,7 +49,7 @@ pub struct Row {
     pub limit: Limit,
     /// The value keeps the limit.
     pub pass: bool,
-    /// What to do if it does not.
+    /// Advice if the row fails.
     pub advice: String,
 }
 

@@ -1,4 +1,4 @@
-//! The whole check: what flies passes, what cannot is refused with its reason, nothing panics.
+//! The whole check: vehicles that fly pass, others fail with a reason, and no input panics.
 
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -82,7 +82,7 @@ fn a_mission_without_a_pipe_has_no_rows_of_it() {
     );
 }
 
-/// Draws about half of the vehicle's and world's numbers and `params` parameters from their ranges.
+/// Samples about half of the vehicle's and world's numbers and `params` parameters from their ranges.
 fn draw(rng: &mut Pcg64Mcg, params: f64) -> String {
     let mut text = String::new();
     for table in ["vehicle", "world"] {

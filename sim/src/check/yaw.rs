@@ -16,7 +16,7 @@ const NEAR_HOVER: [f64; 3] = [0.8, 1.0, 1.2];
 const POINTS: u32 = 12;
 /// Share of the largest thrust up to which yaw has room.
 const TOP: f64 = 0.95;
-/// N·m: a tenth of a newton a rotor on a stiff frame.
+/// Tried moment, N·m: a tenth of a newton a rotor on a stiff frame.
 const TRIED: f32 = 0.006;
 /// Step of the mixer's model, s, far beyond its slowest filter, and number of steps.
 const SETTLE: f32 = 1e3;

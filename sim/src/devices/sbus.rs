@@ -10,9 +10,9 @@ pub const SLOTS: usize = 8;
 const PERIOD: f64 = 14e-3;
 /// Frame period with slots, s: that of a Futaba R7008SB.
 const PERIOD_WITH_SLOTS: f64 = 15e-3;
-/// From a frame's begin to its first slot, s: 25 bytes of 120 µs and a pause of 2 ms.
+/// Time from a frame's begin to its first slot, s: 25 bytes of 120 µs and a pause of 2 ms.
 const FIRST_SLOT: f64 = 5e-3;
-/// From slot to slot, s.
+/// Time from slot to slot, s.
 const SLOT: f64 = 0.66e-3;
 /// Radio silence after which the failsafe flag is set, s (FrSky: about 1 s).
 const FAILSAFE_AFTER: f64 = 0.9;

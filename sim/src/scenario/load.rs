@@ -14,7 +14,7 @@ impl Scenario {
     /// Reads a file, whose name is the default `name`.
     ///
     /// # Errors
-    /// One line: file, line, key, value, what is allowed.
+    /// One line: file, line, key, value, allowed values.
     pub fn load(path: &Path, overrides: &Overrides) -> Result<Self, ScenarioError> {
         let file = path.display().to_string();
         let text = read_text(path, &file)?;

@@ -12,15 +12,15 @@ use super::{Assist, PositionSensor, Scenario};
 pub struct Overrides {
     /// Infill, %.
     pub infill: Option<f64>,
-    /// On Eq. 1's elastic term.
+    /// Gain K on Eq. 1's elastic term.
     pub gain_k: Option<f64>,
     /// Sense of rotation.
     pub configuration: Option<Configuration>,
     /// Allocation.
     pub mixer: Option<Variant>,
-    /// What measures the position.
+    /// Sensor of the position.
     pub sensors: Option<PositionSensor>,
-    /// What the pilot leaves to the vehicle.
+    /// Assistance by the vehicle's modes.
     pub assist: Option<Assist>,
     /// Arms that close.
     pub arms: Option<ArmChoice>,

@@ -1,5 +1,5 @@
 //! Reads a [`Scenario`] against the tables in [`keys`](super::keys) and [`steps`](super::steps), not through derived
-//! structs: messages must name key, value and what is allowed.
+//! structs: messages must name key, value and the allowed values.
 
 use core::ops::Range as Span;
 use std::sync::OnceLock;
@@ -149,8 +149,8 @@ impl Source<'_> {
     }
 }
 
-/// The stack's parameters follow the vehicle unless the file has them. Of a lens whose place the file does not have they
-/// know nothing: it sits within what needs no measuring.
+/// The stack's parameters follow the vehicle unless the file sets them. Without a lens position in the file they assume
+/// the lens at the centre of mass; it is near enough to need no measuring.
 fn params_from_vehicle(scenario: &mut Scenario) {
     let Scenario {
         params,
@@ -179,7 +179,7 @@ fn params_from_vehicle(scenario: &mut Scenario) {
     (params.servo_slew_1, params.servo_slew_2) = (slew, slew);
     (params.servo_slew_3, params.servo_slew_4) = (slew, slew);
     params.servo_range = servo.range as f32;
-    // Pulses and marks of the servos are the parameters' (`ServoSpec::measured`).
+    // The servos take pulses and marks from the parameters (`ServoSpec::measured`).
     params.servo_marks = ServoMarks::S1234;
 }
 

@@ -21,7 +21,7 @@ pub struct Setting {
 /// Reads a parameter file: a scenario file that has nothing but `[params]`.
 ///
 /// # Errors
-/// One line: file, line, key, value, what is allowed.
+/// One line: file, line, key, value, allowed values.
 pub fn read(path: &Path) -> Result<Vec<Setting>> {
     let file = path.display().to_string();
     let text = read_text(path, &file)?;

@@ -1,4 +1,4 @@
-//! A text of TOML, its values and the place of each, for messages.
+//! A TOML text: its values, and the line of each for messages.
 
 use core::ops::Range as Span;
 use std::path::Path;
@@ -10,7 +10,7 @@ use super::error::{Place, ScenarioError};
 use super::keys::Range;
 use super::nearest::nearest;
 
-/// Refuses devices and wrong files.
+/// Largest file, bytes: refuses devices and wrong files.
 const MAX_BYTES: u64 = sophie_input::MIB;
 
 pub(super) type Result<T> = core::result::Result<T, ScenarioError>;

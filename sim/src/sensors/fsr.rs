@@ -9,11 +9,11 @@ use rand_pcg::Pcg64Mcg;
 
 use crate::streams::Streams;
 
-/// m²: 38 mm square (datasheet).
+/// Area, m²: 38 mm square (datasheet).
 const AREA: f64 = 0.038 * 0.038;
-/// N (datasheet).
+/// Threshold, N (datasheet).
 const THRESHOLD: f64 = 0.1;
-/// S at 1 N (guide, about 10 kΩ).
+/// Conductance at 1 N, S (guide, about 10 kΩ).
 const GAIN: f64 = 1e-4;
 /// Largest gain error, calibrated in the arm (assumed; 6 % from the reel, datasheet).
 const PART_ERROR: f64 = 0.04;
@@ -21,13 +21,13 @@ const PART_ERROR: f64 = 0.04;
 const EXPONENT_MIN: f64 = 0.97;
 /// Half width of the hysteresis over force (assumed for slow changes; datasheet 10 % over the whole range).
 const HYSTERESIS: f64 = 0.015;
-/// RMS and time constant of the creep, s (assumed; datasheet below 5 % per decade of time).
+/// Creep: RMS share and time constant, s (assumed; datasheet below 5 % per decade of time).
 const CREEP: (f64, f64) = (0.008, 20.0);
-/// RMS over the conductance (assumed).
+/// RMS noise over the conductance (assumed).
 const NOISE: f64 = 0.004;
 /// Resistor to ground, Ω, and its largest error.
 const DIVIDER: (f64, f64) = (10_000.0, 0.01);
-/// RMS, counts.
+/// RMS noise of the converter, counts.
 const ADC_NOISE: f64 = 1.2;
 
 /// Largest relative error of the pressure: limits of gain and divider, hysteresis, three times the creep's RMS, and 1 %
@@ -54,9 +54,9 @@ pub struct FsrSensor {
     force: f64,
     creep: f64,
     broken: Option<FsrBreak>,
-    /// What breaks, and when, s after power-up.
+    /// Fault to come, and its begin, s after power-up.
     breaks: Option<(FsrBreak, f64)>,
-    /// s.
+    /// Time, s.
     time: f64,
     counts: u16,
     rng: Pcg64Mcg,
@@ -113,7 +113,7 @@ impl FsrSensor {
         let rng = &mut self.rng;
         let mut normal = || -> f64 { StandardNormal.sample(rng) };
         let force = pressure.max(0.0) * AREA;
-        // Play: the felt force moves only when pushed by either edge.
+        // Hysteresis as play: the sensed force moves only when the true one leaves the band around it.
         self.force = self
             .force
             .clamp(force * (1.0 - HYSTERESIS), force * (1.0 + HYSTERESIS));

@@ -95,7 +95,7 @@ pub struct Pads {
     pub imu_select: (&'static str, u8),
     /// Data-ready pin of the sensor.
     pub imu_ready: At,
-    /// From body axes (forward, right, down) to the sensor's.
+    /// Conversion from body axes (forward, right, down) to the sensor's.
     pub imu_axes: fn([f64; 3]) -> [f64; 3],
     /// Bus and address, arms 1 to 4.
     pub arms: [(usize, u8); 4],

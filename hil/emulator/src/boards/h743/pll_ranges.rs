@@ -8,7 +8,7 @@ pub struct Settings {
     pub multipliers: [u64; 3],
 }
 
-/// Of the input ranges, MHz (RM0433 §8.7.12).
+/// Limits of the input ranges, MHz (RM0433 §8.7.12).
 const INPUTS: [[f64; 2]; 4] = [[1.0, 2.0], [2.0, 4.0], [4.0, 8.0], [8.0, 16.0]];
 /// Wide and medium oscillator, MHz (RM0433 §8.5.5, datasheet of revision V).
 const WIDE: [f64; 2] = [192.0, 836.0];
