@@ -1,5 +1,5 @@
-//! The simulated board: the tasks' ports, wired to the plant through its sensors. The plant steps by a millisecond,
-//! then the tasks run; their outputs act in the next one.
+//! The simulated board: the tasks' ports, connected to the plant through sensor models. Each millisecond the plant
+//! steps first, then the tasks run; their outputs act on the next step of the plant.
 
 use std::cell::{Cell, RefCell};
 
@@ -31,11 +31,11 @@ use crate::sensors::fsr::FsrSensor;
 use crate::sensors::imu::{Imu, Misfit};
 use crate::streams::Streams;
 
-/// Half a hardware ring of 512.
+/// Bytes of the receiver's buffer: half a hardware ring of 512.
 const LINE_BYTES: usize = 256;
-/// All analog inputs, µs.
+/// Time to convert all analog inputs, µs.
 const CONVERSION_US: u64 = 30;
-/// One sensor over I2C at 400 kHz, µs.
+/// Time to read one sensor over I2C at 400 kHz, µs.
 const ARM_READ_US: u64 = 400;
 
 const STEPS_PER_MS: u32 = (1e-3 / STEP) as u32;
@@ -50,18 +50,18 @@ pub struct Board {
     truth: Cell<AnalogTruth>,
     /// `None`: no answer.
     arm_gravity: Cell<PerArm<Option<Vec3>>>,
-    /// Hz.
+    /// Sample rate of the inertial sensor, Hz.
     imu_rate: f64,
     /// Memory that outlives a reset.
     pub memory: Cell<[Words; 2]>,
     /// Accelerometer bias as measured on a level bench, m/s².
     pub accel_bias: [f32; 3],
-    /// How the motor outputs are wired.
+    /// Wiring from motor outputs to rotors.
     wiring: Cell<MotorMap>,
-    /// What the controllers are, and what is sent to them.
+    /// Motor controllers as built, and the protocol sent to them.
     esc: EscSpec,
     protocol: Cell<EscProtocol>,
-    /// When the next pulse may start, µs.
+    /// Earliest start of the next pulse, µs.
     next_pulse: Cell<u64>,
 }
 
@@ -71,7 +71,7 @@ struct AnalogTruth {
     voltage: f64,
     current: f64,
     servo_voltage: f64,
-    /// Since the last conversion, s.
+    /// Time since the last conversion, s.
     elapsed: f64,
 }
 
@@ -86,13 +86,13 @@ struct Sensors {
 }
 
 impl Board {
-    /// Default parameters; parts with the errors of `streams`.
+    /// A board with default parameters and the sensor errors of `streams`.
     #[must_use]
     pub fn new(streams: Streams) -> Self {
         Self::with(&Params::default(), streams, &Faults::default())
     }
 
-    /// That of `scenario`, motors wired as its parameters say.
+    /// The board of `scenario`, with its motors wired as its parameters state.
     #[must_use]
     pub fn of(scenario: &Scenario) -> Self {
         let mut board = Self::with(&scenario.params, scenario.streams(), &scenario.faults);
@@ -139,24 +139,24 @@ impl Board {
         }
     }
 
-    /// Builds the inertial sensor in as `misfit` has it.
+    /// Mounts the inertial sensor with the errors of `misfit`.
     pub fn misfit(&self, misfit: Misfit) {
         self.sensors.borrow_mut().imu.misfit = Some(misfit);
     }
 
-    /// Wires the motors as `map` has it, whatever the parameters say.
+    /// Wires the motors by `map`, independent of the parameters.
     pub fn wire(&self, map: MotorMap) {
         self.wiring.set(map);
     }
 
-    /// Sends what `params` have to the motor controllers from now on, as a start of the board does.
+    /// Applies the motor protocol of `params`, as a start of the board does.
     pub fn speaks(&self, params: &Params) {
         self.protocol.set(EscProtocol::from_params(params));
         self.next_pulse.set(0);
     }
 
-    /// The drives that the controllers make of motor commands: of frames the commands, of pulses what their own ends
-    /// say. `None` for commands within the last pulse's period, which start no pulse.
+    /// Rotor drives from motor commands, 0..1: equal to the commands with digital frames, rescaled by the controller's
+    /// own ends with pulses. `None` while the last pulse's period lasts: no new pulse starts.
     fn drives(&self, commands: PerArm<f32>) -> Option<PerArm<f64>> {
         let EscProtocol::Pulse(pulse) = self.protocol.get() else {
             return Some(commands.map(f64::from));
@@ -192,7 +192,7 @@ impl Board {
                     sensors
                         .imu
                         .sample(rate + rate_step * share, force + force_step * share, &rotors);
-                // It holds more than 1 ms of samples.
+                // The queue holds more than 1 ms of samples.
                 let _ = batch.push(reading);
             }
         }

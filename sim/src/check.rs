@@ -1,5 +1,5 @@
-//! Whether a vehicle can fly its mission: what it has against what the mission needs, computed by the plant's parts and
-//! the laws that fly. `docs/design-check.md` explains each row.
+//! Design check: compares the vehicle's abilities with the needs of its mission, computed by the plant's parts and the
+//! flown control laws. `docs/design-check.md` explains each row.
 
 mod endurance;
 mod grip;

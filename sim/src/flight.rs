@@ -3,6 +3,7 @@
 pub mod aircraft;
 mod failure_detail;
 mod judge;
+pub mod live;
 mod recorder;
 pub mod stack;
 
@@ -16,7 +17,7 @@ use self::judge::Judge;
 use self::recorder::{Ending, Recorder};
 use self::stack::Stack;
 use crate::devices::sbus::Receiver;
-use crate::pilot::{Pilot, PilotOutput, Seen};
+use crate::pilot::{Pilot, PilotOutput, VisibleState};
 use crate::plant::Plant;
 use crate::record::{FlightRecord, Observer, Outcome};
 use crate::scenario::{Scenario, Step};
@@ -59,8 +60,8 @@ pub fn fly_with<A: Aircraft>(
     (record, world.stack)
 }
 
-/// Lets the vehicle of `scenario` stand on the ground without a transmitter, `make` as in [`fly_with`], until `over` of it;
-/// returns the aircraft.
+/// Runs the vehicle of `scenario` on the ground without a transmitter until `over` returns true; `make` as in
+/// [`fly_with`]. Returns the aircraft.
 ///
 /// # Errors
 /// One line: why the aircraft cannot run on.
@@ -175,7 +176,7 @@ impl<A: Aircraft> World<A> {
         recorder.finish(scenario, &self.stack, ending, observer)
     }
 
-    /// What the mission did to the vehicle ends: no push, a board that was off is on.
+    /// Ends the mission's effects on the vehicle: no push, and a board that was off starts.
     pub(crate) fn leave_alone(&mut self) {
         self.plant.push = DVec3::ZERO;
         if !self.stack.runs() {
@@ -234,10 +235,10 @@ impl Uplink {
     }
 }
 
-fn seen(plant: &Plant, t: f64) -> Seen {
+fn seen(plant: &Plant, t: f64) -> VisibleState {
     let pose = plant.pose();
     let [roll, pitch, yaw] = plant.euler();
-    Seen {
+    VisibleState {
         t,
         position: pose.position,
         velocity: pose.velocity,

@@ -1,7 +1,6 @@
 //! A flight at the pace of real time, with MAVLink on a UDP socket.
 
 mod chip;
-mod flight;
 mod pace;
 mod udp;
 
@@ -10,7 +9,6 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use self::chip::ThisChip;
-pub use self::flight::LiveFlight;
 pub use self::pace::Pace;
 pub use self::udp::Udp;
 use crate::clock::VirtualTime;
@@ -23,9 +21,9 @@ use sophie_ports::signing::Record;
 use sophie_tasks::console;
 use sophie_tasks::links::Links;
 
-/// What ends a flight before its mission is over, in the report.
+/// Reason in the report of a flight that the user stopped.
 const STOPPED: &str = "stopped from outside";
-/// What the server may send, bytes each second of flight: a wired network carries it many times over.
+/// Output limit of the server, bytes per second of flight; any wired network carries it.
 const BYTES_PER_SECOND: u32 = 50_000;
 
 /// The real time and the MAVLink clients of a flight.
@@ -35,15 +33,15 @@ pub struct Live {
     line: &'static Line,
     /// The key that signs MAVLink from the first start on.
     key: Option<Key>,
-    /// What the next start of the board takes.
+    /// Parameters and key that the next start of the board loads.
     stored: Option<&'static Memory>,
     stop: Arc<AtomicBool>,
     notice: fn(&str),
 }
 
 impl Live {
-    /// Paced by `pace` with clients at `udp`, until `stop` is set. `notice` receives what a user should know, in one
-    /// line.
+    /// Paced by `pace` with clients at `udp`, until `stop` is set. `notice` receives messages for the user, one line
+    /// each.
     ///
     /// The line is leaked: tasks borrow it as `'static`, like the board.
     #[must_use]
@@ -86,24 +84,24 @@ impl Live {
         ));
     }
 
-    /// The board's line, for what reaches it beside the clients.
+    /// The board's line, for senders besides the clients.
     pub(crate) fn line(&self) -> &'static Line {
         self.line
     }
 
-    /// The parameters that the board restarts with, if it is to.
+    /// The parameters of the next start, if a client has ordered a restart.
     pub(crate) fn restarts(&self) -> Option<Params> {
         self.stored
             .filter(|_| self.line.restarts())
             .map(|memory| memory.params.get())
     }
 
-    /// Loses what is on the line, as at a reset of the board.
+    /// Discards the bytes on the line, as a reset of the board does.
     pub(crate) fn reset(&self) {
         self.line.clear();
     }
 
-    /// Waits until `us` of virtual time is due, and takes in what clients have sent.
+    /// Waits until `us` of virtual time is due, and passes the clients' datagrams to the board.
     ///
     /// # Errors
     /// The flight is to stop.
@@ -119,9 +117,9 @@ impl Live {
         Ok(())
     }
 
-    /// Sends what the board has said.
+    /// Sends the board's output to the clients.
     pub(crate) fn end(&mut self) {
-        while let Some(frame) = self.line.said() {
+        while let Some(frame) = self.line.take_write() {
             if let Some(refused) = self.udp.send(&frame) {
                 (self.notice)(&refused);
             }

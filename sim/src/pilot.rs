@@ -1,9 +1,8 @@
 //! The simulated pilot: flies the steps of a scenario with sticks alone.
 //!
-//! He sees the vehicle from outside (position, speed, attitude: late and with errors) and the transmitter's
-//! display, or hears the log read aloud where there is no telemetry; his sticks move with a limited bandwidth. What
-//! leaves him are channel frames of the radio. He knows nothing else, and the flight stack learns nothing of him but
-//! those bytes.
+//! Inputs: the vehicle's position, velocity and attitude, late and with errors, and the transmitter's display, or the
+//! vehicle's log without telemetry. Output: channel frames of the radio; the sticks move with a limited bandwidth.
+//! Pilot and flight stack exchange no other data.
 
 mod assisted;
 mod autonomous;
@@ -38,9 +37,9 @@ use crate::devices::crsf::{FRAME_HZ, Frame, Telemetry, rc_frame};
 use crate::record::Outcome;
 use crate::scenario::{Scenario, Step};
 
-/// The vehicle as it looks from outside, now.
+/// The vehicle's true state that an observer on the ground sees.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Seen {
+pub struct VisibleState {
     /// Simulated time, s.
     pub t: f64,
     /// Position of the centre of mass, NED from the take-off point on the ground, m.
@@ -69,18 +68,18 @@ pub enum StepEvent {
     },
 }
 
-/// What the pilot did in one step of time.
+/// Output of the pilot in one step of time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PilotOutput {
     /// A channel frame from a receiver of CRSF, [`FRAME_HZ`] a second while the transmitter is on.
     pub rc_bytes: Option<Frame>,
-    /// The same channels as they come over the air, for a receiver that speaks another protocol.
+    /// The same channels as sent over the air, for a receiver of another protocol.
     pub channels: Option<[u16; CHANNELS]>,
     /// Index of the step being flown; the number of steps once all are done.
     pub step: usize,
     /// Steps that began or ended just now.
     pub events: Vec<StepEvent>,
-    /// How the mission ended, in the call in which it did.
+    /// Outcome of the mission, in the one call in which it ends.
     pub outcome: Option<Outcome>,
 }
 
@@ -95,16 +94,16 @@ pub struct Pilot {
     elapsed: f64,
     telemetry: Telemetry,
     perception: Perception,
-    /// What the display showed over the last reaction time.
+    /// Modes shown on the display over the last reaction time.
     display: VecDeque<Option<Mode>>,
     display_delay: usize,
     mission: Mission,
     sticks: StickDynamics,
-    wish: StickTarget,
+    target: StickTarget,
     referee: Referee,
-    /// When the radio is lost for good, s after power-up.
+    /// Time of the permanent loss of the radio, s after power-up.
     radio_lost_at: f64,
-    /// Since power-up, s.
+    /// Time since power-up, s.
     now: f64,
 }
 
@@ -125,15 +124,15 @@ impl Pilot {
             display_delay: (limits.delay * FRAME_HZ) as usize,
             mission: Mission::new(scenario),
             sticks: StickDynamics::new(limits.bandwidth, scenario.arms),
-            wish: StickTarget::default(),
+            target: StickTarget::default(),
             referee: Referee::default(),
             radio_lost_at: scenario.faults.radio_at.unwrap_or(f64::INFINITY),
             now: 0.0,
         }
     }
 
-    /// One step of `dt` s (at most a few ms): what there is to see now, and the bytes that the vehicle sent.
-    pub fn step(&mut self, dt: f64, seen: Seen, telemetry_bytes: &[u8]) -> PilotOutput {
+    /// Advances by `dt` s (at most a few ms) with the visible state and the telemetry bytes of the vehicle.
+    pub fn step(&mut self, dt: f64, seen: VisibleState, telemetry_bytes: &[u8]) -> PilotOutput {
         let mut out = PilotOutput {
             step: self.index,
             ..Default::default()
@@ -156,7 +155,7 @@ impl Pilot {
             if self.outcome.is_none() {
                 self.think(seen, 1.0 / FRAME_HZ, &mut out);
             }
-            let sticks = self.sticks.move_to(&self.wish, 1.0 / FRAME_HZ);
+            let sticks = self.sticks.move_to(&self.target, 1.0 / FRAME_HZ);
             if self.linked() {
                 out.rc_bytes = Some(rc_frame(&sticks));
                 out.channels = Some(sticks.to_channels());
@@ -166,14 +165,14 @@ impl Pilot {
         out
     }
 
-    /// Somebody reads the vehicle's log aloud: with a receiver that has no way back the display shows nothing.
+    /// Gives the pilot mode and reason from the vehicle's log, for a receiver without telemetry.
     pub fn hear(&mut self, mode: Mode, reason: &str) {
         if self.linked() {
             self.telemetry.report(mode, reason);
         }
     }
 
-    /// The transmitter is on, and heard.
+    /// The transmitter is on and the radio works.
     fn linked(&self) -> bool {
         self.mission.transmits() && self.now < self.radio_lost_at
     }
@@ -190,13 +189,13 @@ impl Pilot {
         self.sticks.at()[3]
     }
 
-    /// What the transmitter's display shows.
+    /// Contents of the transmitter's display.
     #[must_use]
     pub fn telemetry(&self) -> &Telemetry {
         &self.telemetry
     }
 
-    fn think(&mut self, now: Seen, dt: f64, out: &mut PilotOutput) {
+    fn think(&mut self, now: VisibleState, dt: f64, out: &mut PilotOutput) {
         let seen = self.perception.look(now, dt);
         self.display.push_back(self.telemetry.mode);
         while self.display.len() > self.display_delay + 1 {
@@ -223,9 +222,9 @@ impl Pilot {
             text: &self.telemetry.reason,
         };
         match self.mission.fly(&step, &view, self.sticks.at(), dt) {
-            Progress::Going(wish) => self.wish = wish,
-            Progress::Done(wish) => {
-                self.wish = wish;
+            Progress::Going(target) => self.target = target,
+            Progress::Done(target) => {
+                self.target = target;
                 out.events.push(StepEvent::Ended {
                     index: self.index,
                     done: true,

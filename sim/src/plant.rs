@@ -45,7 +45,7 @@ pub const GRAVITY: f64 = 9.806_65;
 const GROUND_FRICTION: f64 = 0.7;
 /// Linear air drag, N·s/m (assumed).
 pub const DRAG: f64 = 0.3;
-/// Thrust of a propeller that would break at the pipe, N: a tenth of what it hovers with.
+/// Thrust from which a propeller would break at the pipe, N: a tenth of hover thrust.
 const TURNING: f64 = 0.25;
 /// Distance of the origin from a surface within which parts may touch it, m: arm, depth of its hinge and a margin.
 const NEAR: f64 = 0.25;
@@ -55,11 +55,11 @@ const NEAR: f64 = 0.25;
 pub struct Actuators {
     /// Drive that each controller gives its motor, 0..1.
     pub motors: PerArm<f64>,
-    /// Pulse of each servo, µs; 0 is none.
+    /// Pulse of each servo, µs; 0 without a pulse.
     pub servos: PerArm<f64>,
 }
 
-/// What moves an arm, and what its sensor feels.
+/// Actuators of an arm, and the pressure at its sensor.
 #[derive(Clone, Debug)]
 struct Limb {
     rotor: Rotor,
@@ -85,7 +85,7 @@ pub struct Plant {
     pub moment: DVec3,
 }
 
-/// All but the arms.
+/// State of the vehicle and its world except the arms.
 #[derive(Clone, Debug)]
 struct Base {
     body: Body,
@@ -349,7 +349,7 @@ impl Base {
         for ((limb, arm), (motor, servo)) in self.limbs.iter_mut().zip(arms.iter_mut()).zip(commands) {
             let thrust = limb.rotor.step(STEP, *motor, voltage);
             current += limb.rotor.current(voltage);
-            // Without supply as without pulse: the gears hold what they can.
+            // Without supply the servo behaves as without a pulse: the gears hold by friction.
             let servo = if powered { *servo } else { 0.0 };
             if servo > 0.0 {
                 servo_current += MG996R.at(limb.tendon.servo_torque());

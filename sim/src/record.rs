@@ -8,9 +8,9 @@ use crate::scenario::Scenario;
 /// A flown flight.
 #[derive(Clone, Debug)]
 pub struct FlightRecord {
-    /// What was flown.
+    /// The flown scenario.
     pub scenario: Scenario,
-    /// Whether it succeeded, and if not, why.
+    /// Outcome, with the reason of a failure.
     pub outcome: Outcome,
     /// Samples at [`SAMPLE_HZ`].
     pub samples: Vec<Sample>,
@@ -26,7 +26,7 @@ pub struct FlightRecord {
     pub wall_seconds: f64,
     /// Missed deadlines, all tasks.
     pub overruns: u32,
-    /// Of all samples, bit for bit.
+    /// Digest of all samples, bit for bit.
     pub digest: u64,
 }
 
@@ -57,27 +57,27 @@ pub struct Sample {
     pub attitude: [f64; 3],
     /// Estimated roll, pitch, yaw, rad.
     pub attitude_estimate: [f64; 3],
-    /// Target roll, pitch, yaw, rad; NaN if none.
+    /// Target roll, pitch, yaw, rad; NaN without a target.
     pub attitude_setpoint: [f64; 3],
     /// True angular rate, rad/s, body.
     pub rate: [f64; 3],
-    /// True, rad.
+    /// True tilt, rad.
     pub tilt: PerArm<f64>,
-    /// By the arm's sensor, rad; NaN if none.
+    /// By the arm's sensor, rad; NaN without a fresh one.
     pub tilt_measured: PerArm<f64>,
     /// By the mixer's model, rad.
     pub tilt_model: PerArm<f64>,
-    /// True, N.
+    /// True thrust, N.
     pub thrust: PerArm<f64>,
-    /// N.
+    /// Commanded thrust, N.
     pub thrust_asked: PerArm<f64>,
-    /// True, N.
+    /// True tension, N.
     pub tension: PerArm<f64>,
-    /// N.
+    /// Commanded tension, N.
     pub tension_asked: PerArm<f64>,
-    /// True, at the sensor, Pa.
+    /// True pressure at the sensor, Pa.
     pub pressure: PerArm<f64>,
-    /// Pa; NaN if not fresh.
+    /// Measured pressure, Pa; NaN if not fresh.
     pub pressure_measured: PerArm<f64>,
     /// Battery voltage under load, V.
     pub battery_voltage: f64,
@@ -114,7 +114,7 @@ pub struct Phase {
     pub worst_tilt: f64,
     /// Share of the time, 0..1.
     pub saturation: f64,
-    /// At the end, V.
+    /// Battery voltage at the end, V.
     pub battery_voltage: f64,
     /// Missed deadlines during the step.
     pub overruns: u32,
@@ -123,9 +123,9 @@ pub struct Phase {
 /// An event.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Event {
-    /// When, s.
+    /// Time, s.
     pub t: f64,
-    /// What, one line.
+    /// Description, one line.
     pub text: String,
 }
 
@@ -134,11 +134,11 @@ pub struct Event {
 pub struct Grip {
     /// Arm, 1 to 4.
     pub arm: u8,
-    /// At the proof, Pa.
+    /// Measured pressure at the proof, Pa.
     pub pressure: f64,
-    /// At the proof, Pa.
+    /// True pressure at the proof, Pa.
     pub pressure_true: f64,
-    /// Of the servo at the proof, N·m.
+    /// Torque of the servo at the proof, N·m.
     pub torque: f64,
     /// Time from start of closing to pressure within tolerance, s.
     pub closure: f64,

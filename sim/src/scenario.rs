@@ -10,9 +10,11 @@ pub mod faults;
 pub mod keys;
 mod load;
 mod nearest;
+mod overrides;
 mod read;
 mod read_steps;
 pub mod settings;
+mod source;
 mod steps;
 #[cfg(test)]
 mod tests;
@@ -20,7 +22,7 @@ mod tests;
 pub use defaults::MISSION;
 pub use error::{Place, ScenarioError};
 pub use faults::Faults;
-pub use load::Overrides;
+pub use overrides::Overrides;
 pub use steps::{STEPS, StepKind, StepNumber};
 
 use glam::DVec3;
@@ -86,7 +88,7 @@ impl Scenario {
         Streams::new(self.seed)
     }
 
-    /// Where the steady wind comes from, clockwise from north, rad.
+    /// Direction that the steady wind comes from, clockwise from north, rad.
     #[must_use]
     pub fn wind_from(&self) -> f64 {
         let drawn = || self.streams().within("wind", 0.0, core::f64::consts::TAU);
@@ -99,13 +101,13 @@ impl Scenario {
 pub struct Vehicle {
     /// Arm infill, %.
     pub infill: f64,
-    /// On Eq. 1's elastic term.
+    /// Gain K on Eq. 1's elastic term.
     pub gain_k: f64,
     /// Configuration of the rotors' senses.
     pub configuration: Configuration,
     /// A1, A2, B1, B2 of Eq. 1, °/N, °/(N %), °/N², °/(N² %): Table I or a fitted arm.
     pub arm_coefficients: [f64; 4],
-    /// How the arms bend: no file says it.
+    /// Model of the arms' bending; not a key of the file.
     pub arm_bending: ArmBending,
     /// Bending stiffness of a beam's tip over its root's.
     pub arm_taper: f64,
@@ -117,7 +119,7 @@ pub struct Vehicle {
     pub arm_offset: PerArm<f64>,
     /// Arms carry tip masses (true) or follow thrust alone, as in the paper's statics (false).
     pub coupled_arms: bool,
-    /// Of the bending mode in hover.
+    /// Damping ratio of the bending mode in hover.
     pub arm_damping: f64,
     /// Battery charge at power-up, 0..1.
     pub battery_charge: f64,
@@ -129,7 +131,7 @@ pub struct Vehicle {
     pub body: BodySpec,
     /// Motors and propellers, all alike.
     pub rotor: RotorSpec,
-    /// Motor controllers, all alike; what the stack takes them for is in its parameters alone.
+    /// Motor controllers, all alike. The stack knows only its parameters, which may differ.
     pub esc: EscSpec,
 }
 
@@ -142,15 +144,15 @@ pub struct World {
     pub gust_moment: f64,
     /// Force of the steady wind, N.
     pub steady_wind: f64,
-    /// Where it comes from, clockwise from north, rad; `None`: drawn by the seed.
+    /// Direction that the wind comes from, clockwise from north, rad; `None`: set by the seed.
     pub steady_wind_from: Option<f64>,
-    /// Outer, m.
+    /// Outer diameter of the pipe, m.
     pub pipe_diameter: f64,
     /// North and east of the perch spot, m; the pipe runs north-south.
     pub pipe_position: [f64; 2],
     /// Height, m.
     pub pipe_top: f64,
-    /// From end to end, m; the perch spot is in its middle.
+    /// Pipe length from end to end, m; the perch spot is in its middle.
     pub pipe_length: f64,
     /// Coefficient, vehicle on pipe.
     pub pipe_friction: f64,
@@ -161,22 +163,22 @@ pub struct World {
 pub struct Pilot {
     /// Reaction delay, s.
     pub delay: f64,
-    /// Of the sticks, Hz.
+    /// Bandwidth of the sticks, Hz.
     pub bandwidth: f64,
-    /// RMS, m.
+    /// RMS error of the seen position, m.
     pub eye_noise: f64,
-    /// What he leaves to the vehicle where its mode takes it.
+    /// Steps that the pilot leaves to a mode of the vehicle.
     pub assist: Assist,
-    /// How far beside the crown he sets down, m; `None`: what the capture map has held on a pipe of the diameter that he
-    /// takes it to have.
+    /// Largest distance beside the crown at the touch, m; `None`: the share of the assumed diameter that the capture
+    /// map holds.
     pub touch_within: Option<f64>,
-    /// How fast he may drift across the pipe then, m/s.
+    /// Largest drift across the pipe at the touch, m/s.
     pub touch_drift: f64,
-    /// What he takes the pipe to be.
-    pub believes: Assumed,
+    /// Pipe that the pilot assumes.
+    pub assumed: Assumed,
 }
 
-/// What the pilot takes the pipe to be, each value `None` where it is the true one.
+/// The pilot's assumptions about the pipe; `None` for each value that is the true one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Assumed {
     /// North of the perch spot, m.
@@ -189,7 +191,7 @@ pub struct Assumed {
     pub diameter: Option<f64>,
 }
 
-/// A pipe as the pilot takes it to be.
+/// The assumed pipe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AssumedPipe {
     /// North and east of the perch spot, m.
@@ -201,7 +203,7 @@ pub struct AssumedPipe {
 }
 
 impl Assumed {
-    /// The pipe of `world` with what is assumed otherwise.
+    /// The pipe of `world` with the assumed values in place of the true ones.
     #[must_use]
     pub fn pipe(&self, world: &World) -> AssumedPipe {
         let [north, east] = world.pipe_position;
@@ -213,47 +215,47 @@ impl Assumed {
     }
 }
 
-/// What the pilot leaves to the vehicle.
+/// Steps that the pilot leaves to the vehicle's modes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Assist {
-    /// Nothing.
+    /// No assistance: the pilot flies by hand.
     #[default]
     None,
     /// Hovering and flying to a point in the mode HOLD.
     Hold,
-    /// Perching, and leaving the pipe: he holds within a metre of it and turns the perch switch.
-    Itself,
+    /// Perching and departure: the pilot holds within a metre of the pipe and turns the perch switch.
+    Autonomous,
 }
 
 /// Sensors beside those of every board.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sensors {
-    /// What measures the position.
+    /// Sensor of the position.
     pub position: PositionSensor,
-    /// When after power-up poses, or flow and range, fail, s, beside the gaps that they have.
+    /// Begin of the sensor's failure, s after power-up, in addition to its usual gaps.
     pub pose_fails_at: f64,
-    /// For how long, s.
+    /// Duration of the failure, s.
     pub pose_fails_for: f64,
-    /// How flow and range fail then.
+    /// Fault of flow and range.
     pub flow_fault: FlowFault,
-    /// Where their lens is, of the centre of mass, m, body; each `None`: where [`Sensors::lens`] has it.
+    /// Lens of flow and range from the centre of mass, m, body; `None`: as in [`Sensors::lens`].
     pub flow_place: [Option<f64>; 3],
     /// Frames of flow and range a second, Hz; `None`: 50.
     pub flow_rate: Option<f64>,
-    /// What ranges are multiples of, m; `None`: a millimetre.
+    /// Resolution of the range, m; `None`: a millimetre.
     pub range_step: Option<f64>,
-    /// How poses fail then.
+    /// Fault of the poses.
     pub pose_fault: PoseFault,
     /// The board carries a barometer.
     pub barometer: bool,
-    /// How it fails then.
+    /// Fault of the barometer.
     pub barometer_fault: BarometerFault,
     /// Sensors that answer in the slots behind each frame of an SBUS receiver, 0 to [`crate::devices::sbus::SLOTS`]; 0: none has slots.
     pub sbus_slots: f64,
 }
 
 impl Sensors {
-    /// Where the lens of flow and range is in truth, of the centre of mass, m, body: 2 cm below it, unless said otherwise.
+    /// True position of the lens from the centre of mass, m, body: 2 cm below it unless the file sets it.
     #[must_use]
     pub fn lens(&self) -> DVec3 {
         let [x, y, z] = self.flow_place;
@@ -261,10 +263,10 @@ impl Sensors {
     }
 }
 
-/// What measures the position.
+/// Sensor of the position.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PositionSensor {
-    /// Nothing.
+    /// No position sensor.
     #[default]
     None,
     /// A computer that sends poses over MAVLink, late and with gaps.
@@ -280,17 +282,17 @@ pub enum Step {
     Arm,
     /// Climb to a height.
     TakeOff {
-        /// m.
+        /// Height, m.
         height: f64,
     },
     /// Hold the spot.
     Hover {
-        /// s.
+        /// Duration, s.
         seconds: f64,
     },
     /// The paper's roll manoeuvre: +angle, -angle, level; a side ends once reached.
     Roll {
-        /// rad.
+        /// Angle, rad.
         angle: f64,
         /// Longest time per side, s.
         seconds: f64,
@@ -311,7 +313,7 @@ pub enum Step {
     },
     /// Stay clamped under a push.
     Hold {
-        /// s.
+        /// Duration, s.
         seconds: f64,
         /// Sideways at the centre of mass in the middle third, N.
         push: f64,
@@ -324,16 +326,16 @@ pub enum Step {
     Yaw {
         /// Clockwise from north, rad.
         heading: f64,
-        /// s, from when it is there.
+        /// Duration after the turn, s.
         seconds: f64,
     },
     /// Fly to a point.
     FlyTo {
-        /// From take-off, m.
+        /// North from take-off, m.
         north: f64,
-        /// From take-off, m.
+        /// East from take-off, m.
         east: f64,
-        /// Over the ground, m.
+        /// Height over the ground, m.
         height: f64,
     },
     /// Descend to the ground below.
@@ -342,7 +344,7 @@ pub enum Step {
     Disarm,
     /// Transmitter off (no frames, display dark), until the display shows the mode again.
     RadioOff {
-        /// s.
+        /// Duration, s.
         seconds: f64,
     },
     /// Reset of the board, until displayed as disarmed.

@@ -1,4 +1,5 @@
-//! Random numbers by name: what is added draws from a stream of its own, and old seeds stay the same flights.
+//! Random numbers by name: each part has a stream of its own, so that a new part leaves the flights of old seeds
+//! unchanged.
 
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -49,7 +50,7 @@ mod tests {
 
     use super::*;
 
-    /// What a release, another machine or a new version of a crate must not change.
+    /// First values, which no release, machine or crate version may change.
     #[test]
     fn the_first_values_stay() {
         let first = |seed, name: &str| Streams::new(seed).of(name).random::<u64>();

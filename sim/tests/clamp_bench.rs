@@ -427,7 +427,7 @@ fn a_fast_or_mirrored_servo_closes_holds_and_lets_go_as_any_other() {
 }
 
 #[test]
-fn an_arm_too_stiff_for_the_pipe_says_so() {
+fn an_arm_too_stiff_for_the_pipe_is_reported() {
     for seed in 1..=3 {
         // 15 kgcm allowed, more needed.
         assert!(holding_torque(10.0, 0.20) > 16.0);
@@ -508,7 +508,7 @@ fn a_lead_that_breaks_while_holding_does_not_run_away() {
 }
 
 #[test]
-fn a_sensor_behind_a_divider_that_nobody_told_of_stops_the_closing() {
+fn a_sensor_behind_an_undeclared_divider_stops_the_closing() {
     for infill in [6.0, 6.9, 8.0] {
         for seed in 1..=4 {
             // Behind 1:2 it reads at most 692 Pa; behind 1:11 69 Pa, below a touch.

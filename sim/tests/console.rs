@@ -241,7 +241,7 @@ fn a_parameter_is_found_changed_saved_and_in_force_after_the_restart() {
 }
 
 #[test]
-fn status_says_all_that_forbids_arming() {
+fn status_lists_every_reason_against_arming() {
     let mut bench = Bench::new(Params {
         servo_marks: ServoMarks::S1234,
         ..Params::default()
@@ -422,7 +422,7 @@ fn a_storage_that_fails_is_named_and_the_changes_stay() {
 }
 
 #[test]
-fn a_flash_that_dies_is_told_apart_and_a_sound_one_frees_arming_again() {
+fn a_failed_flash_is_reported_and_a_sound_one_allows_arming_again() {
     let flash = flash();
     let (bench, _) = start(&flash);
     let mut bench = bench.commander(Mode::Disarmed, Mode::Disarmed);
@@ -442,7 +442,7 @@ fn a_flash_that_dies_is_told_apart_and_a_sound_one_frees_arming_again() {
 }
 
 #[test]
-fn storage_full_of_another_programs_data_boots_with_defaults_and_says_so() {
+fn storage_with_another_programs_data_boots_with_defaults_and_a_message() {
     let bytes = (0..4096u32)
         .map(|i| (i.wrapping_mul(2_654_435_761) >> 13) as u8)
         .collect();
@@ -462,7 +462,7 @@ fn storage_full_of_another_programs_data_boots_with_defaults_and_says_so() {
 }
 
 #[test]
-fn a_line_of_noise_does_nothing_and_starves_nobody() {
+fn a_noisy_line_does_nothing_and_starves_no_task() {
     let (bench, storage) = Bench::new(Params::default()).fake_storage(Ok(()));
     let mut bench = bench.commander(Mode::Disarmed, Mode::Disarmed);
     // A neighbour on the same level that only yields.
@@ -491,7 +491,7 @@ fn a_line_of_noise_does_nothing_and_starves_nobody() {
 }
 
 #[test]
-fn bytes_that_are_all_there_at_once_leave_others_their_turn() {
+fn a_burst_of_bytes_leaves_other_tasks_their_turn() {
     let (mut bench, _) = Bench::new(Params::default()).fake_storage(Ok(()));
     // 3,200 characters without line end or echo: 100 reads that are ready at once.
     bench.line.put(&[0x80; 3200]);
@@ -586,7 +586,7 @@ fn the_whole_list_fits_its_lines_and_misspelt_commands_are_helped() {
 }
 
 #[test]
-fn what_the_start_looked_at_is_a_table() {
+fn the_start_up_checks_print_as_a_table() {
     let mut bench = Bench::new(Params::default());
     bench.chip = FakeChip {
         stack: Some(StackUse {
@@ -607,7 +607,7 @@ fn what_the_start_looked_at_is_a_table() {
 }
 
 #[test]
-fn the_brown_out_level_is_set_on_purpose_after_what_it_does_was_said() {
+fn the_brown_out_level_is_set_after_an_explanation_and_a_confirmation() {
     let mut bench = Bench::new(Params::default()).commander(Mode::Disarmed, Mode::Disarmed);
     bench.chip = chip_at(0);
     let mut bench = bench.fake_storage(Ok(())).0;

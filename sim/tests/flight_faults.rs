@@ -47,7 +47,7 @@ fn a_sensor_that_only_gives_errors_stops_the_motors() {
 }
 
 #[test]
-fn a_sensor_that_refuses_at_once_stops_the_motors_and_starves_nobody() {
+fn a_sensor_that_refuses_at_once_stops_the_motors_and_starves_no_task() {
     a_lost_sensor_stops_the_motors(Answer::Refuses);
 }
 

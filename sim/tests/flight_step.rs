@@ -8,7 +8,7 @@ use sophie_control::chain::{
     ArmReading, Attitude, Command, Demand, FlightChain, ImuReading, MixOutput, Surroundings,
 };
 use sophie_ports::retained::StartCause;
-use sophie_sim::flight::aircraft::{Aircraft, Belief, Reset, Said};
+use sophie_sim::flight::aircraft::{Aircraft, ReportedStatus, Reset, StackEstimate};
 use sophie_sim::flight::fly_with;
 use sophie_sim::flight::stack::Stack;
 use sophie_sim::plant::Plant;
@@ -110,7 +110,7 @@ impl Aircraft for Recorded {
         self.stack.receive(bytes);
     }
 
-    fn status(&self) -> Option<Said<'_>> {
+    fn status(&self) -> Option<ReportedStatus<'_>> {
         self.stack.status()
     }
 
@@ -118,8 +118,8 @@ impl Aircraft for Recorded {
         self.stack.grip()
     }
 
-    fn belief(&self) -> Belief {
-        self.stack.belief()
+    fn estimate(&self) -> StackEstimate {
+        self.stack.estimate()
     }
 
     fn motors(&self) -> PerArm<f64> {

@@ -1,8 +1,8 @@
 //! Tasks analog, clamp and servos on four simple arms with faults: reactions, and no force beyond the limit.
 
+use embassy_time::Instant;
 mod links;
 
-use embassy_time::Instant;
 use links::links_with;
 use sophie_control::allocation::arm_deflection::ArmModel;
 use sophie_control::allocation::wrench::PerArm;
@@ -236,7 +236,7 @@ fn four_different_servos_close_hold_and_let_go_at_every_frame_rate() {
 }
 
 #[test]
-fn no_pulse_goes_out_before_the_clamp_loop_has_spoken_and_none_pulls_before_it_is_told_to() {
+fn no_servo_pulse_precedes_the_clamp_loop_and_none_pulls_before_its_order() {
     let (time, links, servos) = (
         VirtualTime::new(),
         links_with(Params::default()),
@@ -377,7 +377,7 @@ fn all_tilts_stale_stop_all_servos_within_a_tenth_of_a_second() {
 }
 
 #[test]
-fn an_arm_whose_pressure_does_not_rise_any_more_stops_and_says_so() {
+fn an_arm_whose_pressure_stops_rising_stops_with_a_reason() {
     let mut b = Bench::new();
     b.arms[0].most = 600.0;
     b.command = Some(CLOSE);

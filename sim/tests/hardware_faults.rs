@@ -76,7 +76,7 @@ fn arm_sensors_that_take_their_time_to_start_raise_no_alarm() {
 }
 
 #[test]
-fn what_the_inertial_sensor_answers_instead_of_samples_is_named_while_calibrating() {
+fn a_wrong_answer_of_the_inertial_sensor_is_named_while_calibrating() {
     for (error, reason) in ERRORS {
         let mut v = Vehicle::new();
         v.imu.0.answer.set(Answer::Errs(error));
@@ -256,7 +256,7 @@ fn gaps_shorter_than_the_limits_are_not_reported() {
 }
 
 #[test]
-fn what_breaks_in_flight_does_not_end_it() {
+fn a_broken_part_does_not_end_the_flight() {
     let breaks: [(Break, &[ArmingInhibit]); 2] = [
         (
             |v| v.arms.1[1].answer.set(Answer::Refuses),

@@ -104,7 +104,7 @@ fn a_dead_zone_above_the_idle_thrust_raises_it() {
 }
 
 #[test]
-fn an_eighth_of_the_ends_flies_the_same() {
+fn controllers_with_pulses_of_an_eighth_fly_the_same() {
     let short = flown(DJI, |p| {
         as_dji(p);
         p.motor_protocol = MotorProtocol::Oneshot125;

@@ -21,7 +21,7 @@ fn reason(text: &str) -> String {
 }
 
 #[test]
-fn a_vehicle_too_weak_to_fly_is_told_by_its_thrust_to_weight() {
+fn the_reason_for_a_weak_vehicle_is_its_thrust_to_weight() {
     // Arms bent by full thrust: 2 % less than 4 T / W.
     for (mass, thrust, ratio) in [(3.0, 7.7, "1.03"), (3.0, 7.5, "1.00"), (3.0, 7.0, "0.93")] {
         let line = reason(&format!(
@@ -37,7 +37,7 @@ fn a_vehicle_too_weak_to_fly_is_told_by_its_thrust_to_weight() {
 }
 
 #[test]
-fn a_vehicle_that_oscillates_is_told_by_its_swings() {
+fn the_reason_for_an_oscillating_vehicle_is_its_swings() {
     for params in [
         "attitude_p = 12\nrate_p = 40",
         "rate_p = 40",
@@ -50,7 +50,7 @@ fn a_vehicle_that_oscillates_is_told_by_its_swings() {
 }
 
 #[test]
-fn a_sound_failure_says_nothing_of_swings() {
+fn a_failure_without_oscillation_names_no_swings() {
     let line = reason(&format!("{HOP}[vehicle]\nbattery_charge_percent = 8\n"));
     assert!(
         !line.contains("swings") && !line.contains("thrust to weight"),
@@ -59,7 +59,7 @@ fn a_sound_failure_says_nothing_of_swings() {
 }
 
 #[test]
-fn a_force_that_does_not_grip_is_told_with_the_force_that_would() {
+fn the_reason_for_a_weak_grip_names_the_force_needed() {
     let line = reason("[vehicle]\nservo = 'mg996r'\ninfill = 10\n");
     assert!(line.contains("force limit reached without grip"), "{line}");
     for words in ["of 950 N/m2", "N needed", "52.2 N"] {

@@ -312,7 +312,7 @@ fn a_fault_that_an_arm_keeps_until_release_is_kept_over_the_reset() {
 }
 
 #[test]
-fn a_brown_out_forbids_arming_on_the_ground_and_says_so() {
+fn a_brown_out_on_the_ground_refuses_arming_with_a_reason() {
     let mut v = Vehicle::start(StartCause::BrownOut, [[0; WORDS]; 2], [0; 4]);
     v.sticks.perch_switch = false;
     v.run(3000);
@@ -413,7 +413,7 @@ fn the_grip_on_the_pipe_hardly_notices_a_reset() {
 
 /// What the closing has learnt of each arm's bending is used again.
 #[test]
-fn a_reset_on_the_pipe_keeps_what_the_closing_has_learnt() {
+fn a_reset_on_the_pipe_keeps_the_learnt_grip() {
     for file in ["reset-clamping", "reset-perched"] {
         let path = format!("{}/../tests/scenarios/{file}.toml", env!("CARGO_MANIFEST_DIR"));
         let mut scenario = Scenario::load(path.as_ref(), &Overrides::default()).unwrap();

@@ -83,7 +83,7 @@ fn sbus_flies_as_crsf_does() {
 }
 
 #[test]
-fn what_the_receiver_says_of_its_radio_starts_the_failsafe_although_frames_go_on() {
+fn the_receivers_failsafe_flag_starts_the_failsafe_although_frames_continue() {
     for (failsafe, frame_lost) in [(true, false), (false, true), (true, true)] {
         let (mut v, line, hover) = flying();
         let lost = Frame {

@@ -6,7 +6,8 @@ use std::sync::atomic::Ordering;
 use sophie_report::terminal::console::Console;
 use sophie_report::terminal::output::OutDir;
 use sophie_report::terminal::{FILES, complain};
-use sophie_sim::live::{Live, LiveFlight, Pace, Udp};
+use sophie_sim::flight::live::LiveFlight;
+use sophie_sim::live::{Live, Pace, Udp};
 
 use super::args::{FlyArgs, LiveArgs};
 use super::interrupt::on_ctrl_c;

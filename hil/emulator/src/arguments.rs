@@ -1,4 +1,4 @@
-//! Arguments of the binaries, with complaints of one line, and what they have in common.
+//! Command-line arguments that the binaries share. Each error is one line on stderr.
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -35,7 +35,7 @@ pub fn parse<A: Parser>(program: &str) -> Result<A, ExitCode> {
 /// Checks a `--speed`.
 ///
 /// # Errors
-/// One line: the speed, and what is allowed.
+/// One line: the speed and the allowed range.
 pub fn check_speed(speed: f64) -> Result<(), String> {
     let (low, high) = (SPEEDS.start(), SPEEDS.end());
     SPEEDS
@@ -44,10 +44,10 @@ pub fn check_speed(speed: f64) -> Result<(), String> {
         .ok_or_else(|| format!("--speed {speed}: allowed is {low} to {high}"))
 }
 
-/// The scenario in the file, or the default mission, with `seed` where there is one.
+/// The scenario of the file, or the default mission without a file; `seed` replaces its seed.
 ///
 /// # Errors
-/// One line: what is wrong with it, or why an image cannot fly it.
+/// One line: the mistake in the file, or the setting that an image cannot fly.
 pub fn scenario(file: Option<&Path>, seed: Option<u64>) -> Result<Scenario, String> {
     let overrides = Overrides {
         seed,

@@ -1,5 +1,5 @@
-//! A builder's hands and eyes at a vehicle on the table: how it is turned, what is bent and pressed, which wires are
-//! where, and what turns.
+//! A person who handles the vehicle on the bench: turns it, bends arms, presses pads, swaps motor wires, moves the
+//! sticks, and observes rotors, servos and battery voltage.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -14,61 +14,61 @@ use sophie_sim::plant::Plant;
 
 use crate::wires::Pins;
 
-/// How fast hands turn a vehicle, rad/s: a quarter turn in half a second.
+/// Rate at which the operator turns the vehicle, rad/s: a quarter turn in half a second.
 const TURN: f64 = 3.0;
-/// Time of a step, s, and between two frames of the transmitter, ms.
+/// Length of a step, s; interval of the transmitter's frames, ms.
 const STEP: f64 = 1e-3;
 const FRAME_MS: u64 = 20;
-/// Slowest rotor that is seen to turn, rad/s.
+/// Lowest rotor speed that the operator notices, rad/s.
 const TURNS: f64 = 20.0;
 
-/// What hands do.
+/// State in which the operator holds the vehicle and the transmitter.
 #[derive(Clone, Debug)]
-pub struct Held {
-    /// The side that lies below; the vehicle is turned there.
+pub struct Handling {
+    /// Side that points down. After a change the vehicle turns there at a limited rate.
     pub below: Face,
-    /// On each pad, Pa.
+    /// Pressure on each pad, Pa.
     pub pressed: PerArm<f64>,
-    /// Each arm's tip up, beyond where it hangs, rad.
+    /// Tilt of each arm, tip up, added to its tilt at rest, rad.
     pub bent: PerArm<f64>,
-    /// Above the table, m.
+    /// Height above the table, m.
     pub height: f64,
-    /// Of a transmitter on CRSF; `None`: it is off.
+    /// Sticks of a CRSF transmitter; `None`: the transmitter is off.
     pub sticks: Option<Sticks>,
-    /// The rotors that the outputs' wires lead to.
+    /// Rotor that each motor output is wired to.
     pub wiring: MotorMap,
 }
 
-/// What eyes see, and a multimeter.
+/// What the operator observes: time, rotors, servo pulses, and the battery voltage by multimeter.
 #[derive(Clone, Debug, Default)]
-pub struct Seen {
+pub struct Observation {
     /// Time since power-on, ms.
     pub ms: u64,
-    /// The rotor that turned last, 0 to 3.
+    /// The rotor that turned last, 0 to 3; `None` before any turns.
     pub turned: Option<usize>,
-    /// Rotors, rad/s.
+    /// Rotor speeds, rad/s.
     pub rotors: PerArm<f64>,
-    /// At the battery's plug, V.
+    /// Voltage at the battery's plug, V.
     pub volts: f64,
     /// Servo pulses, µs.
     pub servos: PerArm<f64>,
 }
 
 struct Table {
-    held: Held,
-    seen: Seen,
+    held: Handling,
+    seen: Observation,
 }
 
-/// Shared by the builder and the board.
+/// The operator, shared by the test that directs him and the board that he handles.
 #[derive(Clone)]
-pub struct Hands {
+pub struct BenchOperator {
     table: Arc<Mutex<Table>>,
     attitude: DQuat,
 }
 
-impl Default for Hands {
+impl Default for BenchOperator {
     fn default() -> Self {
-        let held = Held {
+        let held = Handling {
             below: Face::Belly,
             pressed: [0.0; 4],
             bent: [0.0; 4],
@@ -76,7 +76,7 @@ impl Default for Hands {
             sticks: None,
             wiring: MotorMap::M1234,
         };
-        let seen = Seen::default();
+        let seen = Observation::default();
         Self {
             table: Arc::new(Mutex::new(Table { held, seen })),
             attitude: DQuat::IDENTITY,
@@ -84,34 +84,34 @@ impl Default for Hands {
     }
 }
 
-impl Hands {
+impl BenchOperator {
     fn table(&self) -> MutexGuard<'_, Table> {
         self.table.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Does something else from now on.
-    pub fn change(&self, change: impl FnOnce(&mut Held)) {
+    /// Changes the handling from the next millisecond on.
+    pub fn change(&self, change: impl FnOnce(&mut Handling)) {
         change(&mut self.table().held);
     }
 
-    /// What is seen now.
+    /// The latest observation.
     #[must_use]
-    pub fn look(&self) -> Seen {
+    pub fn look(&self) -> Observation {
         self.table().seen.clone()
     }
 
-    /// The drive of each rotor, of that of each output.
+    /// Commands in rotor order, from commands in output order.
     #[must_use]
     pub(crate) fn wired(&self, outputs: &PerArm<f64>) -> PerArm<f64> {
         at_rotors(&self.table().held.wiring.rotors(), outputs)
     }
 
-    /// A millisecond of hands; notes what is seen.
-    pub(crate) fn step(&mut self, pins: &Pins, plant: &Plant) -> InHands {
+    /// Advances by a millisecond and records an observation.
+    pub(crate) fn step(&mut self, pins: &Pins, plant: &Plant) -> HandledVehicle {
         let mut table = self.table.lock().unwrap_or_else(PoisonError::into_inner);
         let rotors = plant.rotor_speed();
         let fastest = (0..4).max_by(|a, b| rotors[*a].total_cmp(&rotors[*b]));
-        table.seen = Seen {
+        table.seen = Observation {
             ms: pins.ms,
             turned: fastest
                 .filter(|rotor| rotors[*rotor] > TURNS)
@@ -126,7 +126,7 @@ impl Hands {
         let before = self.attitude;
         self.attitude = before.rotate_towards(wanted, TURN * STEP).normalize();
         let turn = before.conjugate() * self.attitude;
-        InHands {
+        HandledVehicle {
             attitude: self.attitude,
             rate: turn.to_scaled_axis() / STEP,
             pressed: held.pressed,
@@ -146,22 +146,22 @@ fn lying(side: Face) -> DQuat {
     }
 }
 
-/// A vehicle in hands in this millisecond.
-pub struct InHands {
+/// The handled vehicle in one millisecond.
+pub struct HandledVehicle {
     /// Body to world.
     pub attitude: DQuat,
-    /// rad/s, body.
+    /// Angular rate, rad/s, body axes.
     pub rate: DVec3,
-    /// On the pads, Pa.
+    /// Pressure on the pads, Pa.
     pub pressed: PerArm<f64>,
-    /// Tips up, rad.
+    /// Added tilt of the arms, tip up, rad.
     pub bent: PerArm<f64>,
-    /// Above the table, m.
+    /// Height above the table, m.
     pub height: f64,
     sticks: Option<Sticks>,
 }
 
-impl InHands {
+impl HandledVehicle {
     /// Specific force, m/s², body.
     #[must_use]
     pub fn force(&self) -> DVec3 {

@@ -1,4 +1,4 @@
-//! The emulated boards, and the memory for their images.
+//! The list of emulated boards and the memory that each gives its image.
 
 /// Board type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

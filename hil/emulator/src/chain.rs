@@ -85,13 +85,13 @@ pub type Counts = BTreeMap<usize, u64>;
 /// A counted step.
 #[derive(Clone, Debug, Default)]
 pub struct Step {
-    /// From data-ready handler to transfer-end handler.
+    /// Instructions from the data-ready handler to the transfer-end handler.
     pub reading: Counts,
-    /// From there to the motor frame.
+    /// Instructions from there to the motor frame.
     pub acting: Counts,
     /// Instruction count at the end of the transfer.
     pub received: u64,
-    /// From there to the frame: the sum of `acting`.
+    /// Instructions from there to the frame: the sum of `acting`.
     pub passed: u64,
 }
 

@@ -16,13 +16,13 @@ use sophie_drivers::sbus;
 use sophie_ports::retained::StartCause;
 use sophie_sim::devices::crsf::Telemetry;
 use sophie_sim::devices::flow_module::FlowSender;
-use sophie_sim::flight::aircraft::{Aircraft, Belief, Reset, Said};
+use sophie_sim::flight::aircraft::{Aircraft, ReportedStatus, Reset, StackEstimate};
 use sophie_sim::plant::{Actuators, Plant};
 use sophie_sim::scenario::Scenario;
 use sophie_tasks::pilot::telemetry::parse_mode_text;
 use uf_crsf::{CrsfParser, Packet};
 
-use crate::bench_operator::Hands;
+use crate::bench_operator::BenchOperator;
 use crate::elf::Firmware;
 use crate::emulator::{Emulator, Settings};
 use crate::esc::SILENCE;
@@ -37,15 +37,15 @@ use crate::wires::{BoardFault, Digest, FarEnd, Pins, Run, Wires};
 const AIRBORNE: f64 = 0.3;
 
 /// A vehicle with the emulated board.
-pub struct Bench<'a> {
+pub struct ClosedLoop<'a> {
     /// `None` before power-on.
     emulator: Option<Emulator>,
     firmware: &'a Firmware,
     settings: Settings,
     sensors: Sensors,
     flow_module: Option<FlowSender>,
-    /// `None`: the vehicle is left to itself.
-    hands: Option<Hands>,
+    /// `None`: the vehicle stands alone.
+    hands: Option<BenchOperator>,
     plan: Plan,
     wires: Wires,
     pins: Pins,
@@ -120,7 +120,7 @@ pub struct Setup {
     pub sockets: Sockets,
 }
 
-impl<'a> Bench<'a> {
+impl<'a> ClosedLoop<'a> {
     /// Runs `firmware` as in `setup` with the parameters of `scenario` and a calibrated accelerometer; `logged` receives
     /// log lines.
     pub fn new(
@@ -137,7 +137,7 @@ impl<'a> Bench<'a> {
             accel_bias_x,
             accel_bias_y,
             accel_bias_z,
-            // The simulated board has its module's task without it.
+            // The simulated board reads its module whatever the port.
             flow_port: flow_module
                 .as_ref()
                 .map_or(scenario.params.flow_port, |_| FlowPort::Msp),
@@ -182,9 +182,9 @@ impl<'a> Bench<'a> {
         }
     }
 
-    /// The same vehicle in `hands`, out of its bag: nothing has been calibrated.
+    /// The same vehicle, uncalibrated, with a bench operator.
     #[must_use]
-    pub fn in_hands(mut self, hands: Hands) -> Self {
+    pub fn in_hands(mut self, hands: BenchOperator) -> Self {
         let Params {
             accel_bias_x,
             accel_bias_y,
@@ -244,9 +244,9 @@ impl<'a> Bench<'a> {
             warning.clone_into(&mut status.warning);
         } else if line.text == "grip proven" {
             self.proven = true;
-        } else if let Some((arm, grip)) = told_grip(&line.text) {
+        } else if let Some((arm, grip)) = parse_grip(&line.text) {
             self.grip[arm] = grip;
-        } else if let Some((task, count)) = told_overruns(&line.text) {
+        } else if let Some((task, count)) = parse_overruns(&line.text) {
             self.overruns.insert(task.to_owned(), count);
         }
         self.lines.push(line);
@@ -284,7 +284,7 @@ impl<'a> Bench<'a> {
     }
 }
 
-impl Aircraft for Bench<'_> {
+impl Aircraft for ClosedLoop<'_> {
     fn step_world(&mut self, plant: &mut Plant) {
         self.plan
             .apply(self.pins.ms, &mut self.sensors, &mut self.wires.faults);
@@ -329,7 +329,7 @@ impl Aircraft for Bench<'_> {
                 let angle = self.params.stick_angle;
                 [sticks.roll * angle, sticks.pitch * angle, f32::NAN].map(f64::from)
             }
-            // What sensors send between frames leaves it.
+            // Answers of sensors between frames use the same line.
             (Mode::Flight, None) => self.setpoint,
             _ => [f64::NAN; 3],
         };
@@ -376,8 +376,8 @@ impl Aircraft for Bench<'_> {
         Ok(())
     }
 
-    fn status(&self) -> Option<Said<'_>> {
-        self.status.as_ref().map(|s| Said {
+    fn status(&self) -> Option<ReportedStatus<'_>> {
+        self.status.as_ref().map(|s| ReportedStatus {
             mode: s.mode,
             reason: &s.reason,
             warning: &s.warning,
@@ -392,8 +392,8 @@ impl Aircraft for Bench<'_> {
         })
     }
 
-    fn belief(&self) -> Belief {
-        Belief {
+    fn estimate(&self) -> StackEstimate {
+        StackEstimate {
             attitude: self.display.attitude.unwrap_or([f64::NAN; 3]),
             setpoint: self.setpoint,
             tilt_measured: self.tilts.measured,
@@ -402,7 +402,7 @@ impl Aircraft for Bench<'_> {
             tension_asked: self.tension(),
             pressure: self.pressure(),
             saturated: false,
-            // Nothing of the position is in the frames that the bench reads.
+            // The frames read here carry no position.
             position: None,
             pose: None,
             range: None,
@@ -412,7 +412,7 @@ impl Aircraft for Bench<'_> {
 
     fn motors(&self) -> PerArm<f64> {
         let restarted = self.resets.last().map_or(f64::NEG_INFINITY, |(at, _)| *at);
-        // Over a reset the controllers hold their last command until their time-out: no command arrives.
+        // During a reset the controllers keep their last command until they time out; no code asks for it.
         if self.dead || self.pins.ms as f64 - restarted < SILENCE as f64 * 1e-6 {
             return [0.0; 4];
         }
@@ -467,7 +467,7 @@ fn on_line(protocol: RcProtocol, byte: u8) -> u16 {
 }
 
 /// Parses `grip: arm 1 holds 947 N/m2 with 34 N, closed in 5.6 s`.
-fn told_grip(text: &str) -> Option<(usize, ArmGrip)> {
+fn parse_grip(text: &str) -> Option<(usize, ArmGrip)> {
     let (arm, rest) = text.strip_prefix("grip: arm ")?.split_once(" holds ")?;
     let (pressure, rest) = rest.split_once(" N/m2 with ")?;
     let (force, rest) = rest.split_once(" N, closed in ")?;
@@ -485,7 +485,7 @@ fn told_grip(text: &str) -> Option<(usize, ArmGrip)> {
 }
 
 /// Parses `imu: 3 overruns in 12000 runs; worst: …`.
-fn told_overruns(text: &str) -> Option<(&str, u32)> {
+fn parse_overruns(text: &str) -> Option<(&str, u32)> {
     let (task, rest) = text.split_once(": ")?;
     let (count, _) = rest.split_once(" overruns in ")?;
     Some((task, count.parse().ok()?))
@@ -497,18 +497,18 @@ mod tests {
 
     #[test]
     fn the_log_is_understood() {
-        let (arm, grip) = told_grip("grip: arm 3 holds 947.25 N/m2 with 33.5 N, closed in 3.65 s").unwrap();
+        let (arm, grip) = parse_grip("grip: arm 3 holds 947.25 N/m2 with 33.5 N, closed in 3.65 s").unwrap();
         assert_eq!((arm, grip.closure), (2, Some(3.65)));
         assert!((grip.pressure - 947.25).abs() < 1e-3 && (grip.force - 33.5).abs() < 1e-3);
         assert_eq!(
-            told_grip("grip: arm 5 holds 1 N/m2 with 1 N, closed in 1 s"),
+            parse_grip("grip: arm 5 holds 1 N/m2 with 1 N, closed in 1 s"),
             None
         );
         assert_eq!(
-            told_overruns("imu: 3 overruns in 12000 runs; worst: 1 us late, 2 us response, 3 us execution"),
+            parse_overruns("imu: 3 overruns in 12000 runs; worst: 1 us late, 2 us response, 3 us execution"),
             Some(("imu", 3))
         );
-        assert_eq!(told_overruns("imu: self-test passed"), None);
+        assert_eq!(parse_overruns("imu: self-test passed"), None);
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! The same flight on host and chip, phase by phase.
+//! Compares one flight on the host and on the emulated chip, phase by phase.
 //!
 //! The attitude error is against the controller's target on the host, against the sticks on the chip, which does not
 //! report a target. The chip's pins act a millisecond later, and its self-test shifts pilot against gusts.
@@ -132,7 +132,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_one_flight_lacks_is_a_dash() {
+    fn a_value_missing_from_one_flight_prints_as_a_dash() {
         let text = "steps = [{ do = 'arm' }, { do = 'take-off', height_m = 1 }]\n";
         let scenario = Scenario::parse(text, "hop.toml", &Overrides::default()).unwrap();
         let host = fly(&scenario, &mut Silent);

@@ -1,4 +1,4 @@
-//! The flashed image: the ELF and what the bench needs of it.
+//! The flashed image: the ELF with the addresses, tables and symbols that a run needs.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

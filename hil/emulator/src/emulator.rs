@@ -1,7 +1,7 @@
-//! The emulated board, stepped by the millisecond; hides the emulator.
+//! The emulated board, advanced by a millisecond at a time. This room alone knows the emulator library.
 //!
-//! The emulator's core has its own thread and calls back at each stop, where it waits for the next millisecond's
-//! [`Wires`]. The threads take turns, so a run is deterministic.
+//! The emulator's core runs in a thread of its own and stops each millisecond until it gets the next [`Wires`]. The two
+//! threads take turns, so a run is deterministic.
 
 pub mod conformance;
 mod outputs;

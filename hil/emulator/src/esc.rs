@@ -19,12 +19,12 @@ const COUNT: f64 = 0.5;
 pub enum Line {
     /// DShot, kbit/s.
     DShot(u32),
-    /// Pulses of which a standard one is so many times as long, for a controller with its own ends.
+    /// Pulses for a controller with its own ends: a standard pulse is this many times as long.
     Pulse(f64, EscSpec),
 }
 
 impl Line {
-    /// The line for `protocol` to a controller as built, whatever the board takes it for.
+    /// The line for `protocol` to a controller as built, whichever controller the board assumes.
     #[must_use]
     pub const fn of(protocol: MotorProtocol, esc: EscSpec) -> Self {
         match protocol {

@@ -1,11 +1,11 @@
-//! A flight of an image on the bench, with its verdict.
+//! A flight of an image in closed loop, with its verdict.
 
 use sophie_sim::flight::{fly_with, stand_with};
 use sophie_sim::record::{FlightRecord, Observer};
 use sophie_sim::scenario::Scenario;
 
-use crate::bench_operator::Hands;
-use crate::closed_loop::{Bench, Finished, Setup};
+use crate::bench_operator::BenchOperator;
+use crate::closed_loop::{ClosedLoop, Finished, Setup};
 use crate::elf::Firmware;
 use crate::log;
 use crate::wires::Gap;
@@ -50,7 +50,7 @@ pub fn fly(
     observer: &mut dyn Observer,
 ) -> Result<Flight, String> {
     flyable::check(scenario)?;
-    let make = || Bench::new(firmware, scenario, setup, logged);
+    let make = || ClosedLoop::new(firmware, scenario, setup, logged);
     let (record, bench) = fly_with(scenario, make, observer);
     let board = bench.finish()?;
     let gaps = gaps::not_allowed(&board.run.gaps)?.into_iter().cloned().collect();
@@ -65,7 +65,8 @@ pub struct Stood {
     pub gaps: Vec<Gap>,
 }
 
-/// Runs the board of `scenario`'s vehicle without a pilot, on the ground or in `hands`, until `over`; else as [`fly`].
+/// Runs the board of `scenario`'s vehicle without a pilot, on the ground or with a bench operator, until `over`;
+/// otherwise as [`fly`].
 ///
 /// # Errors
 /// As [`fly`].
@@ -73,13 +74,13 @@ pub fn stand(
     firmware: &Firmware,
     scenario: &Scenario,
     setup: Setup,
-    hands: Option<Hands>,
+    hands: Option<BenchOperator>,
     logged: impl FnMut(&log::Line),
     mut over: impl FnMut() -> bool,
 ) -> Result<Stood, String> {
     flyable::check(scenario)?;
     let make = || {
-        let bench = Bench::new(firmware, scenario, setup, logged);
+        let bench = ClosedLoop::new(firmware, scenario, setup, logged);
         match hands {
             Some(hands) => bench.in_hands(hands),
             None => bench,

@@ -54,7 +54,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_the_image_does_not_hold_is_refused_by_name() {
+    fn a_scenario_that_the_image_cannot_fly_is_refused_by_name() {
         let mut scenario = Scenario::default_mission_with(&Default::default());
         assert_eq!(check(&scenario), Ok(()));
         scenario.params.rate_p = 9.0;

@@ -53,7 +53,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_is_listed_with_a_reason_is_allowed() {
+    fn only_a_gap_listed_with_a_reason_is_allowed() {
         let found = [gap("TIM1.CR1"), gap("TIM8.CR1")];
         let list = "[[gap]]\nkind = 'unimplemented'\nat = 'TIM1.CR1'\nreason = 'unused'";
         assert_eq!(judged(list, &found).unwrap(), [&found[1]]);

@@ -2,7 +2,7 @@
 //! it.
 //!
 //! Exit status: 0 when the mission was accomplished without gaps of the emulation, 1 when not, 2 for bad input. Without a
-//! pilot there is no mission.
+//! pilot no mission is flown.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -79,7 +79,7 @@ struct Args {
     /// Put the board's MAVLink line on this port of 127.0.0.1.
     #[arg(long, value_name = "PORT")]
     mavlink: Option<u16>,
-    /// Start with the option bytes of a new chip, whose brown-out level nobody has set.
+    /// Start with the option bytes of a new chip, without a brown-out level.
     #[arg(long)]
     factory: bool,
     /// Who flies: none waits on the ground without a transmitter until Ctrl-C, and leaves no report.
@@ -199,7 +199,7 @@ fn write(
     out: &OutDir,
     console: &Console,
 ) -> Result<(), String> {
-    // A second's work beside minutes of emulation.
+    // This takes a second, the emulation minutes.
     let host = sophie_sim::flight::fly(scenario, &mut Silent);
     let mut value = summary(args, flight);
     value["host"] = compare::value(&host);
@@ -233,7 +233,7 @@ fn complain_of(gaps: &[Gap]) {
     }
 }
 
-/// The bench's results besides the flight, for programs.
+/// Results of the emulation besides the flight, as JSON.
 fn summary(args: &Args, flight: &Flight) -> serde_json::Value {
     let board = &flight.board;
     let run = &board.run;
@@ -267,7 +267,7 @@ fn summary(args: &Args, flight: &Flight) -> serde_json::Value {
     })
 }
 
-/// The same for people.
+/// The same as lines of text.
 fn lines(flight: &Flight) -> Vec<String> {
     let run = &flight.board.run;
     let frames: u64 = run.escs.iter().map(|esc| esc.frames).sum();

@@ -1,4 +1,4 @@
-//! Planned troubles of a run.
+//! Faults that a run injects at set times.
 
 use sophie_sim::sensors::fsr::FsrBreak;
 

@@ -10,7 +10,7 @@ use sophie_sim::sensors::barometer::Barometer;
 use sophie_sim::sensors::fsr::{FsrBreak, FsrSensor};
 use sophie_sim::sensors::imu::Imu;
 
-use crate::bench_operator::InHands;
+use crate::bench_operator::HandledVehicle;
 use crate::wires::Wires;
 
 /// Converter reference, V, and full scale, counts.
@@ -76,7 +76,7 @@ impl Sensors {
         &mut self,
         plant: &mut Plant,
         actuators: &sophie_sim::plant::Actuators,
-        hands: Option<&InHands>,
+        hands: Option<&HandledVehicle>,
         wires: &mut Wires,
     ) {
         let moved = |plant: &Plant| {

@@ -5,9 +5,9 @@ use sophie_ports::stack_use::{AT_START, SINCE, StackUse};
 
 use crate::log::Line;
 
-/// A check.
+/// A start-up check of the chip.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Look {
+pub struct SiliconCheck {
     /// Name.
     pub name: String,
     /// Value read.
@@ -20,11 +20,11 @@ pub struct Look {
 
 /// Parses `silicon: NAME: READ, expected EXPECTED: ok`, or `: not ok`.
 #[must_use]
-pub fn parse(text: &str) -> Option<Look> {
+pub fn parse(text: &str) -> Option<SiliconCheck> {
     let (name, rest) = text.strip_prefix("silicon: ")?.split_once(": ")?;
     let (read, rest) = rest.split_once(", expected ")?;
     let (expected, verdict) = rest.rsplit_once(": ")?;
-    Some(Look {
+    Some(SiliconCheck {
         name: name.to_owned(),
         read: read.to_owned(),
         expected: expected.to_owned(),
@@ -32,14 +32,14 @@ pub fn parse(text: &str) -> Option<Look> {
     })
 }
 
-/// The last row of each name in `lines`, in the order in which they came first: those of the stack come again as it grows.
+/// The last row of each name in `lines`, ordered by first appearance. The stack's rows repeat as its depth grows.
 #[must_use]
-pub fn rows(lines: &[Line]) -> Vec<Look> {
-    let mut rows = Vec::<Look>::new();
-    for look in lines.iter().filter_map(|line| parse(&line.text)) {
-        match rows.iter_mut().find(|row| row.name == look.name) {
-            Some(row) => *row = look,
-            None => rows.push(look),
+pub fn rows(lines: &[Line]) -> Vec<SiliconCheck> {
+    let mut rows = Vec::<SiliconCheck>::new();
+    for check in lines.iter().filter_map(|line| parse(&line.text)) {
+        match rows.iter_mut().find(|row| row.name == check.name) {
+            Some(row) => *row = check,
+            None => rows.push(check),
         }
     }
     rows
@@ -48,11 +48,11 @@ pub fn rows(lines: &[Line]) -> Vec<Look> {
 /// The greatest depths of the stack in `lines`, over every start; `None` before both are logged.
 #[must_use]
 pub fn stack_use(lines: &[Line]) -> Option<StackUse> {
-    let looks = || lines.iter().filter_map(|line| parse(&line.text));
+    let checks = || lines.iter().filter_map(|line| parse(&line.text));
     let deepest = |name| {
-        let used = looks()
-            .filter(|look| look.name == name)
-            .filter_map(|look| of(&look.read));
+        let used = checks()
+            .filter(|check| check.name == name)
+            .filter_map(|check| of(&check.read));
         used.max()
     };
     let ((start, bytes), (flight, _)) = deepest(AT_START).zip(deepest(SINCE))?;
@@ -70,7 +70,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn of_the_stacks_rows_the_deepest_of_every_start_counts() {
+    fn the_deepest_stack_use_over_all_starts_counts() {
         let line = |text: &str| Line {
             ms: 0,
             stamp: String::new(),
@@ -100,16 +100,18 @@ mod tests {
 
     #[test]
     fn a_line_of_the_log_is_understood() {
-        let look = parse("silicon: bus clock: 168 MHz, PLL on crystal, expected PLL on crystal: ok").unwrap();
+        let check =
+            parse("silicon: bus clock: 168 MHz, PLL on crystal, expected PLL on crystal: ok").unwrap();
         assert_eq!(
-            (look.name.as_str(), look.read.as_str()),
+            (check.name.as_str(), check.read.as_str()),
             ("bus clock", "168 MHz, PLL on crystal")
         );
-        assert!(look.ok);
-        let look = parse("silicon: read-out protection: level 1, expected level 0: a probe can read: not ok")
-            .unwrap();
+        assert!(check.ok);
+        let check =
+            parse("silicon: read-out protection: level 1, expected level 0: a probe can read: not ok")
+                .unwrap();
         assert_eq!(
-            (look.expected.as_str(), look.ok),
+            (check.expected.as_str(), check.ok),
             ("level 0: a probe can read", false)
         );
         assert_eq!(parse("started in 72 ms"), None);

@@ -1,4 +1,4 @@
-//! Parameters in flash as the console's `save` leaves them, by the firmware's code.
+//! Parameters in flash as the console's `save` writes them, made by the firmware's own code.
 
 use embassy_futures::block_on;
 use embedded_storage_async::nor_flash::{ErrorType, NorFlash, NorFlashErrorKind, ReadNorFlash};
@@ -85,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_saved_is_loaded() {
+    fn saved_parameters_are_loaded() {
         let params = Params {
             rate_p: 11.0,
             ..Params::default()

@@ -38,8 +38,8 @@ impl Terminal {
         Ok(Self { listener, user: None })
     }
 
-    /// Sends what `line` heard of the board to the user; returns the user's input. Never waits: what a user who does not
-    /// read has no room for is lost.
+    /// Sends the board's output on `line` to the user and returns the user's input. Never waits: bytes beyond the
+    /// buffer of a user who does not read are lost.
     pub fn exchange(&mut self, line: &FarEnd) -> Vec<u8> {
         if let Ok((user, _)) = self.listener.accept()
             && user.set_nonblocking(true).is_ok()
@@ -91,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_typed_and_said_crosses_and_a_user_may_go() {
+    fn bytes_cross_both_ways_and_a_user_may_disconnect() {
         let (port, mut terminal) = terminal();
         let complaint = Terminal::listen("--telemetry", port).err().unwrap();
         assert!(

@@ -9,7 +9,7 @@ use sophie_control::params::Params;
 pub struct TiltError {
     sum: f64,
     count: u64,
-    /// Largest, rad.
+    /// Largest difference, rad.
     pub worst: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Data between emulated board and world, independent of the emulator.
+//! Data between the emulated board and the simulated world, free of the emulator's types.
 
 use std::collections::BTreeMap;
 
@@ -45,7 +45,7 @@ pub enum BoardFault {
     ArmUnplugged(usize, bool),
     /// Arm bus 0 or 1: clock stretched by this many µs after each byte; 0: none.
     ClockHeld(usize, u32),
-    /// Arm bus 0 or 1: spurious bus errors, one in about this many bytes; 0 stops them.
+    /// Arm bus 0 or 1: one spurious bus error in about this many bytes; 0 turns them off.
     BusErrors(usize, u32),
     /// The sensor of arm 0 to 3 does not acknowledge (true) the byte that resets it, and resets.
     ArmRefusesReset(usize, bool),
@@ -117,7 +117,7 @@ pub struct FarEnd {
 /// Results of a run.
 #[derive(Clone, Debug, Default)]
 pub struct Run {
-    /// What the emulator lacked or found wrong.
+    /// Gaps and mistakes that the emulator found.
     pub gaps: Vec<Gap>,
     /// Instructions executed.
     pub instructions: u64,
@@ -127,17 +127,17 @@ pub struct Run {
     pub latency_us: Latency,
     /// The motors' pins at the processor's last standstill.
     pub hung: Option<Hung>,
-    /// Per sector, by first address.
+    /// Erases of each sector, by first address.
     pub erases: BTreeMap<u64, u32>,
     /// The outputs around resets.
     pub outputs: Vec<Output>,
-    /// At the end, µs; 0: none.
+    /// Servo pulses at the end, µs; 0: none.
     pub servos: PerArm<f64>,
     /// Digest of motor edges, servo pulses and telemetry.
     pub pins_digest: u64,
     /// Steps with counted instructions.
     pub counted: Counted,
-    /// What was read on the arms' buses.
+    /// Readings from the arms' buses.
     pub reads: Reads,
 }
 
@@ -146,9 +146,9 @@ pub struct Run {
 pub struct Reads {
     /// Pressures of the barometer.
     pub barometer: Vec<u64>,
-    /// Of the sensor of each arm.
+    /// Measurements of each arm's sensor.
     pub arms: PerArm<Vec<u64>>,
-    /// What each arm's sensor was written, register first, and how often.
+    /// Writes to each arm's sensor, register first, with their counts.
     pub written: PerArm<BTreeMap<Vec<u8>, u32>>,
 }
 
@@ -175,7 +175,7 @@ pub struct Output {
     pub pin: String,
     /// Pulled up until the firmware drives it.
     pub pulled_up: bool,
-    /// From each start until driven, µs; `None`: never.
+    /// Time from each start until driven, µs; `None`: never.
     pub after_us: Vec<Option<f64>>,
 }
 
@@ -207,7 +207,7 @@ pub struct Latency {
     pub count: u64,
     /// Sum, µs.
     pub sum: f64,
-    /// Largest, µs.
+    /// Largest value, µs.
     pub worst: f64,
 }
 
@@ -226,7 +226,7 @@ impl Latency {
     }
 }
 
-/// Something that the emulator cannot vouch for.
+/// A gap of the emulation: behaviour that the emulator does not model or finds wrong.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Gap {
     /// `unmapped`, `refused`, `unimplemented`, `undefined`, `unrouted`, `told` or `miswired`.

@@ -170,7 +170,7 @@ fn a_silent_arm_sensor_is_found() {
 }
 
 #[test]
-fn a_line_that_leads_nowhere_is_found() {
+fn a_disconnected_line_is_found() {
     found(Defect::NoJumpers);
 }
 

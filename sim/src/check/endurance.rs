@@ -9,9 +9,9 @@ use crate::plant::rotor::Rotor;
 use crate::plant::servo_power::{MG996R, endurance};
 use crate::scenario::{Scenario, Step};
 
-/// s.
+/// Step of the integration, s.
 const STEP: f64 = 1.0;
-/// s: three hours.
+/// Longest computed time, s: three hours.
 const LONGEST: f64 = 10_800.0;
 const MINUTE: f64 = 60.0;
 

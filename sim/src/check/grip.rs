@@ -123,7 +123,7 @@ mod tests {
     use crate::test_stands::arm_bench::{Closing, close};
 
     #[test]
-    fn the_force_needed_is_what_a_closing_arm_takes() {
+    fn the_needed_force_equals_that_of_a_closing_arm() {
         for (infill, diameter) in [(6.0, 0.3), (8.0, 0.3), (6.0, 0.2)] {
             let mut scenario = Scenario::default_mission();
             scenario.vehicle.infill = infill;

@@ -9,9 +9,9 @@ use crate::plant::hinged::link::ArmSpec;
 use crate::plant::{GRAVITY, arm_spec, beam_spec};
 use crate::scenario::{Scenario, Vehicle};
 
-/// For the hover thrust: to 1e-6 of the largest.
+/// Bisection steps for the hover thrust: to 1e-6 of the largest.
 const HALVINGS: u32 = 20;
-/// For an arm's compliance, N.
+/// Difference of thrust for an arm's compliance, N.
 const THRUST_STEP: f64 = 1e-3;
 /// Limit of the stack's small-angle sines, rad.
 const TILT_MAX: f64 = 0.7;
@@ -25,7 +25,7 @@ pub struct Built {
     chi: f64,
     /// Weight, N.
     pub weight: f64,
-    /// Of a rotor in hover, N; with level arms if full thrust cannot carry the vehicle.
+    /// Thrust of a rotor in hover, N; with level arms if full thrust cannot carry the vehicle.
     pub hover: f64,
 }
 
@@ -62,7 +62,7 @@ impl Built {
             .sum()
     }
 
-    /// In N, at most `most`, if any suffices.
+    /// Thrust in N, at most `most`; `None` if no thrust suffices.
     fn thrust_of(&self, lift: f64, most: f64) -> Option<f64> {
         let (mut low, mut high) = (0.0, most);
         if self.lift(high) < lift {

@@ -10,7 +10,7 @@ pub enum Limit {
 }
 
 impl Limit {
-    /// Its number.
+    /// The limit's number.
     #[must_use]
     pub fn value(self) -> f64 {
         match self {
@@ -41,7 +41,7 @@ impl Limit {
 pub struct Row {
     /// Quantity.
     pub name: String,
-    /// Not finite where there is no such value.
+    /// Not finite if the value does not exist.
     pub value: f64,
     /// Unit of value and limit; empty for a pure number.
     pub unit: &'static str,
@@ -49,7 +49,7 @@ pub struct Row {
     pub limit: Limit,
     /// The value keeps the limit.
     pub pass: bool,
-    /// What to do if it does not.
+    /// Advice if the row fails.
     pub advice: String,
 }
 
@@ -120,7 +120,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_row_says_what_it_lacks() {
+    fn a_failing_row_names_its_shortfall() {
         let row = Row::new("thrust to weight", 1.128, "", Limit::AtLeast(1.38));
         assert!(!row.pass);
         assert_eq!(row.shortfall(), "thrust to weight 1.13, at least 1.38 needed");
@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn no_number_keeps_no_limit() {
+    fn a_nan_keeps_no_limit() {
         for limit in [Limit::AtLeast(0.0), Limit::AtMost(0.0)] {
             let row = Row::new("x", f64::NAN, "N", limit);
             assert!(!row.pass && row.shown() == "none N");

@@ -1,4 +1,4 @@
-//! The whole check: what flies passes, what cannot is refused with its reason, nothing panics.
+//! The whole check: vehicles that fly pass, others fail with a reason, and no input panics.
 
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -39,7 +39,7 @@ fn the_default_vehicle_can_fly() {
 }
 
 #[test]
-fn vehicles_that_cannot_fly_are_told_why() {
+fn the_check_names_why_a_vehicle_cannot_fly() {
     for (text, names) in [
         ("[vehicle]\nmass_kg = 3.0", &["thrust to weight"][..]),
         ("[vehicle]\nthrust_max_n = 5", &["thrust to weight"]),
@@ -82,7 +82,7 @@ fn a_mission_without_a_pipe_has_no_rows_of_it() {
     );
 }
 
-/// Draws about half of the vehicle's and world's numbers and `params` parameters from their ranges.
+/// Samples about half of the vehicle's and world's numbers and `params` parameters from their ranges.
 fn draw(rng: &mut Pcg64Mcg, params: f64) -> String {
     let mut text = String::new();
     for table in ["vehicle", "world"] {

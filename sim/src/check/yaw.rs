@@ -16,7 +16,7 @@ const NEAR_HOVER: [f64; 3] = [0.8, 1.0, 1.2];
 const POINTS: u32 = 12;
 /// Share of the largest thrust up to which yaw has room.
 const TOP: f64 = 0.95;
-/// N·m: a tenth of a newton a rotor on a stiff frame.
+/// Tried moment, N·m: a tenth of a newton a rotor on a stiff frame.
 const TRIED: f32 = 0.006;
 /// Step of the mixer's model, s, far beyond its slowest filter, and number of steps.
 const SETTLE: f32 = 1e3;
@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn who_knows_the_arms_gives_what_is_asked_and_who_does_not_gives_1_less_c() {
+    fn the_flexible_mixer_gives_the_whole_yaw_moment_and_the_rigid_one_1_less_c() {
         let (a, b) = (Configuration::A, Configuration::B);
         assert!((given_by(Variant::Flexible, b, 7.75) - 1.0).abs() < 0.02);
         let mut s = Scenario::default_mission();

@@ -1,4 +1,4 @@
-//! A computer beside the flight stack that sends poses and the place of the pipe over MAVLink, and the line between them.
+//! The companion computer, which sends poses and the position of the pipe over MAVLink, with its line to the board.
 
 use std::cell::Cell;
 
@@ -15,15 +15,15 @@ use crate::plant::Plant;
 use crate::scenario::Scenario;
 use crate::sensors::pose::{Measured, PoseSource};
 
-/// What the server may send, bytes each second: the budget of a line at 57,600 baud.
+/// Output limit of the server, bytes per second: the budget of a line at 57,600 baud.
 const BYTES_PER_SECOND: u32 = 4_608;
-/// MAVLink's number of the computer: the vehicle's system, MAV_COMP_ID_VISUAL_INERTIAL_ODOMETRY.
+/// MAVLink address of the computer: the vehicle's system, component MAV_COMP_ID_VISUAL_INERTIAL_ODOMETRY.
 const SYSTEM: u8 = 1;
 const COMPONENT: u8 = 197;
-/// MAV_FRAME of what it sends.
+/// MAV_FRAME of its messages.
 const LOCAL_NED: u8 = 1;
 
-/// The computer and its line. It knows the vehicle's clock, as after TIMESYNC.
+/// The computer and its line. Its clock is synchronised with the vehicle's, as after TIMESYNC.
 pub struct Companion {
     source: PoseSource,
     line: &'static Line,
@@ -36,8 +36,8 @@ impl Companion {
     /// The computer of `scenario`, whose seed sets its errors. It sends on `shared`, or on a line of its own.
     pub fn new(scenario: &Scenario, shared: Option<&'static Line>) -> Self {
         let sensors = &scenario.sensors;
-        // It knows of the pipe what the pilot does.
-        let pipe = scenario.pilot.believes.pipe(&scenario.world);
+        // It assumes the same pipe as the pilot.
+        let pipe = scenario.pilot.assumed.pipe(&scenario.world);
         let [north, east] = pipe.position;
         let streams = scenario.streams();
         Self {
@@ -59,12 +59,13 @@ impl Companion {
         mavlink_server::spawn(time, links, self.line, BYTES_PER_SECOND, memory, || ());
     }
 
-    /// Takes in where the vehicle is, each millisecond.
+    /// Samples the vehicle's pose. Call it each millisecond.
     pub fn step(&mut self, plant: &Plant) {
         self.source.step(plant.pose());
     }
 
-    /// Sends what is due `us` µs after power-up to a board that started `start` µs after it.
+    /// Sends the messages due `us` µs after power-up. Their time stamps count from the board's start, `start` µs after
+    /// power-up.
     pub fn send(&mut self, us: u64, start: u64) {
         while let Some(measured) = self.source.take(us) {
             if let Some(at) = measured.at_us.checked_sub(start) {
@@ -76,16 +77,16 @@ impl Companion {
                 }
             }
         }
-        // No one reads what the board says on a line of its own.
-        while !self.shared && self.line.said().is_some() {}
+        // Discard the board's output on a line without clients.
+        while !self.shared && self.line.take_write().is_some() {}
     }
 
-    /// Loses what is on the line, as at a reset of the board.
+    /// Discards the bytes on the line, as a reset of the board does.
     pub fn reset(&self) {
         self.line.clear();
     }
 
-    /// A position in the computer's axes as one in the true axes, by what these are now.
+    /// Converts a position from the computer's present axes to world axes, m.
     pub fn in_world(&self, position: DVec3) -> DVec3 {
         self.source.in_world(position)
     }
@@ -93,7 +94,7 @@ impl Companion {
     fn pose(&mut self, measured: &Measured, at_us: u64) -> Vec<u8> {
         let [x, y, z] = measured.position.as_vec3().to_array();
         let q = measured.attitude.as_quat();
-        // Not known; the zeros behind the first are not sent.
+        // Unknown covariance; MAVLink truncates the trailing zeros.
         let mut covariance = [0.0; 21];
         covariance[0] = f32::NAN;
         self.frame(&ATT_POS_MOCAP_DATA {

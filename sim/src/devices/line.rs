@@ -1,4 +1,4 @@
-//! A serial line of the simulated board whose far end is datagrams.
+//! A serial line of the simulated board; its far end sends and receives datagrams.
 
 use std::cell::{Cell, RefCell};
 use std::collections::VecDeque;
@@ -8,12 +8,12 @@ use sophie_ports::error::PortError;
 use sophie_ports::serial::{SerialInput, SerialOutput};
 use sophie_tasks::links::Raw;
 
-/// Bytes towards the board that wait for its task: what a fast client sends within a millisecond is less.
+/// Bytes towards the board that wait for its task: more than a fast client sends within a millisecond.
 const INPUT: usize = 4096;
 /// Writes of the board that wait for the next millisecond.
 const OUTPUT: usize = 256;
 
-/// Both directions. What the board writes at once stays together.
+/// Both directions. Each write of the board stays one datagram.
 pub struct Line {
     input: Pipe<Raw, INPUT>,
     output: RefCell<VecDeque<Vec<u8>>>,
@@ -22,7 +22,7 @@ pub struct Line {
 }
 
 impl Line {
-    /// A line with nothing on it.
+    /// An empty line.
     pub const fn new() -> Self {
         Self {
             input: Pipe::new(),
@@ -45,7 +45,7 @@ impl Line {
     }
 
     /// Takes the oldest write of the board.
-    pub fn said(&self) -> Option<Vec<u8>> {
+    pub fn take_write(&self) -> Option<Vec<u8>> {
         self.output.borrow_mut().pop_front()
     }
 
@@ -59,7 +59,7 @@ impl Line {
         self.restart.take()
     }
 
-    /// Loses everything on it.
+    /// Discards all bytes in both directions.
     pub fn clear(&self) {
         self.input.clear();
         self.output.borrow_mut().clear();
@@ -106,7 +106,7 @@ mod tests {
         block_on(port.write(b"one")).unwrap();
         block_on(port.write(b"two")).unwrap();
         assert_eq!(
-            (line.said(), line.said(), line.said()),
+            (line.take_write(), line.take_write(), line.take_write()),
             (Some(b"one".to_vec()), Some(b"two".to_vec()), None)
         );
     }
@@ -127,6 +127,6 @@ mod tests {
         for n in 0..=OUTPUT {
             block_on(port.write(&n.to_le_bytes())).unwrap();
         }
-        assert_eq!(line.said(), Some(1_usize.to_le_bytes().to_vec()));
+        assert_eq!(line.take_write(), Some(1_usize.to_le_bytes().to_vec()));
     }
 }

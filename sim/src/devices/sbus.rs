@@ -1,25 +1,26 @@
-//! An SBUS receiver: channels from the air to frames on its line, and what telemetry sensors send behind them.
+//! An SBUS or SBUS2 receiver: turns radio channels into frames on its line, followed by the answers of telemetry
+//! sensors.
 
 use sophie_control::pilot::rc::CHANNELS;
 use sophie_drivers::sbus::{FRAME, Frame};
 
 /// Slots for sensors behind each frame.
 pub const SLOTS: usize = 8;
-/// Frame period, s: the slower usual one.
+/// Frame period, s: the slower of the two common ones.
 const PERIOD: f64 = 14e-3;
-/// With slots, s: that of a Futaba R7008SB.
+/// Frame period with slots, s: that of a Futaba R7008SB.
 const PERIOD_WITH_SLOTS: f64 = 15e-3;
-/// From a frame's begin to its first slot, s: 25 bytes of 120 µs and a pause of 2 ms.
+/// Time from a frame's begin to its first slot, s: 25 bytes of 120 µs and a pause of 2 ms.
 const FIRST_SLOT: f64 = 5e-3;
-/// From slot to slot, s.
+/// Time from slot to slot, s.
 const SLOT: f64 = 0.66e-3;
-/// Silence, s (FrSky: about 1 s).
+/// Radio silence after which the failsafe flag is set, s (FrSky: about 1 s).
 const FAILSAFE_AFTER: f64 = 0.9;
 
-/// What goes on the line in a step.
+/// Bytes that go on the line in one step.
 pub type Bytes = heapless::Vec<u8, { FRAME + 3 * SLOTS }>;
 
-/// Sends always after its first frame; flags report a lost transmitter.
+/// The receiver. After its first frame it sends without a break and reports a lost transmitter by flags.
 #[derive(Clone, Debug, Default)]
 pub struct Receiver {
     channels: Option<[u16; CHANNELS]>,
@@ -33,7 +34,7 @@ pub struct Receiver {
     group: u8,
     /// Slots of its group that have passed.
     passed: usize,
-    /// What the sensors measure: any value comes by.
+    /// Value that the sensors send; it runs through all values.
     value: u16,
 }
 
@@ -48,7 +49,7 @@ impl Receiver {
         }
     }
 
-    /// A step of `dt` s with `heard` from the air; returns what goes on the line.
+    /// Advances by `dt` s with the channels `heard` over the air; returns the bytes that go on the line.
     pub fn step(&mut self, dt: f64, heard: Option<[u16; CHANNELS]>) -> Bytes {
         let mut line = Bytes::new();
         self.silence += dt;
@@ -61,7 +62,7 @@ impl Receiver {
             // Slot numbers run from the top bit down, before the two bits of the group.
             let number = (self.group << 3 | self.passed as u8).reverse_bits() | 0x03;
             let [low, high] = self.value.to_le_bytes();
-            // They fit: three bytes each.
+            // Three bytes each always fit.
             let _ = line.extend_from_slice(&[number, low, high]);
             self.value = self.value.wrapping_add(1);
             self.passed += 1;
@@ -110,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn it_goes_on_with_the_last_channels_and_says_so() {
+    fn a_receiver_without_radio_repeats_the_last_channels_and_flags_it() {
         let mut r = Receiver::new(0);
         assert!(run(&mut r, 1.0, None).is_empty(), "nothing heard, nothing to say");
         let good = run(&mut r, 1.0, Some([1200; CHANNELS]));

@@ -1,4 +1,5 @@
-//! Parameters and MAVLink's key, which outlive a restart of the simulated board, though not the process.
+//! Storage of the simulated board: parameters and MAVLink's key. It survives a restart of the board, not the end of the
+//! process.
 
 use std::cell::Cell;
 
@@ -6,17 +7,17 @@ use sophie_control::params::Params;
 use sophie_ports::signing::{Record, Stored};
 use sophie_ports::storage::{Loaded, Storage, StorageError};
 
-/// What a board has stored.
+/// Stored values of a board.
 #[derive(Debug)]
 pub struct Memory {
-    /// Its parameters.
+    /// Stored parameters.
     pub params: Cell<Params>,
-    /// MAVLink's key.
+    /// Stored key of MAVLink, `None` without signing.
     pub signing: Cell<Option<Record>>,
 }
 
 impl Memory {
-    /// The key as a start finds it.
+    /// The key that the next start loads.
     pub fn key(&self) -> Stored {
         self.signing.get().map_or(Stored::None, Stored::Key)
     }

@@ -1,4 +1,4 @@
-//! Interface of a flight to what is flown: the tasks in virtual time, or a board with the flashed image.
+//! Interface of a flight to the electronics: the tasks in virtual time, or an emulated board with the flashed image.
 
 use sophie_control::allocation::wrench::PerArm;
 use sophie_control::mode::Mode;
@@ -23,17 +23,17 @@ pub trait Aircraft {
     /// Runs the stack until `us` µs after power-up.
     ///
     /// # Errors
-    /// One line: why it cannot run on. It ends the flight.
+    /// One line: the cause of the stop. It ends the flight.
     fn run_until(&mut self, us: u64) -> Result<(), String>;
 
     /// Reported state; `None` before the first report.
-    fn status(&self) -> Option<Said<'_>>;
+    fn status(&self) -> Option<ReportedStatus<'_>>;
 
-    /// State of the grip, as far as known.
+    /// State of the grip; `None` before the first report.
     fn grip(&self) -> Option<GripState>;
 
     /// Estimates and demands of the stack.
-    fn belief(&self) -> Belief;
+    fn estimate(&self) -> StackEstimate;
 
     /// Motor commands, 0..1.
     fn motors(&self) -> PerArm<f64>;
@@ -76,7 +76,7 @@ pub struct Reset {
 
 /// Reported state of a stack.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Said<'a> {
+pub struct ReportedStatus<'a> {
     /// State of the vehicle.
     pub mode: Mode,
     /// Reason of the mode, or for staying in it; may be empty.
@@ -87,12 +87,12 @@ pub struct Said<'a> {
 
 /// Estimates and demands of a stack; NaN where unknown.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Belief {
+pub struct StackEstimate {
     /// Estimated roll, pitch, yaw, rad.
     pub attitude: [f64; 3],
-    /// Roll, pitch, yaw aimed at, rad; NaN if none.
+    /// Target roll, pitch, yaw, rad; NaN without a target.
     pub setpoint: [f64; 3],
-    /// Tilt by the arm's sensor, rad; NaN if none.
+    /// Tilt by the arm's sensor, rad; NaN without a fresh one.
     pub tilt_measured: PerArm<f64>,
     /// Tilt by the mixer's model, rad.
     pub tilt_model: PerArm<f64>,

@@ -1,4 +1,4 @@
-//! By how much a flight failed: what the samples say of the quantity that ended it, behind the reason.
+//! Detail behind the reason of a failed flight: the samples' values of the quantity that ended it.
 
 use core::f64::consts::PI;
 use sophie_control::gripper::tendon::ForceLimit;
@@ -10,14 +10,14 @@ use crate::plant::tendon::TendonSpec;
 use crate::record::{SAMPLE_HZ, Sample};
 use crate::scenario::{Scenario, Step};
 
-/// Time before the end that is looked at for swings, s.
+/// Time before the end that is searched for swings, s.
 const SWING_TIME: f64 = 2.0;
 /// Least swing from one turn to the next, rad (12 deg), and least number of them in a row, that is reported: gusts and
 /// the pilot make less, the roll manoeuvre turns twice.
 const SWING: f64 = 12.0 * PI / 180.0;
 const SWINGS: usize = 4;
 
-/// What is to be said behind the reason `reason` of a flight that failed in `step`; empty when there is nothing.
+/// Text to append to the `reason` of a flight that failed in `step`; empty without a finding.
 pub fn detail(scenario: &Scenario, step: Option<&Step>, samples: &[Sample], reason: &str) -> String {
     let mut parts = Vec::new();
     let swings = swings(samples);
@@ -34,7 +34,7 @@ pub fn detail(scenario: &Scenario, step: Option<&Step>, samples: &[Sample], reas
     parts.iter().map(|part| format!("; {part}")).collect()
 }
 
-/// Thrust to weight of a vehicle that did not get up.
+/// Thrust to weight of a vehicle that did not reach half its take-off height.
 fn strength(scenario: &Scenario, step: Option<&Step>, samples: &[Sample], swings: bool) -> Option<String> {
     let Some(Step::TakeOff { height }) = step else {
         return None;
@@ -54,7 +54,7 @@ fn strength(scenario: &Scenario, step: Option<&Step>, samples: &[Sample], swings
     })
 }
 
-/// Swings of the attitude that do not end.
+/// Sustained swings of the attitude; `None` without.
 fn swings(samples: &[Sample]) -> Option<String> {
     let count = (SWING_TIME * SAMPLE_HZ) as usize;
     let last = samples.get(samples.len().saturating_sub(count)..)?;
@@ -82,7 +82,7 @@ fn swings(samples: &[Sample]) -> Option<String> {
     ))
 }
 
-/// Where an angle turned back after at least [`SWING`].
+/// Turning points of an angle, each at least [`SWING`] from the one before.
 fn turns(angles: impl Iterator<Item = f64>) -> Vec<f64> {
     let (mut turns, mut low, mut high, mut rising) = (Vec::new(), f64::MAX, f64::MIN, None);
     for angle in angles {
@@ -98,7 +98,7 @@ fn turns(angles: impl Iterator<Item = f64>) -> Vec<f64> {
     turns
 }
 
-/// What the arm that came least far had on its tendon, and what it would have needed.
+/// Tendon force of the chosen arm with the least pressure, and the force that it would need.
 fn force(scenario: &Scenario, samples: &[Sample]) -> Option<String> {
     let p = &scenario.params;
     let (limit, target) = (
@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn swings_are_told_and_a_manoeuvre_is_not() {
+    fn swings_are_reported_and_a_manoeuvre_is_not() {
         let swinging = attitude(|t| 0.3 * (2.0 * PI * 3.0 * t).sin());
         assert!(swings(&swinging).unwrap().starts_with("pitch swings by 34 deg"));
         assert_eq!(swings(&attitude(|t| 0.08 * (2.0 * PI * 3.0 * t).sin())), None);

@@ -111,7 +111,7 @@ impl Judge {
             PRESSURE_MAX
         };
         if let Some((arm, pressure)) = worst(plant.pressure()).filter(|(_, p)| *p > allowed) {
-            let (pressure, allowed) = told_apart(pressure, allowed);
+            let (pressure, allowed) = printed_apart(pressure, allowed);
             return Some(format!(
                 "pressure on arm {arm} reached {pressure} N/m2, allowed {allowed}"
             ));
@@ -119,7 +119,7 @@ impl Judge {
         if let Some((arm, tension)) = worst(plant.tension())
             && tension * self.reel_radius > self.torque_max
         {
-            let (torque, allowed) = told_apart(tension * self.reel_radius, self.torque_max);
+            let (torque, allowed) = printed_apart(tension * self.reel_radius, self.torque_max);
             return Some(format!(
                 "tendon {arm} pulled with {torque} N m at the servo, allowed {allowed}"
             ));
@@ -245,8 +245,8 @@ impl Judge {
     }
 }
 
-/// Both numbers with enough digits to differ, at least three significant.
-fn told_apart(value: f64, allowed: f64) -> (String, String) {
+/// Both numbers printed with enough digits to differ, at least three significant.
+fn printed_apart(value: f64, allowed: f64) -> (String, String) {
     let least = if allowed < 100.0 { 2 } else { 0 };
     let written = |digits: usize| (format!("{value:.digits$}"), format!("{allowed:.digits$}"));
     let mut digits = least..9;
@@ -266,10 +266,10 @@ fn worst(values: PerArm<f64>) -> Option<(usize, f64)> {
 
 #[cfg(test)]
 mod tests {
-    use super::told_apart;
+    use super::printed_apart;
 
     #[test]
-    fn a_value_and_its_limit_are_told_apart() {
+    fn a_value_and_its_limit_are_printed_apart() {
         for (value, allowed, words) in [
             (2.4541, 2.452, ("2.454", "2.452")),
             (3.1, 2.452, ("3.10", "2.45")),
@@ -278,7 +278,7 @@ mod tests {
             (2.452_000_3, 2.452, ("2.4520003", "2.4520000")),
         ] {
             assert_eq!(
-                told_apart(value, allowed),
+                printed_apart(value, allowed),
                 (words.0.to_owned(), words.1.to_owned())
             );
         }

@@ -5,7 +5,7 @@ use sophie_control::allocation::wrench::PerArm;
 use sophie_control::mode::Mode;
 
 use super::Snapshot;
-use super::aircraft::{Aircraft, Said};
+use super::aircraft::{Aircraft, ReportedStatus};
 use crate::plant::Plant;
 use crate::record::{Event, FlightRecord, Grip, Observer, Outcome, Phase, SAMPLE_HZ, Sample};
 use crate::scenario::{Scenario, Step};
@@ -189,7 +189,7 @@ impl Recorder {
             };
             self.say(t, text.to_owned(), observer);
         }
-        if let Some(Said {
+        if let Some(ReportedStatus {
             mode,
             reason,
             warning,
@@ -264,36 +264,36 @@ impl Recorder {
 
 fn sample(t: f64, plant: &Plant, stack: &impl Aircraft, throttle: f64) -> Sample {
     let pose = plant.pose();
-    let belief = stack.belief();
+    let estimate = stack.estimate();
     Sample {
         t,
         mode: stack.mode(),
         position: pose.position.to_array(),
         velocity: pose.velocity.to_array(),
         attitude: plant.euler(),
-        attitude_estimate: belief.attitude,
-        attitude_setpoint: belief.setpoint,
+        attitude_estimate: estimate.attitude,
+        attitude_setpoint: estimate.setpoint,
         rate: pose.omega.to_array(),
         tilt: plant.tilt(),
-        tilt_measured: belief.tilt_measured,
-        tilt_model: belief.tilt_model,
+        tilt_measured: estimate.tilt_measured,
+        tilt_model: estimate.tilt_model,
         thrust: plant.thrust(),
-        thrust_asked: belief.thrust_asked,
+        thrust_asked: estimate.thrust_asked,
         tension: plant.tension(),
-        tension_asked: belief.tension_asked,
+        tension_asked: estimate.tension_asked,
         pressure: plant.pressure(),
-        pressure_measured: belief.pressure,
+        pressure_measured: estimate.pressure,
         battery_voltage: plant.battery_voltage(),
         throttle,
-        saturated: belief.saturated,
-        position_estimate: belief.position,
-        pose: belief.pose,
+        saturated: estimate.saturated,
+        position_estimate: estimate.position,
+        pose: estimate.pose,
         range: plant
             .pipe()
             .or_ground_along(pose.position, pose.attitude * DVec3::Z)
             .unwrap_or(f64::NAN),
-        range_measured: belief.range,
-        flow: belief.flow,
+        range_measured: estimate.range,
+        flow: estimate.flow,
     }
 }
 

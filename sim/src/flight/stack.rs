@@ -16,7 +16,7 @@ use sophie_tasks::deadline::TaskId;
 use sophie_tasks::links::{GripState, Links, Newest, Stamped, Status};
 use sophie_tasks::start::Start;
 
-use super::aircraft::{Aircraft, Belief, Reset, Said};
+use super::aircraft::{Aircraft, ReportedStatus, Reset, StackEstimate};
 use crate::board::{Board, Port};
 use crate::clock::VirtualTime;
 use crate::devices::companion::Companion;
@@ -26,7 +26,7 @@ use crate::plant::Plant;
 use crate::scenario::{PositionSensor, Scenario};
 use crate::target_angles;
 
-/// The step of a reset that no step of the mission made.
+/// Step index of a reset that a client ordered, not the mission.
 const NO_STEP: usize = usize::MAX;
 
 /// The stack of one flight.
@@ -143,7 +143,7 @@ impl Stack {
 }
 
 impl Stack {
-    /// The estimated position as one in the true axes.
+    /// The estimated position in world axes, m.
     fn position(&self) -> Option<[f64; 3]> {
         let position = self.links.position.fresh().map(|e| e.position);
         match &self.flow_module {
@@ -173,7 +173,7 @@ impl Stack {
         )
     }
 
-    /// A position in the axes of the companion computer as one in the true axes.
+    /// Converts a position from the companion computer's axes to world axes, m.
     fn in_world(&self, position: Vec3) -> Option<[f64; 3]> {
         let companion = self.companion.as_ref()?;
         let position = DVec3::from_array(position.to_array().map(f64::from));
@@ -224,14 +224,14 @@ impl Aircraft for Stack {
         Ok(())
     }
 
-    fn status(&self) -> Option<Said<'_>> {
+    fn status(&self) -> Option<ReportedStatus<'_>> {
         let Status {
             mode,
             reason,
             warning,
             ..
         } = self.links.status.latest()?.value;
-        Some(Said {
+        Some(ReportedStatus {
             mode,
             reason: reason.map_or("", Reason::text),
             warning,
@@ -242,7 +242,7 @@ impl Aircraft for Stack {
         self.links.grip.latest().map(|g| g.value)
     }
 
-    fn belief(&self) -> Belief {
+    fn estimate(&self) -> StackEstimate {
         let links = self.links;
         let wide = |v: PerArm<f32>| v.map(f64::from);
         let mix = links.mix.latest().map(|m| m.value).unwrap_or_default();
@@ -251,7 +251,7 @@ impl Aircraft for Stack {
             .latest()
             .map(|a| a.value.q.to_euler())
             .unwrap_or_default();
-        // The wanted heading arrives relative to the present one.
+        // The target heading is relative to the present one.
         let target = links.target.latest().map(|v| {
             let [roll, pitch, ahead] = target_angles::angles(v.value);
             let heading = scalar::wrap_pi(estimate.2 + ahead as f32);
@@ -267,7 +267,7 @@ impl Aircraft for Stack {
             .latest()
             .map_or([0.0; 4], |order| order.value.forces().arms.map(|arm| arm.force));
         let (range, flow) = self.range_and_flow();
-        Belief {
+        StackEstimate {
             attitude: [estimate.0, estimate.1, estimate.2].map(f64::from),
             setpoint: target.filter(|_| mix.running).unwrap_or([f64::NAN; 3]),
             tilt_measured: links.tilts().values().map(|a| a.map_or(f64::NAN, f64::from)),
@@ -358,13 +358,13 @@ mod tests {
     fn the_log_has_no_pressure_while_none_is_fresh() {
         let scenario = Scenario::default_mission();
         let mut stack = Stack::new(&scenario);
-        assert!(stack.belief().pressure.iter().all(|p| p.is_nan()));
+        assert!(stack.estimate().pressure.iter().all(|p| p.is_nan()));
         stack.run_until(50_000).unwrap();
-        assert!(stack.belief().pressure.iter().all(|p| p.is_finite()));
+        assert!(stack.estimate().pressure.iter().all(|p| p.is_finite()));
         // The newest conversion is 21 ms old.
         let contact = stack.links.contact.latest().unwrap();
         let old = embassy_time::Instant::now() - embassy_time::Duration::from_millis(21);
         stack.links.contact.send(old, contact.value);
-        assert!(stack.belief().pressure.iter().all(|p| p.is_nan()));
+        assert!(stack.estimate().pressure.iter().all(|p| p.is_nan()));
     }
 }

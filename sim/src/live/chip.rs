@@ -3,7 +3,7 @@
 use sophie_ports::chip::{Chip, Look, NotSet};
 use sophie_tasks::storage::parameters::table_id;
 
-use super::Line;
+use crate::devices::line::Line;
 
 /// The chip of the board on this line.
 #[derive(Clone, Copy)]
@@ -14,7 +14,7 @@ impl Chip for ThisChip {
         self.0.restart();
     }
 
-    /// It has no loader: the firmware starts again at once.
+    /// The simulation has no loader; the firmware restarts at once.
     fn enter_loader(&mut self) {
         self.0.restart();
     }
@@ -23,7 +23,7 @@ impl Chip for ThisChip {
         "a simulated board"
     }
 
-    /// It has no image: what it knows of parameters stands for one.
+    /// The simulation has no image; the parameter table stands for its identity.
     fn build(&self) -> u32 {
         sophie_image_id::of([table_id()])
     }

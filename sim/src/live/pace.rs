@@ -1,10 +1,10 @@
-//! Virtual time held to wall time.
+//! Holds virtual time to wall time.
 
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// Wall time by which a flight may fall behind and catch up: a host's usual delays. More moves the pace, so that no burst
-/// follows.
+/// Largest delay that a flight catches up, in wall time: a host's usual delays. A longer one shifts the schedule, so
+/// that no burst follows.
 const SLACK: Duration = Duration::from_millis(20);
 /// Wall time over which the reached speed is measured.
 const WINDOW: Duration = Duration::from_secs(2);
@@ -39,7 +39,7 @@ impl Pace {
         }
     }
 
-    /// Waits until `us` of virtual time is due. Says once, in one line, that the host is too slow.
+    /// Waits until `us` of virtual time is due. Returns a message once, in one line, if the host is too slow.
     pub fn wait(&mut self, us: u64) -> Option<String> {
         let began = *self.began.get_or_insert_with(Instant::now);
         let virtual_time = us as f64 * 1e-6;
@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn a_host_that_is_too_slow_is_told_of_once_with_what_it_reaches() {
+    fn a_host_that_is_too_slow_is_reported_once_with_its_speed() {
         let (wall, reported, _) = run(4.0, 40.0, |_| 0.5e-3);
         assert!((19.9..20.2).contains(&wall), "{wall} s");
         assert_eq!(reported.len(), 1);

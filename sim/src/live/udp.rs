@@ -1,10 +1,10 @@
-//! MAVLink over UDP: a destination, and a client that spoke first.
+//! MAVLink over UDP: a fixed destination and one more client, the first that sends.
 
 use std::io::ErrorKind;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, UdpSocket};
 use std::time::{Duration, Instant};
 
-/// Datagrams taken in at once: a flood is left to the socket, which loses it.
+/// Most datagrams taken at once; the socket drops the rest of a flood.
 const AT_ONCE: usize = 16;
 /// Longest datagram: more than Ethernet carries.
 const LONGEST: usize = 2048;
@@ -32,7 +32,7 @@ impl Udp {
     /// A socket that sends to `destination`; nothing needs to listen there.
     ///
     /// # Errors
-    /// One line: the destination, and why there is no socket.
+    /// One line: the destination, and why the socket failed.
     pub fn open(destination: SocketAddr) -> Result<Self, String> {
         let local = match destination.ip() {
             ip if ip.is_loopback() => ip,
@@ -51,21 +51,21 @@ impl Udp {
         })
     }
 
-    /// The port that clients may send to, and where it sends.
+    /// The local port for clients, and the destination.
     #[must_use]
     pub fn shown(&self) -> String {
         let local = self.socket.local_addr().map_or(0, |address| address.port());
         format!("UDP port {local}, sending to {}", self.destination)
     }
 
-    /// Hands `take` what the destination and the client have sent, a datagram at a time.
+    /// Passes each datagram of the destination and the client to `take`.
     pub fn receive(&mut self, mut take: impl FnMut(&[u8])) {
         let mut datagram = [0; LONGEST];
         for _ in 0..AT_ONCE {
             match self.socket.recv_from(&mut datagram) {
                 Ok((length, from)) if self.knows(from) => take(&datagram[..length]),
                 Err(e) if e.kind() == ErrorKind::WouldBlock => break,
-                // A stranger, or some hosts' way to say that a datagram has found no listener.
+                // A datagram of a stranger, or a host's report that a datagram found no listener.
                 Ok(_) | Err(_) => {}
             }
         }
@@ -86,8 +86,8 @@ impl Udp {
         free
     }
 
-    /// Sends `frame` to the destination and the client. Says once, in one line, that the host refuses it: a destination
-    /// without a listener is no refusal.
+    /// Sends `frame` to the destination and the client. Returns a message once, in one line, if the host refuses; a
+    /// missing listener does not count as a refusal.
     pub fn send(&mut self, frame: &[u8]) -> Option<String> {
         let client = self.client.map(|client| client.address);
         for to in [Some(self.destination), client].into_iter().flatten() {
@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn a_refusal_of_the_host_is_told_of_once() {
+    fn a_refusal_of_the_host_is_reported_once() {
         // Broadcasts are not enabled.
         let mut udp = Udp::open((Ipv4Addr::BROADCAST, 14550).into()).unwrap();
         let reported = udp.send(b"hello").unwrap();

@@ -1,5 +1,5 @@
-//! Steps that the pilot leaves to the mode HOLD: he turns its switch, centres the sticks or asks for velocities, and takes
-//! over where the vehicle gives up.
+//! Steps flown in the mode HOLD: the pilot turns its switch on, then centres the sticks or commands velocities, and
+//! flies by hand if the vehicle leaves the mode.
 
 use glam::DVec2;
 use sophie_control::mode::Mode;
@@ -14,7 +14,7 @@ pub(super) const CENTRE: f64 = 0.5;
 const ZONE: f64 = 0.1;
 /// Distance to velocity, 1/s.
 const GAIN: f64 = 0.6;
-/// Fastest flight asked for, m/s.
+/// Largest commanded speed, m/s.
 const SPEED: f64 = 1.0;
 /// Time with the switch off before another try, s, and for which he waits for the display, s.
 const SWITCH_OFF: f64 = 1.0;
@@ -28,12 +28,12 @@ impl Mission {
         match self.enter_hold(v, self.spot, self.height, dt) {
             Err(progress) => progress,
             Ok(()) => {
-                let wish = self.centred(v);
+                let target = self.centred(v);
                 if self.held_for(true, seconds, dt) {
                     self.hold_switch = false;
-                    Progress::Done(wish)
+                    Progress::Done(target)
                 } else {
-                    Progress::Going(wish)
+                    Progress::Going(target)
                 }
             }
         }
@@ -55,7 +55,7 @@ impl Mission {
         } else {
             ZONE.copysign(climb)
         };
-        let wish = StickTarget {
+        let target = StickTarget {
             roll: body.y,
             pitch: -body.x,
             throttle: CENTRE + zone + climb * (CENTRE - ZONE),
@@ -65,9 +65,9 @@ impl Mission {
         let there = off < REACHED && v.seen.velocity.length() < REACHED_SPEED;
         if self.held_for(there, 1.0, dt) {
             self.hold_switch = false;
-            Progress::Done(wish)
+            Progress::Done(target)
         } else {
-            Progress::Going(wish)
+            Progress::Going(target)
         }
     }
 
@@ -89,7 +89,7 @@ impl Mission {
                 return Err(Progress::Failed(format!("no hold, {}", v.shown())));
             }
             (Phase::Wait, _) => (),
-            // Lost: by hand, switch off, and again.
+            // HOLD was lost: fly by hand with the switch off, then retry.
             (Phase::Fly, _) => {
                 self.hold_switch = false;
                 self.enter(Phase::Start);
@@ -103,7 +103,7 @@ impl Mission {
         Err(Progress::Going(self.go_to(v, spot, height, dt)))
     }
 
-    /// Sticks centred but for the heading; the throttle follows on from there.
+    /// Centres the sticks except for the heading; the throttle continues from there.
     fn centred(&mut self, v: &View<'_>) -> StickTarget {
         self.guidance.stand(CENTRE);
         StickTarget {

@@ -1,4 +1,5 @@
-//! Steps that the vehicle flies by itself: the pilot holds near the pipe, turns the perch switch, and keeps his hands off.
+//! Steps that the vehicle flies autonomously: the pilot holds near the pipe, turns the perch switch on and leaves the
+//! sticks centred.
 
 use sophie_control::mode::{Mode, Reason};
 
@@ -9,20 +10,20 @@ use crate::scenario::Step;
 
 /// Height over the pipe at which he holds, m.
 const OVER: f64 = 0.6;
-/// Distance, m, and speed, m/s, from which he leaves the rest of the way to the hold.
+/// Distance, m, and speed, m/s, below which HOLD flies the rest of the way.
 const NEAR: f64 = 0.8;
 pub(super) const NEAR_SPEED: f64 = 0.5;
 /// Time with centred sticks before he turns the perch switch, s.
 const STILL: f64 = 1.5;
-/// Time for which the display asks for him before he takes over, s.
+/// Time for which the display must ask for the pilot before he takes over, s.
 const NOTICED: f64 = 0.5;
-/// How far it has climbed when he takes the leaving as done, m.
+/// Climb after which the departure counts as done, m.
 const LEFT: f64 = 0.4;
-/// Time after which he no longer waits for that from a vehicle that holds lower, s.
+/// Longest wait for that climb if the vehicle holds lower, s.
 const LEAVES: f64 = 15.0;
 
 impl Mission {
-    /// By hand to the pipe, and the last metre by the hold.
+    /// Flies by hand to the pipe and the last metre in HOLD.
     pub(super) fn fly_to_pipe_held(&mut self, v: &View<'_>, dt: f64) -> Progress {
         let height = self.pipe_top + OVER;
         if !self.hold_switch && self.phase == Phase::Start {
@@ -43,8 +44,8 @@ impl Mission {
         progress
     }
 
-    /// Turns the perch switch and waits for what ends `step`.
-    pub(super) fn perch_by_itself(&mut self, step: &Step, v: &View<'_>, dt: f64) -> Progress {
+    /// Turns the perch switch on and waits for the mode that ends `step`.
+    pub(super) fn perch_autonomously(&mut self, step: &Step, v: &View<'_>, dt: f64) -> Progress {
         let done = match step {
             Step::Touch => matches!(v.mode, Some(Mode::Contact | Mode::Clamping | Mode::Perched)),
             Step::Clamp { .. } => matches!(v.mode, Some(Mode::Clamping | Mode::Perched)),
@@ -61,7 +62,7 @@ impl Mission {
             }
             Phase::Descend => (),
             Phase::Commit => {
-                // The display is a moment late.
+                // The display lags.
                 let back = v.mode == Some(Mode::Hold) || Self::left_to_him(v);
                 if self.held_for(back, STILL, dt) {
                     return Progress::Failed(format!("handed back, {}", v.shown()));
@@ -72,23 +73,23 @@ impl Mission {
                 Ok(()) => self.enter(Phase::Descend),
             },
         }
-        let wish = self.idle();
+        let target = self.idle();
         if done {
-            Progress::Done(wish)
+            Progress::Done(target)
         } else {
-            Progress::Going(wish)
+            Progress::Going(target)
         }
     }
 
-    /// The vehicle flies, but no longer by itself.
+    /// The vehicle flies, but not autonomously.
     fn left_to_him(v: &View<'_>) -> bool {
         matches!(v.mode, Some(Mode::Flight | Mode::Failsafe))
             || (v.mode == Some(Mode::Escaping) && v.shows(Reason::PositionLost))
     }
 
-    /// Turns the perch switch off and waits until the vehicle holds its place above the pipe. Where it cannot, he flies on by
-    /// hand.
-    pub(super) fn release_by_itself(&mut self, step: &Step, v: &View<'_>, dt: f64) -> Progress {
+    /// Turns the perch switch off and waits until the vehicle holds its position above the pipe. If it cannot hold, the
+    /// pilot flies by hand.
+    pub(super) fn release_autonomously(&mut self, step: &Step, v: &View<'_>, dt: f64) -> Progress {
         if self.phase == Phase::Fly {
             return self.release(v, dt);
         }
@@ -101,9 +102,9 @@ impl Mission {
             self.spot = v.seen.position.truncate();
             self.enter(Phase::Fly);
         }
-        let wish = self.idle();
+        let target = self.idle();
         if left {
-            return Progress::Going(wish);
+            return Progress::Going(target);
         }
         if self.phase == Phase::Start {
             self.height = v.height();
@@ -119,13 +120,13 @@ impl Mission {
         };
         if self.held_for(done, 0.5, dt) {
             self.hold_switch &= matches!(step, Step::Open);
-            Progress::Done(wish)
+            Progress::Done(target)
         } else {
-            Progress::Going(wish)
+            Progress::Going(target)
         }
     }
 
-    /// The same with hands off the sticks.
+    /// The same with the sticks centred.
     pub(super) fn hands_off(&mut self, progress: Progress) -> Progress {
         match progress {
             Progress::Going(_) => Progress::Going(self.idle()),

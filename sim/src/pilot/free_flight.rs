@@ -26,11 +26,11 @@ impl Mission {
             self.spot = v.seen.position.truncate();
             self.enter(Phase::Fly);
         }
-        let wish = self.go_to(v, self.spot, self.height, dt);
+        let target = self.go_to(v, self.spot, self.height, dt);
         if self.phase_time >= seconds {
-            Progress::Done(wish)
+            Progress::Done(target)
         } else {
-            Progress::Going(wish)
+            Progress::Going(target)
         }
     }
 
@@ -40,12 +40,12 @@ impl Mission {
             self.heading_goal = heading;
             self.enter(Phase::Fly);
         }
-        let wish = self.go_to(v, self.spot, self.height, dt);
+        let target = self.go_to(v, self.spot, self.height, dt);
         let there = wrap(heading - v.seen.yaw).abs() < TURNED;
         if self.held_for(there, seconds, dt) {
-            Progress::Done(wish)
+            Progress::Done(target)
         } else {
-            Progress::Going(wish)
+            Progress::Going(target)
         }
     }
 
@@ -62,13 +62,13 @@ impl Mission {
         let side = if self.phase == Phase::Right { 1.0 } else { -1.0 };
         // No roll in a failsafe: its end is awaited over the spot.
         if self.phase == Phase::Fly || self.trouble.is_some() {
-            let wish = self.go_to(v, self.spot, self.height, dt);
+            let target = self.go_to(v, self.spot, self.height, dt);
             let off = (v.seen.position.truncate() - self.spot).length();
             let there = off < RECOVERED && v.seen.velocity.length() < RECOVERED_SPEED;
             return if self.held_for(there && self.phase == Phase::Fly, 0.5, dt) {
-                Progress::Done(wish)
+                Progress::Done(target)
             } else {
-                Progress::Going(wish)
+                Progress::Going(target)
             };
         }
         if self.phase_time >= seconds {
@@ -90,16 +90,16 @@ impl Mission {
         })
     }
 
-    pub(super) fn fly_to(&mut self, v: &View<'_>, target: DVec2, height: f64, dt: f64) -> Progress {
-        let wish = self.go_to(v, target, height, dt);
-        let off = (v.seen.position.truncate() - target)
+    pub(super) fn fly_to(&mut self, v: &View<'_>, place: DVec2, height: f64, dt: f64) -> Progress {
+        let target = self.go_to(v, place, height, dt);
+        let off = (v.seen.position.truncate() - place)
             .length()
             .hypot(v.height() - height);
         let there = off < REACHED && v.seen.velocity.length() < REACHED_SPEED;
         if self.held_for(there, 1.0, dt) {
-            Progress::Done(wish)
+            Progress::Done(target)
         } else {
-            Progress::Going(wish)
+            Progress::Going(target)
         }
     }
 }

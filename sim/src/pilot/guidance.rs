@@ -1,4 +1,4 @@
-//! How the pilot flies: position to velocity to lean, height to climb to throttle, heading to rudder.
+//! Control law of the pilot: position to velocity to lean, height to climb rate to throttle, heading to yaw stick.
 //!
 //! Gentle: velocity crossover 0.3 Hz, lean at most 14°. Two trims take up the steady wind and the throttle of
 //! hover.
@@ -6,7 +6,7 @@
 use glam::{DVec2, DVec3};
 use sophie_control::params::Params;
 
-use super::Seen;
+use super::VisibleState;
 use super::perception::Foresight;
 use super::stick_dynamics::StickTarget;
 use crate::plant::GRAVITY;
@@ -44,20 +44,20 @@ const THROTTLE_SLEW: f64 = 0.8;
 /// Heading error to yaw rate, 1/s.
 const HEADING_GAIN: f64 = 0.4;
 
-/// Where to go.
+/// Target of the guidance.
 #[derive(Clone, Copy, Debug)]
 pub struct Course {
     /// North and east, m.
     pub target: DVec2,
-    /// Height, or how fast it changes.
+    /// Height or climb rate.
     pub vertical: Vertical,
     /// Heading of the nose, rad.
     pub heading: f64,
-    /// Speed at which that moves, rad/s.
+    /// Rate of the heading, rad/s.
     pub turning: f64,
 }
 
-/// How the height is flown.
+/// Vertical target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Vertical {
     /// Go to this height over the ground, m.
@@ -78,7 +78,7 @@ pub struct Guidance {
     wind: DVec2,
     throttle: f64,
     foresight: Foresight,
-    /// Where the vehicle will be when the sticks act: position and velocity, NED.
+    /// Predicted state at the time when the sticks act: position and velocity, NED.
     ahead: (DVec3, DVec3),
 }
 
@@ -103,9 +103,8 @@ impl Guidance {
         hover(params) / hover(&Params::default())
     }
 
-    /// Throttle that gives the share of the weight that 1 of it gives the paper's vehicle: below 1 for a vehicle of
-    /// stronger rotors. Every throttle and its speed is so much of the paper's, or a pilot used to the one would
-    /// throw the other about.
+    /// Hover throttle over that of the paper's vehicle: below 1 with stronger rotors. The pilot scales every throttle
+    /// and its rate by this factor, so that vehicles of any strength respond alike.
     pub fn strength(&self) -> f64 {
         self.strength
     }
@@ -115,14 +114,14 @@ impl Guidance {
         self.ahead
     }
 
-    /// The vehicle stands on something: the throttle is set by other means, nothing is learned.
+    /// The vehicle stands: another part sets the throttle, and no trim is learned.
     pub fn stand(&mut self, throttle: f64) {
         self.throttle = throttle;
         self.foresight.forget();
     }
 
-    /// Updates the foresight from where the sticks are (roll, pitch, yaw, throttle).
-    pub fn foresee(&mut self, seen: &Seen, now: f64, sticks: [f64; 4], dt: f64) {
+    /// Updates the prediction from the stick positions (roll, pitch, yaw, throttle).
+    pub fn foresee(&mut self, seen: &VisibleState, now: f64, sticks: [f64; 4], dt: f64) {
         let [roll, pitch, _, throttle] = sticks;
         let body = DVec2::new(
             -GRAVITY * (pitch * self.stick_angle).tan(),
@@ -136,7 +135,7 @@ impl Guidance {
     }
 
     /// Steers along `course` for `dt` s.
-    pub fn steer(&mut self, seen: &Seen, course: &Course, dt: f64) -> StickTarget {
+    pub fn steer(&mut self, seen: &VisibleState, course: &Course, dt: f64) -> StickTarget {
         let (position, velocity) = self.ahead;
         let away = course.target - position.truncate();
         let speed = (away * POSITION_GAIN).clamp_length_max(SPEED_MAX);
@@ -156,9 +155,9 @@ impl Guidance {
         }
     }
 
-    /// Roll and pitch stick that hold the vehicle still in the air: against the wind, and against the error of what
-    /// it takes for level.
-    pub fn trim(&self, seen: &Seen) -> (f64, f64) {
+    /// Roll and pitch stick that hold the vehicle still in the air, against the wind and the error of the vehicle's
+    /// level.
+    pub fn trim(&self, seen: &VisibleState) -> (f64, f64) {
         let body = DVec2::from_angle(-seen.yaw).rotate(self.wind);
         let (roll, pitch) = ((body.y / GRAVITY).atan(), -(body.x / GRAVITY).atan());
         (roll / self.stick_angle, pitch / self.stick_angle)
@@ -183,7 +182,7 @@ impl Guidance {
     }
 
     /// Yaw stick that turns the nose to `heading`, which itself moves at `turning` rad/s.
-    pub fn rudder(&self, seen: &Seen, heading: f64, turning: f64) -> f64 {
+    pub fn rudder(&self, seen: &VisibleState, heading: f64, turning: f64) -> f64 {
         ((HEADING_GAIN * super::wrap(heading - seen.yaw) + turning) / self.stick_yaw_rate).clamp(-1.0, 1.0)
     }
 }

@@ -6,7 +6,7 @@ use crate::scenario::{Assist, Step};
 pub fn of(step: &Step, assist: Assist) -> f64 {
     match *step {
         // Five tries of a search each.
-        Step::Touch | Step::Clamp { .. } | Step::Perch { .. } if assist == Assist::Itself => 400.0,
+        Step::Touch | Step::Clamp { .. } | Step::Perch { .. } if assist == Assist::Autonomous => 400.0,
         // Includes the calibration at rest.
         Step::Arm => 30.0,
         Step::TakeOff { height } => 12.0 + 4.0 * height,

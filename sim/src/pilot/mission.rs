@@ -1,4 +1,4 @@
-//! What the steps of the mission share.
+//! State and helpers that all steps of a mission share.
 
 use glam::DVec2;
 use sophie_control::mode::{Mode, Reason};
@@ -6,10 +6,10 @@ use sophie_control::mode::{Mode, Reason};
 use super::guidance::{Course, Guidance, Vertical};
 use super::limits;
 use super::stick_dynamics::StickTarget;
-use super::{Seen, wrap};
+use super::{VisibleState, wrap};
 use crate::scenario::{Assist, Scenario, Step};
 
-/// Heading flown but after a turn, rad: north, along the pipe.
+/// Heading flown unless a step turns the vehicle, rad: north, along the pipe.
 const HEADING: f64 = 0.0;
 /// Speed at which the nose is swept round, rad/s.
 const SWEEP: f64 = 0.5;
@@ -21,7 +21,7 @@ const WITHIN: f64 = 0.1;
 #[derive(Clone, Copy, Debug)]
 pub struct View<'a> {
     /// Delayed, noisy state.
-    pub seen: Seen,
+    pub seen: VisibleState,
     /// Time now, s.
     pub now: f64,
     /// Mode read from the display.
@@ -99,7 +99,7 @@ pub struct Mission {
     pub(super) pipe: DVec2,
     pub(super) pipe_top: f64,
     pub(super) pipe_radius: f64,
-    /// How far beside the crown he sets down, m, and how fast he may drift across then, m/s.
+    /// Largest distance from the crown at the touch, m, and largest drift across the pipe, m/s.
     pub(super) within: f64,
     pub(super) drift: f64,
     pub(super) stick_angle: f64,
@@ -114,14 +114,14 @@ pub struct Mission {
     /// Time since the step and the phase began, s.
     pub(super) step_time: f64,
     pub(super) phase_time: f64,
-    /// Time for which the awaited condition has held, s.
+    /// Time for which the awaited condition has been true, s.
     pub(super) held: f64,
     /// Point to hold: north, east, m; height at the step's beginning.
     pub(super) spot: DVec2,
     pub(super) height: f64,
     /// Throttle set by hand when not flying.
     pub(super) throttle: f64,
-    /// Touches that came to nothing.
+    /// Number of failed touches.
     pub(super) missed: u32,
     /// The displayed reason of the failsafe that ended the flight.
     pub(super) trouble: Option<String>,
@@ -130,7 +130,7 @@ pub struct Mission {
 impl Mission {
     /// A pilot for `scenario`.
     pub fn new(scenario: &Scenario) -> Self {
-        let pipe = scenario.pilot.believes.pipe(&scenario.world);
+        let pipe = scenario.pilot.assumed.pipe(&scenario.world);
         Self {
             guidance: Guidance::new(&scenario.params, scenario.pilot.delay),
             pipe: DVec2::from_array(pipe.position),
@@ -163,9 +163,9 @@ impl Mission {
     }
 
     /// Begins a step.
-    pub fn begin(&mut self, seen: &Seen) {
-        // By itself the vehicle takes a switch turned off as the wish to fly by hand.
-        self.hold_switch &= self.assist == Assist::Itself;
+    pub fn begin(&mut self, seen: &VisibleState) {
+        // An autonomous vehicle reads a switch turned off as a change to flight by hand.
+        self.hold_switch &= self.assist == Assist::Autonomous;
         self.enter(Phase::Start);
         self.step_time = 0.0;
         self.missed = 0;
@@ -196,16 +196,16 @@ impl Mission {
             Step::FlyTo { north, east, height } if self.assist == Assist::Hold => {
                 self.fly_to_held(view, DVec2::new(north, east), height, dt)
             }
-            Step::FlyToPipe if self.assist == Assist::Itself => self.fly_to_pipe_held(view, dt),
-            Step::Touch | Step::Clamp { .. } | Step::Perch { .. } if self.assist == Assist::Itself => {
-                self.perch_by_itself(step, view, dt)
+            Step::FlyToPipe if self.assist == Assist::Autonomous => self.fly_to_pipe_held(view, dt),
+            Step::Touch | Step::Clamp { .. } | Step::Perch { .. } if self.assist == Assist::Autonomous => {
+                self.perch_autonomously(step, view, dt)
             }
-            Step::Hold { seconds, .. } if self.assist == Assist::Itself => {
+            Step::Hold { seconds, .. } if self.assist == Assist::Autonomous => {
                 let held = self.hold(view, seconds, dt);
                 self.hands_off(held)
             }
-            Step::Open | Step::Release if self.assist == Assist::Itself => {
-                self.release_by_itself(step, view, dt)
+            Step::Open | Step::Release if self.assist == Assist::Autonomous => {
+                self.release_autonomously(step, view, dt)
             }
             Step::Hover { seconds } => self.hover(view, seconds, dt),
             Step::Yaw { heading, seconds } => self.yaw(view, heading, seconds, dt),
@@ -229,14 +229,13 @@ impl Mission {
                 "not done after {limit:.0} s: {}",
                 self.shortfall(step, view)
             )),
-            Progress::Going(wish) => Progress::Going(self.switches(Self::take_over(step, view, wish))),
-            Progress::Done(wish) => Progress::Done(self.switches(wish)),
+            Progress::Going(target) => Progress::Going(self.switches(Self::take_over(step, view, target))),
+            Progress::Done(target) => Progress::Done(self.switches(target)),
             failed @ Progress::Failed(_) => failed,
         }
     }
 
-    /// Why a step that needs its rotors must end: they stand still. The pilot flies until then: a vehicle that sinks by
-    /// itself is still steered.
+    /// Reason to end a step that needs rotors: they stand still. Until then the pilot steers, even in a failsafe.
     fn stopped(&self, step: &Step, v: &View<'_>) -> Option<String> {
         let rotors = match step {
             Step::TakeOff { .. }
@@ -275,12 +274,12 @@ impl Mission {
         })
     }
 
-    fn switches(&self, wish: StickTarget) -> StickTarget {
+    fn switches(&self, target: StickTarget) -> StickTarget {
         StickTarget {
             arm_switch: self.arm_switch,
             perch_switch: self.perch_switch,
             hold_switch: self.hold_switch,
-            ..wish
+            ..target
         }
     }
 
@@ -317,7 +316,7 @@ impl Mission {
         }
     }
 
-    /// What was not reached, as the reason of a failure.
+    /// Reason of a failure that names the value not reached.
     fn shortfall(&self, step: &Step, v: &View<'_>) -> String {
         let p = v.seen.position;
         let off = |target: DVec2| (p.truncate() - target).length();

@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 
-use super::Seen;
+use super::VisibleState;
 use crate::streams::Streams;
 
 /// Correlation time of the visual error, s (assumed).
@@ -25,7 +25,7 @@ pub struct Perception {
     position_error: DVec3,
     velocity_error: DVec3,
     yaw_error: f64,
-    queue: VecDeque<Seen>,
+    queue: VecDeque<VisibleState>,
 }
 
 impl Perception {
@@ -42,8 +42,8 @@ impl Perception {
         }
     }
 
-    /// Takes the true state `dt` s after the last one; returns what the pilot sees.
-    pub fn look(&mut self, now: Seen, dt: f64) -> Seen {
+    /// Takes the true state, `dt` s after the last one; returns the state as the pilot sees it.
+    pub fn look(&mut self, now: VisibleState, dt: f64) -> VisibleState {
         let keep = (1.0 - dt / ERROR_TIME).max(0.0);
         let push = (1.0 - keep * keep).sqrt();
         let rng = &mut self.rng;
@@ -52,7 +52,7 @@ impl Perception {
         self.position_error = self.position_error * keep + vector(self.noise) * push;
         self.velocity_error = self.velocity_error * keep + vector(VELOCITY_ERROR * self.noise) * push;
         self.yaw_error = self.yaw_error * keep + vector(YAW_ERROR).x * push;
-        self.queue.push_back(Seen {
+        self.queue.push_back(VisibleState {
             position: now.position + self.position_error,
             velocity: now.velocity + self.velocity_error,
             yaw: now.yaw + self.yaw_error,
@@ -95,7 +95,7 @@ impl Foresight {
         }
     }
 
-    /// Notes the accelerations asked for by the sticks, m/s², without the trims that only hold against wind and weight.
+    /// Records the accelerations commanded by the sticks, m/s², without the trims against wind and weight.
     pub fn note(&mut self, t: f64, level: DVec2, down: f64, dt: f64) {
         self.level += (level - self.level) * (dt / (dt + LEAN_TIME));
         self.down += (down - self.down) * (dt / (dt + THRUST_TIME));
@@ -105,19 +105,19 @@ impl Foresight {
         }
     }
 
-    /// Clears the notes: the vehicle stood on something, and the sticks did not move it.
+    /// Clears the record: the vehicle stood, and the sticks did not move it.
     pub fn forget(&mut self) {
         *self = Self::new(self.delay);
     }
 
     /// Position and velocity, NED, predicted for when the sticks act.
-    pub fn ahead(&self, seen: &Seen, dt: f64) -> (DVec3, DVec3) {
+    pub fn ahead(&self, seen: &VisibleState, dt: f64) -> (DVec3, DVec3) {
         let (mut position, mut velocity) = (seen.position, seen.velocity);
         for (_, level, down) in &self.past {
             velocity += level.extend(*down) * dt;
             position += velocity * dt;
         }
-        // For the part of the delay without notes: constant velocity.
+        // Constant velocity for the part of the delay without a record.
         position += velocity * (self.delay - self.past.len() as f64 * dt).max(0.0);
         velocity += (self.level * AHEAD_LEVEL).extend(self.down * AHEAD_DOWN);
         (position, velocity)

@@ -7,11 +7,12 @@ use super::guidance::Guidance;
 use super::mission::{Mission, Phase, Progress, View};
 use super::stick_dynamics::StickTarget;
 
-/// Height over the pipe from which it is approached, and to which the vehicle goes after a release, m.
+/// Height over the pipe at the start of the descent and after a release, m.
 const OVER: f64 = 1.0;
 /// Height over the pipe to which a missed approach goes up again, m.
 const OVER_AGAIN: f64 = 0.4;
-/// Distance, m, speed, m/s, and time, s, at which the vehicle is over the pipe: the rest is done on the way down.
+/// Distance, m, speed, m/s, and time, s, within which the vehicle counts as over the pipe; the descent corrects the
+/// rest.
 const SETTLED: f64 = 0.20;
 const SETTLED_SPEED: f64 = 0.20;
 const SETTLED_TIME: f64 = 1.5;
@@ -22,25 +23,25 @@ const LAST_DESCENT: f64 = 0.25;
 /// crown, and the height at which the belly touches, m.
 const GATE: f64 = 0.11;
 const BELLY: f64 = 0.05;
-/// Share of what he allows himself with which he continues from the gate at first, and the time, s, after which he is
-/// content with all of it.
+/// Share of the tolerances that applies at the gate at first, and the time, s, over which it grows to 1.
 const STRICT: f64 = 0.6;
 const PATIENCE: f64 = 25.0;
-/// Time that the last bit takes, s, and time for which he must be inside, s.
+/// Time of the last descent, s, and time for which the vehicle must stay within the tolerances, s.
 const LAST_TIME: f64 = 0.5;
 const CENTRED_TIME: f64 = 0.15;
-/// How far he may come outside on the last bit, where going around costs more than an eye's error, share.
+/// Tolerance on the last descent, share of that at the gate: larger, since a go-around costs more than an error of the
+/// eye.
 const COMMITTED: f64 = 1.3;
 /// Largest distance along the pipe from the spot, m.
 const ALONG: f64 = 0.25;
-/// Height over the pipe below which being far off it matters, m, and how far that is, m.
+/// Height over the pipe below which the distance is checked, m, and the distance that calls for a go-around, m.
 const NEAR: f64 = 0.4;
 const ASTRAY: f64 = 0.20;
 /// Distance from the spot at which he descends again, m: well within [`ASTRAY`], or one gust would cost every try.
 const BACK: f64 = 0.10;
-/// Distance beside the crown at which a vehicle on the pipe will not stay, share of the pipe's radius.
+/// Distance beside the crown beyond which a vehicle slides off, share of the pipe's radius.
 const SLIPPING: f64 = 0.33;
-/// Height over the pipe at which a vehicle that does not sink any more stands on it, m.
+/// Height over the pipe below which a vehicle without sink rate stands on it, m.
 const STANDS: f64 = 0.12;
 /// Depth of the centre of mass below the pipe's top by which it was missed, m.
 const MISSED: f64 = 0.05;
@@ -60,18 +61,18 @@ const EASE: f64 = 0.25;
 const RELEASE_THROTTLE: f64 = 0.25;
 /// The same at least: below 0.20 the stack opens nothing, whatever the rotors' strength.
 const RELEASE_LEAST: f64 = 0.21;
-/// What the display says where a perched vehicle will not be let go, and the time for which it must, s.
+/// Displayed reasons for which a perched vehicle refuses the release, and the time for which they must last, s.
 const TROUBLES: [Reason; 2] = [Reason::BatteryCritical, Reason::RADIO_LOST];
 const REFUSED_TIME: f64 = 3.0;
-/// Depth below where it stood at which the vehicle has slid off, m.
+/// Drop below its standing height at which the vehicle has slid off, m.
 const SUNK: f64 = 0.06;
-/// Time for which the display may tell of a lost grip, s.
+/// Longest time with a lost grip on the display, s.
 const GRIP_LOST_TIME: f64 = 1.0;
 /// Rise at which the vehicle is clear of the pipe and the sticks are used again, m.
 const CLEAR: f64 = 0.06;
 
-/// The throttle while closing that the scenario wants, as far as it leaves a vehicle that takes the share `lightly` of
-/// the paper's throttles standing on the pipe.
+/// Throttle while closing: that of the scenario, limited with strong rotors (`lightly` below 1) so that the vehicle
+/// stays on the pipe.
 fn closing_throttle(lightly: f64, wanted: f64) -> f64 {
     if lightly < 1.0 {
         wanted.min(FIRM_THROTTLE * lightly)
@@ -80,14 +81,14 @@ fn closing_throttle(lightly: f64, wanted: f64) -> f64 {
     }
 }
 
-/// The throttle at which the arms of a vehicle with `params` close where a scenario wants `wanted`.
+/// Throttle at which the arms of a vehicle with `params` close for the scenario's `wanted`, 0..1.
 pub fn throttle_on_pipe(params: &Params, wanted: f64) -> f64 {
     closing_throttle(Guidance::strength_of(params).min(1.0), wanted).min(f64::from(params.perch_thr_max))
 }
 
 impl Mission {
-    /// Share of the throttles on the pipe that is given: less with stronger rotors, which would lift the vehicle off,
-    /// never more, since the stack takes more than `perch_thr_max` for flying on.
+    /// Factor on the throttles on the pipe: below 1 with stronger rotors, which would lift the vehicle off; at most 1,
+    /// since the stack reads a throttle above `perch_thr_max` as a departure.
     fn lightly(&self) -> f64 {
         self.guidance.strength().min(1.0)
     }
@@ -98,11 +99,11 @@ impl Mission {
     }
 
     pub(super) fn fly_to_pipe(&mut self, v: &View<'_>, dt: f64) -> Progress {
-        let wish = self.go_to(v, self.pipe, self.pipe_top + OVER, dt);
+        let target = self.go_to(v, self.pipe, self.pipe_top + OVER, dt);
         if self.settled(v, dt) {
-            Progress::Done(wish)
+            Progress::Done(target)
         } else {
-            Progress::Going(wish)
+            Progress::Going(target)
         }
     }
 
@@ -115,31 +116,31 @@ impl Mission {
     }
 
     pub(super) fn touch(&mut self, v: &View<'_>, stick: f64, dt: f64) -> Progress {
-        let (wish, felt) = self.approach(v, stick, dt);
+        let (target, on_pipe) = self.approach(v, stick, dt);
         if self.missed >= TRIES {
             return Progress::Failed(format!(
                 "missed the pipe {TRIES} times, last {:.2} m beside it",
                 (v.seen.position.y - self.pipe.y).abs()
             ));
         }
-        if felt {
-            Progress::Done(wish)
+        if on_pipe {
+            Progress::Done(target)
         } else {
-            Progress::Going(wish)
+            Progress::Going(target)
         }
     }
 
-    /// Descends onto the pipe, and up again for another try when it would be missed. True once it carries.
-    /// `throttle` is where that stick is.
+    /// Descends onto the pipe and climbs for another try if it would miss. True once the pipe carries the vehicle.
+    /// `throttle` is the position of that stick.
     fn approach(&mut self, v: &View<'_>, throttle: f64, dt: f64) -> (StickTarget, bool) {
         let over = v.height() - self.pipe_top;
         let off = v.seen.position.truncate() - self.pipe;
         if self.phase == Phase::GoAround {
-            let wish = self.go_to(v, self.pipe, self.pipe_top + OVER_AGAIN, dt);
+            let target = self.go_to(v, self.pipe, self.pipe_top + OVER_AGAIN, dt);
             if over > 0.75 * OVER_AGAIN && off.length() < BACK {
                 self.enter(Phase::Descend);
             }
-            return (wish, false);
+            return (target, false);
         }
         let (position, velocity) = self.guidance.ahead();
         let away = position.truncate() - self.pipe;
@@ -147,7 +148,7 @@ impl Mission {
         let astray = over < NEAR && (off.y.abs() > ASTRAY || off.x.abs() > 2.0 * ALONG);
         let slips = self.phase == Phase::Plant && off.y.abs() > SLIPPING * self.pipe_radius;
         if astray || slips || over < -MISSED {
-            // Nothing was touched: a go-around costs time alone.
+            // A go-around without a touch costs only time.
             self.missed += u32::from(self.phase == Phase::Plant || over < -MISSED);
             self.enter(Phase::GoAround);
         }
@@ -192,21 +193,21 @@ impl Mission {
         let stands = v.height() - self.pipe_top < STANDS && v.seen.velocity.z.abs() < STOPPED;
         // Most of the weight is still on the rotors: without the trim it would slide.
         let (roll, pitch) = self.guidance.trim(&v.seen);
-        let wish = StickTarget {
+        let target = StickTarget {
             roll,
             pitch,
             ..self.throttle_to(firm, firm_ease, dt)
         };
-        let felt = self.held_for(stands && self.throttle <= firm, STOPPED_TIME, dt);
-        if felt {
+        let on_pipe = self.held_for(stands && self.throttle <= firm, STOPPED_TIME, dt);
+        if on_pipe {
             self.height = v.height();
         }
-        (wish, felt)
+        (target, on_pipe)
     }
 
     pub(super) fn clamp(&mut self, v: &View<'_>, throttle: f64, stick: f64, dt: f64) -> Progress {
         match self.perch(v, throttle, stick, dt) {
-            Progress::Going(wish) if v.mode == Some(Mode::Clamping) => Progress::Done(wish),
+            Progress::Going(target) if v.mode == Some(Mode::Clamping) => Progress::Done(target),
             other => other,
         }
     }
@@ -216,11 +217,11 @@ impl Mission {
             self.phase,
             Phase::GoAround | Phase::Descend | Phase::Commit | Phase::Plant
         ) {
-            let (wish, felt) = self.approach(v, stick, dt);
-            if felt {
+            let (target, on_pipe) = self.approach(v, stick, dt);
+            if on_pipe {
                 self.enter(Phase::Throttle);
             }
-            return Progress::Going(wish);
+            return Progress::Going(target);
         }
         if self.phase == Phase::Start {
             self.enter(Phase::Throttle);
@@ -254,11 +255,11 @@ impl Mission {
         }
         let perched = v.mode == Some(Mode::Perched);
         let throttle = if perched { 0.0 } else { self.closing(throttle) };
-        let wish = self.throttle_to(throttle, EASE * self.lightly(), dt);
+        let target = self.throttle_to(throttle, EASE * self.lightly(), dt);
         if perched && self.throttle <= 0.0 {
-            Progress::Done(wish)
+            Progress::Done(target)
         } else {
-            Progress::Going(wish)
+            Progress::Going(target)
         }
     }
 
@@ -273,17 +274,17 @@ impl Mission {
         if self.held_for(v.shows(Reason::GripLost), GRIP_LOST_TIME, dt) {
             return Progress::Failed(format!("grip lost after {:.1} s", self.step_time));
         }
-        let wish = StickTarget::default();
+        let target = StickTarget::default();
         if self.step_time >= seconds {
-            Progress::Done(wish)
+            Progress::Done(target)
         } else {
-            Progress::Going(wish)
+            Progress::Going(target)
         }
     }
 
     pub(super) fn open(&mut self, v: &View<'_>, dt: f64) -> Progress {
         match self.release(v, dt) {
-            Progress::Going(wish) if v.mode == Some(Mode::Releasing) => Progress::Done(wish),
+            Progress::Going(target) if v.mode == Some(Mode::Releasing) => Progress::Done(target),
             other => other,
         }
     }
@@ -301,16 +302,16 @@ impl Mission {
             Phase::Start | Phase::Throttle => {
                 if self.phase == Phase::Start {
                     self.throttle = 0.0;
-                    // Off already after a release that a reset has cut short: off counts only after on.
+                    // After a reset during a release the switch is off already; it must be on before off counts.
                     self.perch_switch = true;
                     self.enter(Phase::Throttle);
                 }
-                let wish = self.throttle_to(opening, ease, dt);
+                let target = self.throttle_to(opening, ease, dt);
                 if self.held_for(self.throttle >= opening, 0.5, dt) {
                     self.perch_switch = false;
                     self.enter(Phase::Wait);
                 }
-                Progress::Going(wish)
+                Progress::Going(target)
             }
             Phase::Wait => {
                 if matches!(v.mode, Some(Mode::Flight | Mode::Escaping)) {
@@ -325,15 +326,15 @@ impl Mission {
                 Progress::Going(self.throttle_to(opening, ease, dt))
             }
             _ => {
-                let mut wish = self.go_to(v, self.spot, self.height + OVER, dt);
+                let mut target = self.go_to(v, self.spot, self.height + OVER, dt);
                 if v.height() < self.height + CLEAR {
-                    (wish.roll, wish.pitch, wish.yaw) = (0.0, 0.0, 0.0);
+                    (target.roll, target.pitch, target.yaw) = (0.0, 0.0, 0.0);
                 }
                 let there = (v.height() - self.height - OVER).abs() < 0.2 && v.seen.velocity.length() < 0.3;
                 if self.held_for(there, 0.5, dt) {
-                    Progress::Done(wish)
+                    Progress::Done(target)
                 } else {
-                    Progress::Going(wish)
+                    Progress::Going(target)
                 }
             }
         }

@@ -1,4 +1,4 @@
-//! A vehicle that does not answer: transmitter off, recovery from its failsafe, restart of the board.
+//! Steps without a link: transmitter off, recovery from the failsafe, restart of the board.
 
 use sophie_control::mode::{Mode, Reason};
 
@@ -21,14 +21,14 @@ impl Mission {
         if self.step_time >= seconds && self.phase == Phase::Silent {
             self.enter(Phase::Wait);
         }
-        let wish = StickTarget {
+        let target = StickTarget {
             throttle: self.throttle,
             ..StickTarget::default()
         };
         if self.phase == Phase::Wait && v.mode.is_some() {
-            Progress::Done(wish)
+            Progress::Done(target)
         } else {
-            Progress::Going(wish)
+            Progress::Going(target)
         }
     }
 
@@ -39,28 +39,28 @@ impl Mission {
             self.throttle = throttle;
             self.enter(Phase::Wait);
         }
-        let wish = StickTarget {
+        let target = StickTarget {
             throttle: self.throttle,
             ..StickTarget::default()
         };
         let disarmed = self.step_time > over + SHOWN && v.mode == Some(Mode::Disarmed);
         if self.held_for(disarmed, SHOWN, dt) {
-            Progress::Done(wish)
+            Progress::Done(target)
         } else {
-            Progress::Going(wish)
+            Progress::Going(target)
         }
     }
 
     /// Sticks that take back a vehicle sinking without radio.
-    pub(super) fn take_over(step: &Step, v: &View<'_>, wish: StickTarget) -> StickTarget {
+    pub(super) fn take_over(step: &Step, v: &View<'_>, target: StickTarget) -> StickTarget {
         let flies = matches!(step, Step::Hover { .. } | Step::FlyTo { .. });
         if flies && v.mode == Some(Mode::Failsafe) && v.shows(Reason::RADIO_LOST) {
             StickTarget {
                 roll: TAKE_OVER,
-                ..wish
+                ..target
             }
         } else {
-            wish
+            target
         }
     }
 }

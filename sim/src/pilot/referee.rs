@@ -2,7 +2,7 @@
 
 use core::f64::consts::PI;
 
-use super::{Seen, wrap};
+use super::{VisibleState, wrap};
 
 /// Tilt limit, rad.
 const TILT_MAX: f64 = 80.0 * PI / 180.0;
@@ -28,7 +28,7 @@ pub struct Referee {
 
 impl Referee {
     /// Reason of the loss, if lost.
-    pub fn judge(&mut self, truth: &Seen, heading: f64, dt: f64) -> Option<String> {
+    pub fn judge(&mut self, truth: &VisibleState, heading: f64, dt: f64) -> Option<String> {
         let yaw = truth.yaw;
         if dt > 0.0 {
             let step = wrap(yaw - self.last_yaw.unwrap_or(yaw));

@@ -47,10 +47,10 @@ impl StickDynamics {
         self.sticks
     }
 
-    /// Moves towards `wish` for `dt` s.
-    pub fn move_to(&mut self, wish: &StickTarget, dt: f64) -> Sticks {
+    /// Moves towards `target` for `dt` s.
+    pub fn move_to(&mut self, target: &StickTarget, dt: f64) -> Sticks {
         let k = dt / (dt + 1.0 / (2.0 * PI * self.bandwidth));
-        let goals = [wish.roll, wish.pitch, wish.yaw, wish.throttle];
+        let goals = [target.roll, target.pitch, target.yaw, target.throttle];
         let lows = [-1.0, -1.0, -1.0, 0.0];
         for ((stick, goal), low) in self.sticks.iter_mut().zip(goals).zip(lows) {
             *stick += k * (goal.clamp(low, 1.0) - *stick);
@@ -65,9 +65,9 @@ impl StickDynamics {
             pitch,
             yaw,
             throttle,
-            arm_switch: wish.arm_switch,
-            perch_switch: wish.perch_switch,
-            hold_switch: wish.hold_switch,
+            arm_switch: target.arm_switch,
+            perch_switch: target.perch_switch,
+            hold_switch: target.hold_switch,
             stick_mode: StickMode::Angle,
             arms: self.arms,
         }

@@ -18,7 +18,7 @@ const RISING: f64 = 0.2;
 /// Height error (m) and speed (m/s) that count as reached.
 const REACHED: f64 = 0.15;
 const REACHED_SPEED: f64 = 0.25;
-/// Time after which he goes on with [`NEAR_SPEED`] where the vehicle is to hold by itself, s.
+/// Time after which [`NEAR_SPEED`] suffices if HOLD takes over at the pipe, s.
 const PATIENCE: f64 = 12.0;
 /// Rates of descent, m/s: high up, and below [`LAST_BIT`].
 const DESCENT: f64 = 0.4;
@@ -83,27 +83,27 @@ impl Mission {
             }
             self.enter(Phase::Fly);
         }
-        let wish = self.go_to(v, self.spot, height, dt);
-        // What gusts leave him no time to settle, the hold does at the pipe.
-        let patient = self.assist != Assist::Itself || self.step_time < PATIENCE;
+        let target = self.go_to(v, self.spot, height, dt);
+        // Gusts may keep the pilot from settling; HOLD settles at the pipe.
+        let patient = self.assist != Assist::Autonomous || self.step_time < PATIENCE;
         let speed = if patient { REACHED_SPEED } else { NEAR_SPEED };
         let there = (v.height() - height).abs() < REACHED && v.seen.velocity.length() < speed;
         if self.held_for(there, 1.0, dt) {
-            Progress::Done(wish)
+            Progress::Done(target)
         } else {
-            Progress::Going(wish)
+            Progress::Going(target)
         }
     }
 
     pub(super) fn land(&mut self, v: &View<'_>, dt: f64) -> Progress {
         match self.phase {
             Phase::Throttle => {
-                let wish = self.throttle_to(0.0, GIVE_BACK, dt);
+                let target = self.throttle_to(0.0, GIVE_BACK, dt);
                 let stands = matches!(v.mode, Some(Mode::Landed | Mode::Disarmed));
                 if stands && self.throttle <= 0.0 {
-                    Progress::Done(wish)
+                    Progress::Done(target)
                 } else {
-                    Progress::Going(wish)
+                    Progress::Going(target)
                 }
             }
             _ => {
@@ -116,15 +116,15 @@ impl Mission {
                 } else {
                     LAST_DESCENT
                 };
-                let wish = self.climb_over(v, self.spot, -rate, dt);
+                let target = self.climb_over(v, self.spot, -rate, dt);
                 let stands = v.height() < STANDS && v.seen.velocity.z.abs() < STOPPED;
                 // A failsafe or the vehicle itself may have ended the flight.
                 let over = matches!(v.mode, Some(Mode::Landed | Mode::Disarmed));
                 if self.held_for(stands || over, STOPPED_TIME, dt) {
-                    self.throttle = wish.throttle;
+                    self.throttle = target.throttle;
                     self.enter(Phase::Throttle);
                 }
-                Progress::Going(wish)
+                Progress::Going(target)
             }
         }
     }

@@ -250,26 +250,26 @@ fn a_vehicle_that_spins_has_lost_yaw_and_one_too_weak_does_not_get_up() {
 #[test]
 fn a_vehicle_on_the_wrong_side_of_the_referee_is_lost() {
     let mut referee = referee::Referee::default();
-    let good = Seen::default();
+    let good = VisibleState::default();
     assert_eq!(referee.judge(&good, 0.0, 0.01), None);
     let lost = [
-        (Seen { roll: 1.5, ..good }, "tipped over"),
+        (VisibleState { roll: 1.5, ..good }, "tipped over"),
         (
-            Seen {
+            VisibleState {
                 position: DVec3::new(0.0, 0.0, 0.6),
                 ..good
             },
             "height -0.60 m",
         ),
         (
-            Seen {
+            VisibleState {
                 position: DVec3::new(31.0, 0.0, -2.0),
                 ..good
             },
             "31 m away",
         ),
         (
-            Seen {
+            VisibleState {
                 position: DVec3::NAN,
                 ..good
             },

@@ -1,4 +1,4 @@
-//! A vehicle just good enough to try the pilot on: a point mass with lags, the real mode logic, a made-up grip.
+//! A simple vehicle for the pilot's tests: a point mass with lags, the real mode logic and a scripted grip.
 
 use glam::{DVec2, DVec3};
 use sophie_control::attitude::motion::Motion;
@@ -11,19 +11,19 @@ use sophie_control::pilot::rc::Sticks;
 use uf_crsf::packets::{FlightMode, PacketAddress};
 use uf_crsf::{CrsfParser, Packet, write_packet_to_buffer};
 
-use super::{Pilot, PilotOutput, Seen};
+use super::{Pilot, PilotOutput, VisibleState};
 use crate::plant::gust::Gust;
 use crate::scenario::Scenario;
 
 pub const DT: f64 = 0.002;
-/// Height of the centre of mass over what it stands on, m.
+/// Height of the centre of mass over the ground or pipe at rest, m.
 const BELLY: f64 = 0.04;
 /// Time that the arms take to close and to open, s.
 const CLOSING: f64 = 3.0;
 
 pub struct Toy {
     pub pilot: Pilot,
-    pub seen: Seen,
+    pub seen: VisibleState,
     pub out: Outputs,
     pub sticks: Option<Sticks>,
     /// Steady force of the wind, N.
@@ -53,7 +53,7 @@ impl Toy {
     pub fn new(scenario: &Scenario) -> Self {
         Self {
             pilot: Pilot::new(scenario),
-            seen: Seen {
+            seen: VisibleState {
                 position: DVec3::new(0.0, 0.0, -BELLY),
                 ..Default::default()
             },
@@ -130,12 +130,12 @@ impl Toy {
         let s = &self.seen;
         let q = Quat::from_euler(s.roll as f32, s.pitch as f32, s.yaw as f32);
         let [north, east, down] = self.acceleration.to_array().map(|a| a as f32);
-        let felt = q.rotate_inverse(Vec3::new(north, east, down - GRAVITY));
+        let on_pipe = q.rotate_inverse(Vec3::new(north, east, down - GRAVITY));
         let inputs = Inputs {
             sticks: self.sticks.filter(|_| !self.deaf),
             motion: Some(Motion {
                 q,
-                accel: felt,
+                accel: on_pipe,
                 calibrated: s.t > 2.0,
                 ..Default::default()
             }),
@@ -212,7 +212,7 @@ impl Toy {
     }
 }
 
-/// Height of what is below, m: the upper half of 2 m of pipe, or the ground.
+/// Height of the surface below, m: the upper half of 2 m of pipe, or the ground.
 fn floor(scenario: &Scenario, position: DVec3) -> f64 {
     let w = &scenario.world;
     let radius = 0.5 * w.pipe_diameter;

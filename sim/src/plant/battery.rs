@@ -6,11 +6,11 @@ use super::servo_power;
 #[derive(Clone, Copy, Debug)]
 struct Pack {
     cells: f64,
-    /// A·s.
+    /// Capacity, A·s.
     capacity: f64,
-    /// With its leads, Ω (assumed).
+    /// Resistance with the leads, Ω (assumed).
     resistance: f64,
-    /// What always flows, A (assumed).
+    /// Constant current, A (assumed).
     always: f64,
 }
 
@@ -66,7 +66,7 @@ impl Battery {
         self.charge = (self.charge - self.current * dt / self.pack.capacity).max(0.0);
     }
 
-    /// Nothing is left: what hangs on it has no supply.
+    /// The battery is empty: its consumers have no supply.
     #[must_use]
     pub fn empty(&self) -> bool {
         self.charge <= 0.0

@@ -1,7 +1,7 @@
 //! Equations of motion of the body that carries the arms.
 //!
-//! Each arm adds what it passes to the body ([`Carried`]). The remaining 6×6 system is solved by 3×3 blocks; then each
-//! arm finds its own acceleration.
+//! Each arm adds its mass and forces to the body's equations ([`Carried`]). The remaining 6×6 system is solved by 3×3
+//! blocks; then each arm finds its own acceleration.
 
 use glam::{DMat3, DVec3};
 
@@ -38,14 +38,14 @@ pub struct BodyState {
     pub pose: Pose,
 }
 
-/// A mass that every arm carries.
+/// A point mass of every arm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ArmPoint {
-    /// kg.
+    /// Mass, kg.
     pub mass: f64,
-    /// From the centre line with a level arm, m.
+    /// Distance from the centre line with a level arm, m.
     pub out: f64,
-    /// About its own centre, any axis, kg·m².
+    /// Inertia about its own centre, any axis, kg·m².
     pub inertia: f64,
 }
 
@@ -162,7 +162,7 @@ mod tests {
     use super::super::{GRAVITY, STEP};
     use super::*;
 
-    /// kg (paper).
+    /// Mass, kg (paper).
     const MASS: f64 = 1.805;
 
     fn arms() -> [Arm; 4] {

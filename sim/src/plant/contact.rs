@@ -22,7 +22,7 @@ pub const ARM_X: f64 = 0.178;
 pub const STATIONS: [f64; 3] = [0.06, 0.11, 0.16];
 /// Width and length, m.
 const STATION_SIZE: (f64, f64) = (0.03, 0.05);
-/// m².
+/// Station area, m².
 pub const STATION_AREA: f64 = STATION_SIZE.0 * STATION_SIZE.1;
 /// Pressure over indentation, Pa/m (assumed: TPU of 6 to 10 % infill with a foam patch).
 pub const SKIN_STIFFNESS: f64 = 5.0e5;
@@ -34,7 +34,7 @@ pub struct Pose {
     pub position: DVec3,
     /// Body to world.
     pub attitude: DQuat,
-    /// Of the centre of mass, NED, m/s.
+    /// Velocity of the centre of mass, NED, m/s.
     pub velocity: DVec3,
     /// Angular rate, body, rad/s.
     pub omega: DVec3,
@@ -75,7 +75,8 @@ pub struct Pipe {
 }
 
 impl Pipe {
-    /// How many times `direction` it is from `from` to the pipe or the ground, in the world; `None` for a ray into the sky.
+    /// Distance from `from` along `direction` (in its lengths) to the pipe or the ground, world axes; `None` for a ray
+    /// into the sky.
     #[must_use]
     pub fn or_ground_along(&self, from: DVec3, direction: DVec3) -> Option<f64> {
         let ground = (direction.z > 1e-3).then(|| -from.z / direction.z);
@@ -142,13 +143,13 @@ impl Surface {
 /// Springs and dampers of a contact point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pad {
-    /// Along the normal, N/m.
+    /// Stiffness along the normal, N/m.
     pub stiffness: f64,
-    /// Along the normal, N·s/m; full from [`FULL_DAMPING_DEPTH`].
+    /// Damping along the normal, N·s/m; full from [`FULL_DAMPING_DEPTH`].
     pub damping: f64,
-    /// Along the surface, N/m.
+    /// Stiffness of the bristle along the surface, N/m.
     pub bristle: f64,
-    /// Along the surface, N·s/m.
+    /// Damping of the bristle along the surface, N·s/m.
     pub bristle_damping: f64,
 }
 
@@ -180,7 +181,7 @@ pub const TIP: Pad = Pad {
 /// Contact load of a point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Touch {
-    /// On the vehicle, N, NED.
+    /// Force on the vehicle, N, NED.
     pub force: DVec3,
     /// Normal part, N.
     pub normal: f64,
@@ -191,9 +192,9 @@ pub struct Touch {
 /// Motion of a point, NED.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointMotion {
-    /// m.
+    /// Position, m.
     pub position: DVec3,
-    /// m/s.
+    /// Velocity, m/s.
     pub velocity: DVec3,
 }
 
@@ -241,7 +242,7 @@ impl ContactPoint {
 pub struct BodyLoad {
     /// Force, N, body.
     pub force_body: DVec3,
-    /// About the centre of mass, N·m, body.
+    /// Moment about the centre of mass, N·m, body.
     pub moment_body: DVec3,
     /// Sum of normal forces, N.
     pub normal: f64,
@@ -250,9 +251,9 @@ pub struct BodyLoad {
 /// Load of an arm's contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SkinLoad {
-    /// On the vehicle, N, body.
+    /// Force on the vehicle, N, body.
     pub force_body: DVec3,
-    /// About the centre of mass, N·m, body.
+    /// Moment about the centre of mass, N·m, body.
     pub moment_body: DVec3,
     /// Moment on the arm's tilt, N·m: force · ∂r/∂α.
     pub moment_alpha: f64,

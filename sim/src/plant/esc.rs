@@ -1,4 +1,4 @@
-//! A motor controller as built: the pulses that it takes, whatever the flight stack takes them to be.
+//! A motor controller as built: the pulses that it accepts, which may differ from the stack's parameters.
 
 /// A standard pulse over one of OneShot125.
 pub const ONESHOT125: f64 = 8.0;
@@ -26,7 +26,7 @@ impl Default for EscSpec {
 }
 
 impl EscSpec {
-    /// Drive of the motor, 0..1, by a standard pulse of `us` µs; 0 is no pulse.
+    /// Drive of the motor, 0..1, by a standard pulse of `us` µs; `us` is 0 without a pulse.
     #[must_use]
     pub fn drive(&self, us: f64) -> f64 {
         if us >= self.pulse_idle {

@@ -1,4 +1,4 @@
-//! What the plant asks of an arm, whichever way it bends.
+//! Interface of the plant to an arm, for both models of bending.
 
 use glam::DVec3;
 
@@ -6,16 +6,16 @@ use super::contact::{Pipe, Pose};
 use super::load::{Acceleration, Load};
 use super::mass_matrix::MassMatrix;
 
-/// How the plant's arms bend.
+/// Model of an arm's bending.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArmBending {
-    /// Rigid, on a hinge at the centre line: the paper's arm, for its tables.
+    /// A rigid link on a hinge at the centre line: the paper's model, for its tables.
     Hinge,
-    /// Along their length.
+    /// A beam that bends along its length.
     Beam,
 }
 
-/// What is near enough to be touched.
+/// Surfaces that are near enough for a touch.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Nearby {
     /// The pipe, if it is near.
@@ -29,13 +29,13 @@ pub struct Nearby {
 pub struct Drive {
     /// Length of the step, s.
     pub dt: f64,
-    /// Of the rotor, N.
+    /// Thrust of the rotor, N.
     pub thrust: f64,
-    /// Of the tendon on the tip's tilt, N·m.
+    /// Moment of the tendon on the tip's tilt, N·m.
     pub tendon: f64,
     /// Angular momentum of the rotor along its axis, N·m·s.
     pub momentum: f64,
-    /// Of the rotor's drag along its axis, N·m.
+    /// Moment of the rotor's drag along its axis, N·m.
     pub drag: f64,
 }
 
@@ -44,7 +44,7 @@ pub struct Drive {
 pub struct Carrier {
     /// Angular rate, rad/s, body.
     pub omega: DVec3,
-    /// m/s², body.
+    /// Gravity, m/s², body.
     pub gravity: DVec3,
     /// Whether the arms' masses act on the body.
     pub coupled: bool,
@@ -52,7 +52,7 @@ pub struct Carrier {
 
 /// An arm on the body that carries it.
 pub trait Carried {
-    /// Adds the arm's mass and all that it passes to the body.
+    /// Adds the arm's mass, and the forces that it passes on, to the body's equations.
     fn condense(&self, carrier: &Carrier, mass: &mut MassMatrix, load: &mut Load);
 
     /// Adds the thrust alone: an arm without mass.
@@ -67,8 +67,8 @@ pub trait Flexible: Carried {
     /// Points of the underside that may touch the pipe, m, body.
     fn underside(&self) -> [DVec3; 3];
 
-    /// Finds the contact forces, adds them to `load` and keeps what they do to the arm for [`Flexible::drive`]; returns
-    /// the pressure at the sensor, Pa.
+    /// Finds the contact forces, adds them to `load` and stores their effect on the arm for [`Flexible::drive`].
+    /// Returns the pressure at the sensor, Pa.
     fn touch(&mut self, dt: f64, pose: &Pose, nearby: &Nearby, load: &mut Load) -> f64;
 
     /// Sums the loads on the arm's own motion; adds to `load` the rotor's moments on the body.

@@ -1,4 +1,4 @@
-//! The arm on one hinge with its contacts.
+//! The paper's arm model: a rigid link on one hinge, with its contacts.
 
 pub mod link;
 
@@ -17,7 +17,7 @@ pub struct HingedArm {
     arm: Arm,
     skin: ArmSkin,
     tip: ArmTip,
-    /// Of underside and tip on the tilt, N·m.
+    /// Contact moment of underside and tip on the tilt, N·m.
     contact: [f64; 2],
 }
 

@@ -5,9 +5,9 @@ use glam::DVec3;
 /// Load at the origin, body axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Load {
-    /// N.
+    /// Force, N.
     pub force: DVec3,
-    /// N·m.
+    /// Moment, N·m.
     pub moment: DVec3,
 }
 
@@ -22,8 +22,8 @@ impl Load {
 /// Accelerations of the body.
 #[derive(Clone, Copy, Debug)]
 pub struct Acceleration {
-    /// Of the body's origin, m/s², body.
+    /// Linear acceleration of the body's origin, m/s², body.
     pub linear: DVec3,
-    /// rad/s², body.
+    /// Angular acceleration, rad/s², body.
     pub angular: DVec3,
 }

@@ -1,16 +1,16 @@
-//! The 6×6 system of the body with what its arms pass to it.
+//! Mass matrix (6×6) of the body with its arms condensed into it, and its solution.
 
 use glam::{DMat3, DVec3};
 
 use crate::plant::load::Acceleration;
 use crate::plant::load::Load;
 
-/// What a coordinate of an arm moves of the body's momentum per unit of its rate.
+/// Momentum of the body per unit rate of one coordinate of an arm.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Column {
-    /// kg·m.
+    /// Linear momentum per rate, kg·m.
     pub linear: DVec3,
-    /// kg·m².
+    /// Angular momentum per rate, kg·m².
     pub angular: DVec3,
 }
 
@@ -99,7 +99,7 @@ impl MassMatrix {
         self.j.z_axis += DVec3::Z * all - u * v.z;
     }
 
-    /// Takes u vᵀ away; several calls together must be symmetric. Neither has a linear part along x.
+    /// Subtracts u vᵀ; the calls of one step must sum to a symmetric matrix. Neither vector has a linear part along x.
     pub fn give_way(&mut self, u: &Column, v: &Column) {
         self.ayy -= u.linear.y * v.linear.y;
         self.ayz -= u.linear.y * v.linear.z;

@@ -1,4 +1,4 @@
-//! How near a propeller comes to the pipe.
+//! Distance of the propellers from the pipe.
 
 use glam::DVec3;
 use sophie_control::allocation::wrench::PerArm;
@@ -9,7 +9,7 @@ use super::contact::{ARM_LENGTH, ArmSkin, Pipe, Pose};
 pub const RADIUS: f64 = 0.127;
 /// Disc above the arm's underside at its end, m: arm and motor (assumed).
 pub const HEIGHT: f64 = 0.061;
-/// Points of the rim that are looked at.
+/// Points of the rim that are checked.
 const RIM: u32 = 32;
 
 /// Distance of the propeller discs from the surface of an endless pipe, m: negative inside. The arms have tilts `tilt`

@@ -21,11 +21,11 @@ const DISC: f64 = 2.0 * 1.225 * 0.0507;
 /// Motor and propeller as built.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RotorSpec {
-    /// At full command and nominal voltage, N.
+    /// Thrust at full command and nominal voltage, N.
     pub thrust_max: f64,
     /// Drag torque over thrust, m.
     pub torque_ratio: f64,
-    /// Of the speed, s.
+    /// Time constant of the speed, s.
     pub time_constant: f64,
 }
 

@@ -14,7 +14,7 @@ pub struct ServoCurrent {
     pub idle: f64,
 }
 
-/// At 6 V (datasheet: 11 kgcm), the only servo with known currents.
+/// The MG996R at 6 V (datasheet: 11 kgcm), the only servo with known currents.
 pub const MG996R: ServoCurrent = ServoCurrent {
     stall: 11.0 * 0.098_066_5,
     at_stall: 2.5,

@@ -11,11 +11,11 @@ use sophie_control::params::Params;
 use super::beam::TENDON_LEVER;
 use crate::plant::flexible::ArmBending;
 
-/// µs (digital servos state 2 to 5; MG996R datasheet 5).
+/// Deadband of the servo, µs (digital servos state 2 to 5; MG996R datasheet 5).
 const DEADBAND_US: f64 = 2.0;
-/// µs.
+/// Limits of an accepted pulse, µs.
 const PULSE_LIMITS_US: (f64, f64) = (450.0, 2550.0);
-/// Over the stall torque, without pulses (assumed).
+/// Gear friction without pulses, share of the stall torque (assumed).
 const GEAR_FRICTION: f64 = 0.35;
 
 /// The tendon servo fitted.
@@ -34,7 +34,7 @@ pub struct ServoSpec {
     pub stall: f64,
     /// No-load speed, rad/s.
     pub slew: f64,
-    /// From `release_us` to `full_us`, rad.
+    /// Travel from `release_us` to `full_us`, rad.
     pub range: f64,
     /// Release position, µs.
     pub release_us: f64,
@@ -88,13 +88,13 @@ impl From<ServoProfile> for ServoSpec {
 /// Reel and tendon as built.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TendonSpec {
-    /// m (assumed).
+    /// Reel radius, m (assumed).
     pub reel_radius: f64,
-    /// From the arm's neutral line, m (assumed).
+    /// Distance from the arm's neutral line, m (assumed).
     pub lever: f64,
-    /// Along the tendon, N/m: 1 mm nylon, 0.25 m, E 2.5 GPa (derived, 30 %).
+    /// Stiffness along the tendon, N/m: 1 mm nylon, 0.25 m, E 2.5 GPa (derived, 30 %).
     pub stiffness: f64,
-    /// Along the tendon, N·s/m: loss factor 0.1 at 8 Hz (assumed).
+    /// Damping along the tendon, N·s/m: loss factor 0.1 at 8 Hz (assumed).
     pub damping: f64,
     /// Tilt at which the tendon is just taut at release, rad.
     pub reference_tilt: f64,
@@ -103,7 +103,7 @@ pub struct TendonSpec {
 }
 
 impl TendonSpec {
-    /// Along arms that bend as `bending` says.
+    /// The tendon along arms of the model `bending`.
     #[must_use]
     pub fn of(bending: ArmBending) -> Self {
         match bending {
@@ -116,8 +116,8 @@ impl TendonSpec {
     }
 }
 
-/// What the stack has to assume of arms that bend as `bending` says: the tendon's lever, and what tendon and thrust do to
-/// a free arm and to one on a pipe.
+/// Parameters of the stack for arms of the model `bending`: the tendon's lever, and the effect of tendon and thrust on
+/// a free arm and on one on a pipe.
 pub fn assume_bending(params: &mut Params, bending: ArmBending) {
     params.tendon_lever = TendonSpec::of(bending).lever as f32;
     (params.tendon_bend, params.tendon_relief) = match bending {
@@ -144,7 +144,7 @@ impl Default for TendonSpec {
 pub enum TendonBreak {
     /// The thread is torn.
     Torn,
-    /// The servo stays where it is.
+    /// The servo is stuck at its angle.
     Stuck,
 }
 
@@ -158,7 +158,7 @@ pub struct Tendon {
     to_next_frame: f64,
     last_tilt: Option<f64>,
     tension: f64,
-    /// What breaks, and in how many s.
+    /// Fault to come, and the time until it begins, s.
     breaks: Option<(TendonBreak, f64)>,
 }
 
@@ -184,7 +184,7 @@ impl Tendon {
         Self { breaks, ..self }
     }
 
-    /// What is broken, `dt` s after the last look.
+    /// Present fault, `dt` s after the last call.
     fn broken(&mut self, dt: f64) -> Option<TendonBreak> {
         let (broken, seconds) = self.breaks.as_mut()?;
         *seconds -= dt;

@@ -1,4 +1,4 @@
-//! Whether a scenario's numbers give arms for plant and stack model.
+//! Checks that a scenario's numbers give valid arms for the plant and for the stack's model.
 //!
 //! Eq. 1 is a parabola in the thrust; the spring is its inverse, which needs a rising tilt, and the allocation
 //! divides by the slope.
@@ -7,14 +7,14 @@ use toml::Spanned;
 use toml::de::DeTable;
 
 use super::error::{Place, ScenarioError};
-use super::read::{Result, Source, Value};
+use super::source::{Result, Source, Value};
 use super::{Scenario, Vehicle};
 use crate::plant::{GRAVITY, arm_spec};
 
 /// Slope without thrust, rad/N (0.1 deg/N): at 0.02 the lightest vehicle's bending mode is too fast for the plant's
 /// step of 0.5 ms.
 const LEAST_RISE: f64 = 0.1 * DEGREE;
-/// Of a free arm at zero or full thrust, rad: beyond it the rotor pushes more inward than up.
+/// Largest tilt of a free arm at zero or full thrust, rad: beyond it the rotor pushes more inward than up.
 const LARGEST_TILT: f64 = 90.0 * DEGREE;
 const DEGREE: f64 = core::f64::consts::PI / 180.0;
 
@@ -39,7 +39,7 @@ struct Slope {
     linear: f64,
     /// Half of its change with thrust, rad/N².
     quadratic: f64,
-    /// N.
+    /// Thrust of a rotor in hover, N.
     hover: f64,
 }
 
@@ -54,7 +54,7 @@ impl Slope {
         }
     }
 
-    /// Fault with `gain` times the nominal elastic term, and what is allowed.
+    /// Fault with `gain` times the nominal elastic term, and the allowed range.
     fn fault(&self, gain: f64) -> Option<String> {
         let at = |thrust: f64| gain * (self.linear + 2.0 * self.quadratic * thrust);
         let (still, hover) = (at(0.0), at(self.hover));
@@ -132,7 +132,7 @@ fn named<'t, 'i>(
     table: &str,
     keys: &[&str],
 ) -> Option<(String, &'t Value<'i>)> {
-    let content = super::read::table(root, table)?;
+    let content = super::source::table(root, table)?;
     keys.iter().find_map(|name| {
         let (_, value) = content.iter().find(|(key, _)| key.get_ref() == *name)?;
         Some((format!("{table}.{name}"), value))

@@ -1,15 +1,11 @@
 //! Defaults of a scenario file: the paper's vehicle in light air before its pipe.
 
-use std::sync::OnceLock;
-
 use sophie_control::allocation::wrench::Configuration;
 use sophie_control::params::Params;
 use sophie_control::pilot::rc::ArmChoice;
 use sophie_mixers::Variant;
 
-use super::{
-    Assist, Assumed, Expect, Faults, Overrides, Pilot, Scenario, Sensors, Step, Vehicle, World, read_steps,
-};
+use super::{Assist, Assumed, Expect, Faults, Overrides, Pilot, Scenario, Sensors, Vehicle, World};
 use crate::plant::body::BodySpec;
 use crate::plant::esc::EscSpec;
 use crate::plant::flexible::ArmBending;
@@ -69,7 +65,7 @@ impl Default for Pilot {
             assist: Assist::None,
             touch_within: None,
             touch_drift: 0.08,
-            believes: Assumed::default(),
+            assumed: Assumed::default(),
         }
     }
 }
@@ -116,10 +112,4 @@ impl Scenario {
             expect: Expect::default(),
         }
     }
-}
-
-/// Steps of files without any.
-pub(super) fn default_steps() -> Vec<Step> {
-    static STEPS: OnceLock<Vec<Step>> = OnceLock::new();
-    STEPS.get_or_init(|| read_steps::steps_of(MISSION)).clone()
 }

@@ -1,4 +1,4 @@
-//! Scenario errors: one line with file, line, key, value and what is allowed.
+//! Errors of a scenario: one line with file, line, key, value and the allowed values.
 
 use core::fmt;
 
@@ -35,7 +35,7 @@ pub enum ScenarioError {
     },
     /// No such key.
     UnknownKey {
-        /// Where it is.
+        /// Line of the mistake.
         at: Place,
         /// The key with its table.
         key: String,
@@ -46,27 +46,27 @@ pub enum ScenarioError {
     },
     /// A required key is missing.
     MissingKey {
-        /// Where it should be.
+        /// Line where the key belongs.
         at: Place,
         /// The key with its table.
         key: String,
-        /// What it may be.
+        /// Allowed values.
         allowed: String,
     },
     /// Wrong type, unknown choice or out of range.
     BadValue {
-        /// Where it is.
+        /// Line of the mistake.
         at: Place,
         /// The key with its table.
         key: String,
         /// As written.
         value: String,
-        /// What it may be.
+        /// Allowed values.
         allowed: String,
     },
     /// A step that is impossible after the steps before it.
     StepOrder {
-        /// Where it is.
+        /// Line of the mistake.
         at: Place,
         /// Such as `steps[3]`.
         key: String,

@@ -1,4 +1,4 @@
-//! Parts of the vehicle that fail or are off, unknown to its stack and its pilot.
+//! Faults of the vehicle's parts, which neither stack nor pilot knows.
 
 use sophie_control::allocation::wrench::PerArm;
 
@@ -9,7 +9,7 @@ use crate::sensors::fsr::FsrBreak;
 /// Faults of a flight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Faults {
-    /// When the broken parts break, s after power-up.
+    /// Begin of the faults, s after power-up.
     pub at: f64,
     /// Pressure sensors.
     pub pressure: PerArm<Option<FsrBreak>>,
@@ -17,13 +17,13 @@ pub struct Faults {
     pub tilt: PerArm<Option<TiltBreak>>,
     /// Tendons with their servos.
     pub tendon: PerArm<Option<TendonBreak>>,
-    /// What each pressure sensor reads over what one of its kind does, from power-up; nominal 1.
+    /// Reading of each pressure sensor over the nominal one, from power-up; nominal 1.
     pub pressure_gain: PerArm<f64>,
-    /// What each tilt sensor reads too much, from power-up, rad.
+    /// Offset of each tilt sensor, from power-up, rad.
     pub tilt_offset: PerArm<f64>,
     /// Length of each tendon over its own, m; negative: too short.
     pub tendon_slack: PerArm<f64>,
-    /// When the radio is lost for good, s after power-up.
+    /// Time of the permanent loss of the radio, s after power-up.
     pub radio_at: Option<f64>,
 }
 

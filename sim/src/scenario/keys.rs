@@ -18,7 +18,7 @@ use crate::sensors::pose::PoseFault;
 pub struct Key {
     /// With its table, such as `vehicle.infill`.
     pub name: &'static str,
-    /// What it takes.
+    /// Type of its value, and the field that it sets.
     pub kind: Kind,
 }
 
@@ -26,7 +26,7 @@ pub struct Key {
 pub enum Kind {
     /// A number.
     Number(Range, fn(&mut Scenario) -> &mut f64),
-    /// A number; where the file has none another value takes its place.
+    /// A number; without it another value applies.
     Optional(Range, fn(&mut Scenario) -> &mut Option<f64>),
     /// One number per arm.
     PerArm(Range, fn(&mut Scenario) -> &mut PerArm<f64>),
@@ -95,9 +95,9 @@ pub const ARMS: &[&str] = &["all", "front", "rear"];
 /// Words for the servo.
 pub const SERVOS: &[&str] = &["paper", "mg996r"];
 
-/// Words for what measures the position.
+/// Words for the sensor of the position.
 pub const POSITION_SENSORS: &[&str] = &["none", "pose", "flow"];
-/// Words for how a module of flow and range fails.
+/// Words for the fault of the flow module.
 pub const FLOW_FAULTS: &[&str] = &[
     "silent",
     "dark",
@@ -111,7 +111,7 @@ pub const FLOW_FAULTS: &[&str] = &[
     "range-long",
     "range-short",
 ];
-/// Words for how a source of poses fails.
+/// Words for the fault of the poses.
 pub const POSE_FAULTS: &[&str] = &[
     "silent",
     "frozen",
@@ -123,9 +123,9 @@ pub const POSE_FAULTS: &[&str] = &[
     "target-jumps",
     "target-far",
 ];
-/// Words for how a barometer fails.
+/// Words for the fault of the barometer.
 pub const BAROMETER_FAULTS: &[&str] = &["none", "silent", "frozen", "jumps", "drifts"];
-/// Words for what the pilot leaves to the vehicle.
+/// Words for the assistance.
 pub const ASSISTS: &[&str] = &["none", "hold", "self"];
 
 /// Infill that Eq. 1 of the paper covers.
@@ -144,12 +144,12 @@ pub fn seed(number: f64) -> Option<u64> {
     whole.then_some(number as u64)
 }
 
-/// Of the pipe: north or east, height of its top, diameter.
+/// Ranges of the pipe: north or east, height of its top, diameter.
 const PIPE_PLACE: Range = Range::new(-20.0, 20.0, "m");
 const PIPE_TOP: Range = Range::new(0.5, 10.0, "m");
 const PIPE_DIAMETER: Range = Range::new(0.15, 0.6, "m");
 
-/// Of the lens of flow and range, as far as the parameters go.
+/// Range of the lens position, as that of the parameters.
 const LENS: Range = Range::new(-0.3, 0.3, "m");
 
 const DEGREE: f64 = PI / 180.0;
@@ -248,7 +248,7 @@ pub fn barometer_fault(word: &str) -> BarometerFault {
 pub fn assist(word: &str) -> Assist {
     match word {
         "hold" => Assist::Hold,
-        "self" => Assist::Itself,
+        "self" => Assist::Autonomous,
         _ => Assist::None,
     }
 }
@@ -280,7 +280,7 @@ pub const fn arms_word(arms: ArmChoice) -> &'static str {
     }
 }
 
-/// The word of what measures the position.
+/// The word of a position sensor.
 pub const fn position_sensor_word(sensor: PositionSensor) -> &'static str {
     match sensor {
         PositionSensor::None => "none",
@@ -289,12 +289,12 @@ pub const fn position_sensor_word(sensor: PositionSensor) -> &'static str {
     }
 }
 
-/// The word of what the pilot leaves to the vehicle.
+/// The word of an assistance.
 pub const fn assist_word(assist: Assist) -> &'static str {
     match assist {
         Assist::None => "none",
         Assist::Hold => "hold",
-        Assist::Itself => "self",
+        Assist::Autonomous => "self",
     }
 }
 
@@ -540,13 +540,13 @@ pub const KEYS: &[Key] = &[
         Range::new(0.01, 0.5, "m/s"),
         pilot.touch_drift
     ),
-    optional!("pilot.believes_pipe_north_m", PIPE_PLACE, pilot.believes.north),
-    optional!("pilot.believes_pipe_east_m", PIPE_PLACE, pilot.believes.east),
-    optional!("pilot.believes_pipe_top_m", PIPE_TOP, pilot.believes.top),
+    optional!("pilot.believes_pipe_north_m", PIPE_PLACE, pilot.assumed.north),
+    optional!("pilot.believes_pipe_east_m", PIPE_PLACE, pilot.assumed.east),
+    optional!("pilot.believes_pipe_top_m", PIPE_TOP, pilot.assumed.top),
     optional!(
         "pilot.believes_pipe_diameter_m",
         PIPE_DIAMETER,
-        pilot.believes.diameter
+        pilot.assumed.diameter
     ),
     number!("faults.at_s", Range::new(0.0, 3600.0, "s"), faults.at),
     fault!("faults.pressure", faults::PRESSURE, pressure, faults::pressure),

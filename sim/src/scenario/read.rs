@@ -1,63 +1,23 @@
 //! Reads a [`Scenario`] against the tables in [`keys`](super::keys) and [`steps`](super::steps), not through derived
-//! structs: messages must name key, value and what is allowed.
+//! structs: messages must name key, value and the allowed values.
 
 use core::ops::Range as Span;
+use std::sync::OnceLock;
 
 use sophie_control::params::ServoMarks;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::error::{Place, ScenarioError};
+use super::defaults::MISSION;
 use super::keys::{self, KEYS, Key, Kind, Range, TABLES};
-use super::nearest::nearest;
+use super::overrides::Overrides;
+use super::read_steps::steps_of;
 use super::settings::Setting;
-use super::{Overrides, Scenario, defaults};
+use super::source::{Result, Source, Value, as_number, in_order, table};
+use super::{Scenario, Step};
 use crate::plant::tendon::ServoSpec;
 
-pub(super) type Result<T> = core::result::Result<T, ScenarioError>;
-pub(super) type Value<'a> = Spanned<DeValue<'a>>;
-
-/// A text and its name in messages.
-pub(super) struct Source<'a> {
-    pub file: &'a str,
-    pub text: &'a str,
-}
-
 impl Source<'_> {
-    pub(super) fn at(&self, span: &Span<usize>) -> Place {
-        let before = self.text.as_bytes().get(..span.start).unwrap_or_default();
-        Place {
-            file: self.file.to_owned(),
-            line: 1 + before.iter().filter(|b| **b == b'\n').count(),
-        }
-    }
-
-    pub(super) fn bad(&self, key: &str, value: &Value<'_>, allowed: impl Into<String>) -> ScenarioError {
-        let span = value.span();
-        ScenarioError::BadValue {
-            at: self.at(&span),
-            key: key.to_owned(),
-            value: self.text.get(span).unwrap_or_default().to_owned(),
-            allowed: allowed.into(),
-        }
-    }
-
-    pub(super) fn unknown(
-        &self,
-        key: &str,
-        span: &Span<usize>,
-        value: &Value<'_>,
-        known: impl Iterator<Item = String>,
-    ) -> ScenarioError {
-        let known: Vec<String> = known.collect();
-        ScenarioError::UnknownKey {
-            at: self.at(span),
-            key: key.to_owned(),
-            value: self.text.get(value.span()).unwrap_or_default().to_owned(),
-            nearest: nearest(key, known.iter().map(String::as_str)),
-        }
-    }
-
     pub(super) fn scenario(&self, overrides: &Overrides) -> Result<Scenario> {
         let root = self.document()?;
         let mut scenario = Scenario::empty();
@@ -86,15 +46,8 @@ impl Source<'_> {
         }
         self.pipe_clear_of_the_ground(&root, &scenario)?;
         self.arms(&root, &scenario)?;
-        scenario.steps = steps.unwrap_or_else(defaults::default_steps);
+        scenario.steps = steps.unwrap_or_else(default_steps);
         Ok(scenario)
-    }
-
-    pub(super) fn document(&self) -> Result<Spanned<DeTable<'_>>> {
-        DeTable::parse(self.text).map_err(|error| ScenarioError::Syntax {
-            at: self.at(&error.span().unwrap_or_default()),
-            message: error.message().to_owned(),
-        })
     }
 
     fn table(&self, table: &str, content: &DeTable<'_>, scenario: &mut Scenario) -> Result<()> {
@@ -178,12 +131,6 @@ impl Source<'_> {
         Ok(())
     }
 
-    /// A number within `range`, in SI.
-    pub(super) fn number(&self, key: &str, value: &Value<'_>, range: &Range) -> Result<f64> {
-        let si = as_number(value).and_then(|v| range.to_si(v));
-        si.ok_or_else(|| self.bad(key, value, range.allowed()))
-    }
-
     /// Requires room below the pipe.
     fn pipe_clear_of_the_ground(&self, root: &Spanned<DeTable<'_>>, scenario: &Scenario) -> Result<()> {
         let lowest = scenario.world.pipe_diameter + 0.2;
@@ -202,13 +149,8 @@ impl Source<'_> {
     }
 }
 
-pub(super) fn table<'t, 'i>(root: &'t Spanned<DeTable<'i>>, name: &str) -> Option<&'t DeTable<'i>> {
-    let (_, content) = root.get_ref().iter().find(|(key, _)| key.get_ref() == name)?;
-    content.get_ref().as_table()
-}
-
-/// The stack's parameters follow the vehicle unless the file has them. Of a lens whose place the file does not have they
-/// know nothing: it sits within what needs no measuring.
+/// The stack's parameters follow the vehicle unless the file sets them. Without a lens position in the file they assume
+/// the lens at the centre of mass; it is near enough to need no measuring.
 fn params_from_vehicle(scenario: &mut Scenario) {
     let Scenario {
         params,
@@ -237,24 +179,12 @@ fn params_from_vehicle(scenario: &mut Scenario) {
     (params.servo_slew_1, params.servo_slew_2) = (slew, slew);
     (params.servo_slew_3, params.servo_slew_4) = (slew, slew);
     params.servo_range = servo.range as f32;
-    // Pulses and marks of the servos are the parameters' (`ServoSpec::measured`).
+    // The servos take pulses and marks from the parameters (`ServoSpec::measured`).
     params.servo_marks = ServoMarks::S1234;
 }
 
-/// In the file's order: the first mistake is reported.
-pub(super) fn in_order<'t, 'i>(table: &'t DeTable<'i>) -> Vec<(&'t str, Span<usize>, &'t Value<'i>)> {
-    let mut entries: Vec<_> = table
-        .iter()
-        .map(|(k, v)| (k.get_ref().as_ref(), k.span(), v))
-        .collect();
-    entries.sort_by_key(|(_, span, _)| span.start);
-    entries
-}
-
-pub(super) fn as_number(value: &Value<'_>) -> Option<f64> {
-    match value.get_ref() {
-        DeValue::Integer(i) => i64::from_str_radix(i.as_str(), i.radix()).ok().map(|v| v as f64),
-        DeValue::Float(f) => f.as_str().parse().ok(),
-        _ => None,
-    }
+/// Steps of files without any.
+fn default_steps() -> Vec<Step> {
+    static STEPS: OnceLock<Vec<Step>> = OnceLock::new();
+    STEPS.get_or_init(|| steps_of(MISSION)).clone()
 }

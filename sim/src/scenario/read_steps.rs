@@ -4,7 +4,7 @@ use toml::de::DeTable;
 
 use super::Step;
 use super::error::ScenarioError;
-use super::read::{Result, Source, Value, in_order};
+use super::source::{Result, Source, Value, in_order};
 use super::steps::{STEPS, StepKind, Whereabouts};
 
 impl Source<'_> {

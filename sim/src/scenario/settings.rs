@@ -7,8 +7,7 @@ use sophie_tasks::storage::parameters::Allowed;
 use toml::de::{DeTable, DeValue};
 
 use super::error::ScenarioError;
-use super::load::read_text;
-use super::read::{Result, Source, as_number, in_order};
+use super::source::{Result, Source, as_number, in_order, read_text};
 
 /// A parameter with the value that a file gives it.
 #[derive(Clone, Copy, Debug)]
@@ -22,7 +21,7 @@ pub struct Setting {
 /// Reads a parameter file: a scenario file that has nothing but `[params]`.
 ///
 /// # Errors
-/// One line: file, line, key, value, what is allowed.
+/// One line: file, line, key, value, allowed values.
 pub fn read(path: &Path) -> Result<Vec<Setting>> {
     let file = path.display().to_string();
     let text = read_text(path, &file)?;
@@ -110,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_parameter_or_beyond_its_range_is_refused_with_its_line() {
+    fn an_unknown_parameter_or_a_value_out_of_range_is_refused_with_its_line() {
         for (text, why) in [
             (
                 "[params]\ninfil = 8",

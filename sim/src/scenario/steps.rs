@@ -20,7 +20,7 @@ pub struct StepKind {
 pub struct StepNumber {
     /// Key in the file.
     pub key: &'static str,
-    /// What it may be.
+    /// Allowed range.
     pub range: Range,
     /// Default, in the unit of the file.
     pub default: f64,
@@ -229,7 +229,7 @@ impl Whereabouts {
                 InAir => (&[InAir], Sinking),
                 _ => (&[Closing, Clamped, Opening, Hanging], Hanging),
             },
-            // Over the pipe there is no ground below.
+            // Above the pipe the vehicle cannot land on the ground.
             Step::Land => (&[InAir], OnGroundArmed),
             Step::Disarm => (&[OnGroundArmed, Sinking], OnGroundDisarmed),
             Step::RadioOff { seconds } if self == InAir && *seconds > FLIES_ON => (&[InAir], Sinking),

@@ -141,15 +141,15 @@ fn the_stack_knows_the_vehicle_unless_params_say_otherwise() {
 }
 
 #[test]
-fn the_pilot_takes_the_pipe_for_what_it_is_but_for_what_the_file_says() {
+fn the_pilot_knows_the_pipe_except_for_values_of_the_file() {
     let s = parse("[world]\npipe_east_m = 1\npipe_top_m = 2\n[pilot]\nbelieves_pipe_east_m = 1.02").unwrap();
-    let pipe = s.pilot.believes.pipe(&s.world);
+    let pipe = s.pilot.assumed.pipe(&s.world);
     assert_eq!((pipe.position, pipe.top, pipe.diameter), ([3.0, 1.02], 2.0, 0.3));
     assert_eq!(s.world.pipe_position, [3.0, 1.0]);
 }
 
 #[test]
-fn the_seed_draws_where_the_wind_comes_from_unless_the_file_says_it() {
+fn the_seed_sets_the_wind_direction_unless_the_file_does() {
     let from = |seed: u64, key: &str| {
         let text = format!("seed = {seed}\n[world]\nsteady_wind_n = 1\n{key}");
         parse(&text).unwrap().wind_from()
@@ -250,7 +250,7 @@ fn every_number_takes_its_bounds_and_nothing_beyond() {
 }
 
 #[test]
-fn a_vehicle_that_loads_can_be_stepped() {
+fn every_loaded_vehicle_can_be_stepped() {
     let mut rng = Pcg64Mcg::seed_from_u64(1);
     let (mut loaded, mut refused) = (0, 0);
     // Of four, one has its controllers' pulses in order.

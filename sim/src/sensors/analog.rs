@@ -5,7 +5,7 @@ use rand_pcg::Pcg64Mcg;
 
 use crate::streams::Streams;
 
-/// Of the converter, V.
+/// Reference voltage of the converter, V.
 const REFERENCE: f64 = 3.3;
 /// Volts at a pin per count.
 pub const PIN_VOLTS_PER_COUNT: f64 = REFERENCE / 4095.0;
@@ -13,11 +13,11 @@ pub const PIN_VOLTS_PER_COUNT: f64 = REFERENCE / 4095.0;
 const DIVIDER: f64 = 11.0;
 /// Reference board, A/V.
 const AMPS_PER_VOLT: f64 = 40.0;
-/// Largest, of divider and current sensor.
+/// Largest gain error of divider and current sensor.
 const GAIN_ERROR: (f64, f64) = (0.01, 0.03);
-/// Largest, of the current sensor, A.
+/// Largest offset of the current sensor, A.
 const OFFSET: f64 = 0.3;
-/// RMS, counts: motors share the supply.
+/// RMS noise, counts: motors share the supply.
 const NOISE: f64 = 2.0;
 
 /// Volts of battery per count.

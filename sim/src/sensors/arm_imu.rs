@@ -12,13 +12,13 @@ use crate::streams::Streams;
 
 /// Fusion steps per second (datasheet).
 pub const RATE_HZ: f64 = 100.0;
-/// Steps: 20 ms (assumed).
+/// Delay, steps: 20 ms (assumed).
 const LATENCY: usize = 2;
-/// m/s² (datasheet).
+/// Resolution, m/s² (datasheet).
 const LSB: f64 = 0.01;
-/// Of the fused vector, m/s² (assumed).
+/// Noise of the fused vector, m/s² RMS (assumed).
 const NOISE: f64 = 0.03;
-/// Largest error, rad (assumed, 0.5°).
+/// Largest mounting error, rad (assumed, 0.5°).
 const MOUNTING: f64 = 0.0087;
 /// Share of the acceleration that leaks into the vector, and its time constant, s (assumed).
 const LEAK: (f64, f64) = (0.1, 0.3);
@@ -40,7 +40,7 @@ pub struct ArmImu {
     leaked: DVec3,
     pipeline: VecDeque<Vec3>,
     rng: Pcg64Mcg,
-    /// What breaks, and after how many steps of fusion.
+    /// Fault to come, and the number of fusion steps until it begins.
     breaks: Option<(TiltBreak, u64)>,
     steps: u64,
     last: Vec3,
@@ -71,7 +71,7 @@ impl ArmImu {
         self
     }
 
-    /// What is broken now.
+    /// The present fault, if any.
     #[must_use]
     pub fn broken(&self) -> Option<TiltBreak> {
         let (broken, at) = self.breaks?;

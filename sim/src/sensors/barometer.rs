@@ -1,6 +1,6 @@
 //! A board's barometer: a DPS310 that measures on command over 8 samples.
 //!
-//! | what | figure | from |
+//! | quantity | value | source |
 //! |---|---|---|
 //! | noise, step, time of a measurement | 0.4 Pa, 0.06 Pa, 14.8 ms | DPS310's data sheet |
 //! | drift, 0.2 m in ten minutes | 0.1 Pa/√s | its long-term and thermal drift, 0.5 Pa/K |
@@ -22,30 +22,30 @@ const SCALE_HEIGHT: f64 = 8_434.0;
 /// White noise, and step of the result, Pa.
 const NOISE: f64 = 0.4;
 const STEP: f64 = 0.06;
-/// Walk of its zero, Pa/√s.
+/// Random walk of its zero, Pa/√s.
 const WALK: f64 = 0.1;
-/// What the rotors' wash lowers the pressure at the board by at the thrust of a hover, Pa, behind a lag, s.
+/// Pressure drop at the board by the rotors' wash at hover thrust, Pa, and its lag, s.
 const WASH: f64 = 6.0;
 const WASH_LAG: f64 = 0.3;
-/// What it and the gusts make it swing by at that thrust, Pa RMS, and the time for which a swing lasts, s: 0.17 m.
+/// Pressure noise by wash and gusts at hover thrust, Pa RMS (0.17 m), and its correlation time, s.
 const SWING: f64 = 2.0;
 const SWING_TIME: f64 = 1.0;
-/// Of the part: 10 °C above the air.
+/// Temperature of the part, °C: 10 °C above the air.
 const CELSIUS: f32 = 25.0;
 /// Height of a jump, Pa, its time, ms, and rate of a drift, Pa/s: 2 m and 1 m/s.
 const JUMP: f64 = 24.0;
 const JUMP_MS: u64 = 300;
 const DRIFT: f64 = 12.0;
 
-/// How a barometer fails.
+/// Fault of a barometer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BarometerFault {
-    /// Not at all.
+    /// Sound.
     #[default]
     None,
-    /// It says nothing.
+    /// It sends nothing.
     Silent,
-    /// It says the same all the time.
+    /// It repeats its last value.
     Frozen,
     /// It jumps by 2 m, back and forth.
     Jumps,
@@ -57,7 +57,7 @@ pub enum BarometerFault {
 #[derive(Clone, Debug)]
 pub struct Barometer {
     rng: Pcg64Mcg,
-    /// Of the vehicle, N.
+    /// Weight of the vehicle, N: the thrust in hover.
     weight: f64,
     /// Since power-up, ms.
     ms: u64,
@@ -72,7 +72,7 @@ pub struct Barometer {
 }
 
 impl Barometer {
-    /// A sound one with the errors of `streams`, on a vehicle of `weight` N.
+    /// A barometer without fault, with the errors of `streams`, on a vehicle of `weight` N.
     #[must_use]
     pub fn new(streams: Streams, weight: f64) -> Self {
         Self {
@@ -100,7 +100,7 @@ impl Barometer {
         }
     }
 
-    /// A millisecond later the board is `height` m above the ground, under rotors that give `thrust` N.
+    /// Advances by a millisecond to `height` m above the ground under a total thrust of `thrust` N.
     pub fn step(&mut self, height: f64, thrust: f64) {
         const DT: f64 = 1e-3;
         let thrust = thrust / self.weight;
@@ -117,7 +117,7 @@ impl Barometer {
         }
     }
 
-    /// What a measurement that ends `now` µs after power-up gives; `None` where the part is silent.
+    /// The measurement that ends `now` µs after power-up; `None` from a silent part.
     pub fn measure(&mut self, now: u64) -> Option<AirPressure> {
         let mean = self.recent.iter().sum::<f64>() / self.recent.len().max(1) as f64;
         let mut pascal = mean + NOISE * self.normal();

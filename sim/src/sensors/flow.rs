@@ -1,12 +1,12 @@
-//! A module of optical flow and range below the vehicle, of the MTF class: a PMW3901 and a time-of-flight sensor, whose
-//! messages come as MSP frames.
+//! A module of optical flow and range below the vehicle, of the MTF class: a PMW3901 and a time-of-flight sensor that
+//! send MSP frames.
 //!
-//! | what | figure | from |
+//! | quantity | value | source |
 //! |---|---|---|
 //! | field of view, nearest, fastest | 42°, 8 cm, 7.4 rad/s | PMW3901's data sheet, the maker's table of the MTF-02 |
 //! | range | 2 cm to 2.5 m | the same table |
 //! | counts | 10.5 a degree | INAV's default for a PMW3901 |
-//! | noise, scale, lateness, gaps | below | assumed, as in the feasibility study |
+//! | noise, scale, delay, gaps | below | assumed, as in the feasibility study |
 
 use std::collections::VecDeque;
 
@@ -20,62 +20,64 @@ use crate::plant::contact::{Pipe, Pose};
 
 use crate::streams::Streams;
 
-/// Time between two frames, ms: 50 a second, where nothing else is said.
+/// Default time between two frames, ms: 50 a second.
 const PERIOD_MS: u64 = 20;
-/// From the end of an interval, or a range, to its last byte, µs: within these by the flight, and this much by the frame.
+/// Delay from the end of an interval, or from a range, to the last byte, µs: constant within these limits for a flight,
+/// with this jitter for each frame.
 const DELAY_US: (u64, u64) = (20_000, 30_000);
 const JITTER_US: u64 = 1_500;
-/// White noise of a flow in an interval, rad: 0.12 rad/s in one of 20 ms. In one of 10 ms it is nearly as much (measured).
+/// White noise of the flow of an interval, rad: 0.12 rad/s in 20 ms. An interval of 10 ms has nearly the same
+/// (measured).
 const FLOW_NOISE: f64 = 0.12 * 1e-3 * PERIOD_MS as f64;
-/// Error of the flow's scale, 1 RMS: what calibration by rotation leaves.
+/// Error of the flow's scale after calibration by rotation, RMS share.
 const SCALE: f64 = 0.02;
 /// Counts of an angle, 1/rad.
 const COUNTS: f64 = 10.5 * 180.0 / std::f64::consts::PI;
 /// Half the field of view, rad, and the rays along each of its sides.
 const HALF_VIEW: f64 = 21.0 / 180.0 * std::f64::consts::PI;
 const RAYS: i32 = 9;
-/// Time between two looks, ms.
+/// Time between two pictures, ms.
 const LOOK_MS: u64 = 4;
-/// Nearest that the lens sees, m, and the fastest flow, rad/s.
+/// Least distance of a picture in focus, m, and fastest flow, rad/s.
 const NEAREST: f64 = 0.08;
 const FASTEST: f64 = 7.4;
-/// Half the beam of the range, rad; its reach, m; white noise, m, and error of its scale, 1 RMS.
+/// Half the beam of the range sensor, rad; its reach, m; white noise, m; error of its scale, RMS share.
 const HALF_BEAM: f64 = 3.0 / 180.0 * std::f64::consts::PI;
 const REACH: (f64, f64) = (0.02, 2.5);
 const RANGE_NOISE: f64 = 0.015;
 const RANGE_SCALE: f64 = 0.005;
-/// Without a flow, s, and time between two such gaps, s.
+/// Length of a gap without flow, s, and time between two gaps, s.
 const GAP: (f64, f64) = (0.3, 1.0);
 const BETWEEN: (f64, f64) = (10.0, 40.0);
-/// How a module that fails errs: flow, counts of an interval (1.5 rad/s) and range, mm, that jump, the time between two jumps,
-/// ms, and how many times as long its range is.
+/// Sizes of the faults: jump of the flow, counts of an interval (1.5 rad/s), jump of the range, mm, time between two
+/// jumps, ms, and factors on the range.
 const JUMP: i32 = 18;
 const RANGE_JUMP: f64 = 600.0;
 const JUMP_MS: u64 = 300;
 const LONG: f64 = 1.6;
 const SHORT: f64 = 0.6;
-/// Quality of a picture with enough in it.
+/// Quality of a picture with enough texture.
 const QUALITY: u8 = 120;
 
-/// How a module of flow and range fails.
+/// Fault of a flow module.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FlowFault {
-    /// It says nothing.
+    /// It sends nothing.
     #[default]
     Silent,
-    /// It sees no picture.
+    /// Its pictures are dark: flow of quality 0.
     Dark,
-    /// Its flow is turned round.
+    /// Its flow has the wrong sign.
     Mirrored,
     /// Its flow is 2.5 times as large.
     Scaled,
-    /// Its flow stands still.
+    /// Its flow repeats.
     Frozen,
     /// Its flow jumps by 1.5 rad/s, back and forth.
     Jumps,
-    /// Its range says nothing.
+    /// It sends no range.
     RangeSilent,
-    /// Its range stands still.
+    /// Its range repeats.
     RangeFrozen,
     /// Its range jumps by 0.6 m, back and forth.
     RangeJumps,
@@ -90,16 +92,16 @@ pub enum FlowFault {
 pub struct FlowModule {
     rng: Pcg64Mcg,
     pipe: Pipe,
-    /// Of the centre of mass, m, body: both sensors look from there.
+    /// Position of both sensors from the centre of mass, m, body.
     lens: DVec3,
-    /// Time between two frames, ms, and what its ranges are multiples of, mm.
+    /// Time between two frames, ms, and resolution of its ranges, mm.
     period_ms: u64,
     step_mm: f64,
-    /// Since power-up and at the last look, ms.
+    /// Time since power-up and time of the last picture, ms.
     ms: u64,
     looked_ms: u64,
     before: Option<(DVec3, DQuat)>,
-    /// Flow of this interval, rad, and what is left of it below a count.
+    /// Flow of this interval, rad, and its remainder below a count.
     angle: [f64; 2],
     rest: [f64; 2],
     seen: bool,
@@ -115,7 +117,8 @@ pub struct FlowModule {
 }
 
 impl FlowModule {
-    /// A module over the ground and `pipe` with the errors of `streams`, its `lens` so far from the centre of mass, m, body.
+    /// A module above the ground and `pipe` with the errors of `streams` and its `lens` at this offset from the centre
+    /// of mass, m, body.
     #[must_use]
     pub fn new(streams: Streams, pipe: Pipe, lens: DVec3) -> Self {
         let mut rng = streams.of("flow");
@@ -158,8 +161,8 @@ impl FlowModule {
         }
     }
 
-    /// The same, with a frame each whole number of milliseconds that is nearest to `rate` Hz, and ranges in steps of `step` m,
-    /// where these are given.
+    /// The same with frames at `rate` Hz, rounded to a period of whole milliseconds, and a range resolution of `step`
+    /// m; `None` keeps the default.
     #[must_use]
     pub fn sending(self, rate: Option<f64>, step: Option<f64>) -> Self {
         Self {
@@ -169,7 +172,7 @@ impl FlowModule {
         }
     }
 
-    /// A millisecond later the vehicle is at `pose`.
+    /// Advances by a millisecond to the vehicle's `pose`.
     pub fn step(&mut self, pose: &Pose) {
         self.ms += 1;
         let ends = self.ms.is_multiple_of(self.period_ms);
@@ -189,7 +192,7 @@ impl FlowModule {
         }
     }
 
-    /// The bytes that have come `us` µs after power-up.
+    /// The oldest frame that is complete `us` µs after power-up.
     pub fn take(&mut self, us: u64) -> Option<Vec<u8>> {
         self.sent.front().filter(|(at, _)| *at <= us)?;
         self.sent.pop_front().map(|(_, bytes)| bytes)
@@ -209,7 +212,7 @@ impl FlowModule {
         let mut counts = [0; 2];
         for ((count, rest), angle) in counts.iter_mut().zip(&mut self.rest).zip(angle) {
             let noisy = self.scale * angle + FLOW_NOISE * normal(&mut self.rng);
-            // What is seen moves against the vehicle.
+            // The picture moves against the vehicle.
             let whole = *rest - noisy * COUNTS;
             *count = whole.round() as i32;
             *rest = whole - whole.round();
@@ -259,7 +262,7 @@ impl FlowModule {
         self.sent.push_back((at, bytes));
     }
 
-    /// A range of `mm` as the module shows it, mm.
+    /// A range of `mm` rounded to the module's resolution, mm.
     fn in_steps(&self, mm: f64) -> f64 {
         if self.step_mm > 1.0 {
             (mm / self.step_mm).round() * self.step_mm
@@ -268,16 +271,17 @@ impl FlowModule {
         }
     }
 
-    /// Flow between two places, rad, `ms` apart, as of a body that turns; `None` where the lens sees nothing.
+    /// Flow between two poses, rad, `ms` apart, in the units of a pure rotation; `None` if the lens is too near, too
+    /// fast or sees mostly sky.
     fn flow(&self, from: (DVec3, DQuat), to: (DVec3, DQuat), ms: u64) -> Option<[f64; 2]> {
         let (mut sum, mut weight) = ([0.0; 2], [0.0; 2]);
         let mut rays = 0.0;
         for i in 0..RAYS {
             for j in 0..RAYS {
-                // In the middles of as many equal parts of the view.
+                // Rays through the centres of equal parts of the view.
                 let side = |k: i32| ((f64::from(k) + 0.5) / f64::from(RAYS) * 2.0 - 1.0) * HALF_VIEW.tan();
                 let (u, w) = (side(i), side(j));
-                // Texture is where the light of the ray falls; a ray into the sky sees none.
+                // A ray sees texture where it meets a surface; a ray into the sky sees none.
                 let direction = to.1 * DVec3::new(u, w, 1.0);
                 let Some(way) = self.pipe.or_ground_along(to.0, direction) else {
                     continue;
@@ -289,7 +293,7 @@ impl FlowModule {
                 let before = from.1.inverse() * (point - from.0);
                 sum[0] += w - before.y / before.z;
                 sum[1] += before.x / before.z - u;
-                // As much as the same picture of a body that only turns: what calibration by rotation sees.
+                // Normalised by the picture of a pure rotation, as a calibration by rotation does.
                 weight[0] += 1.0 + w * w;
                 weight[1] += 1.0 + u * u;
                 rays += 1.0;
@@ -301,7 +305,7 @@ impl FlowModule {
         (rays >= half && flow.iter().all(|f| f.abs() <= fast)).then_some(flow)
     }
 
-    /// Range along the beam, m: the middle one of its rays.
+    /// Range along the beam, m: the median of its rays.
     fn distance(&self, (from, attitude): (DVec3, DQuat)) -> Option<f64> {
         let side = HALF_BEAM.tan();
         let mut found = [(0.0, 0.0), (side, 0.0), (-side, 0.0), (0.0, side), (0.0, -side)].map(|(u, w)| {
@@ -400,14 +404,14 @@ mod tests {
 
     #[test]
     fn ground_and_turning_are_seen_by_the_standards_signs() {
-        // 0.4 m/s forward and -0.2 to the right, 1 m over the ground: what is seen pitches up and rolls right.
+        // 0.4 m/s forward and -0.2 to the right, 1 m over the ground: the picture pitches up and rolls right.
         let ([x, y], range, _) = seen(8, |t| {
             (
                 DVec3::new(-8.0 + 0.4 * t, -0.2 * t, -1.0 - MOUNTED.z),
                 DQuat::IDENTITY,
             )
         });
-        // Of a view as wide, calibrated by turning, a way is short by tan²(21°) / 3 = 5 %.
+        // With a view this wide, calibrated by rotation, a translation reads short by tan²(21°) / 3 = 5 %.
         near(x, 0.2 / 1.05, 0.02);
         near(y, 0.4 / 1.05, 0.02);
         near(range.unwrap(), 1.0, 0.02);
@@ -420,7 +424,7 @@ mod tests {
 
     /// Turning about the centre of mass moves a lens that is beside it: by its lever times the rate.
     #[test]
-    fn a_lens_beside_the_centre_of_mass_sees_its_own_way_and_what_is_below_itself() {
+    fn a_lens_beside_the_centre_of_mass_measures_at_its_own_place() {
         let lens = DVec3::new(-0.2, 0.1, 0.05);
         let yawing = |t: f64| (DVec3::new(-8.0, 0.0, -1.05), DQuat::from_rotation_z(0.5 * t));
         // 0.5 rad/s clockwise: omega x r is (-0.05, -0.1, 0) m/s.
@@ -440,7 +444,7 @@ mod tests {
     fn over_the_pipe_the_range_sees_it_and_the_flow_its_surroundings_too() {
         let ([_, y], range, _) = seen(4, |t| level(2.6 + 0.2 * t, 2.5));
         near(range.unwrap(), 1.0 - MOUNTED.z, 0.03);
-        // Nearer than the ground by itself, farther than the pipe.
+        // Below the ground's rate and above the pipe's.
         assert!((0.2 / 2.5 * 1.1..0.2 * 0.9).contains(&y), "{y}");
         // Beyond the end the ground is back, out of the range's reach.
         let (_, range, _) = seen(2, |_| level(4.5, 2.6));

@@ -9,11 +9,11 @@ use rand_pcg::Pcg64Mcg;
 
 use crate::streams::Streams;
 
-/// m²: 38 mm square (datasheet).
+/// Area, m²: 38 mm square (datasheet).
 const AREA: f64 = 0.038 * 0.038;
-/// N (datasheet).
+/// Threshold, N (datasheet).
 const THRESHOLD: f64 = 0.1;
-/// S at 1 N (guide, about 10 kΩ).
+/// Conductance at 1 N, S (guide, about 10 kΩ).
 const GAIN: f64 = 1e-4;
 /// Largest gain error, calibrated in the arm (assumed; 6 % from the reel, datasheet).
 const PART_ERROR: f64 = 0.04;
@@ -21,13 +21,13 @@ const PART_ERROR: f64 = 0.04;
 const EXPONENT_MIN: f64 = 0.97;
 /// Half width of the hysteresis over force (assumed for slow changes; datasheet 10 % over the whole range).
 const HYSTERESIS: f64 = 0.015;
-/// RMS and time constant of the creep, s (assumed; datasheet below 5 % per decade of time).
+/// Creep: RMS share and time constant, s (assumed; datasheet below 5 % per decade of time).
 const CREEP: (f64, f64) = (0.008, 20.0);
-/// RMS over the conductance (assumed).
+/// RMS noise over the conductance (assumed).
 const NOISE: f64 = 0.004;
 /// Resistor to ground, Ω, and its largest error.
 const DIVIDER: (f64, f64) = (10_000.0, 0.01);
-/// RMS, counts.
+/// RMS noise of the converter, counts.
 const ADC_NOISE: f64 = 1.2;
 
 /// Largest relative error of the pressure: limits of gain and divider, hysteresis, three times the creep's RMS, and 1 %
@@ -51,12 +51,12 @@ pub struct FsrSensor {
     gain: f64,
     exponent: f64,
     divider: f64,
-    felt: f64,
+    force: f64,
     creep: f64,
     broken: Option<FsrBreak>,
-    /// What breaks, and when, s after power-up.
+    /// Fault to come, and its begin, s after power-up.
     breaks: Option<(FsrBreak, f64)>,
-    /// s.
+    /// Time, s.
     time: f64,
     counts: u16,
     rng: Pcg64Mcg,
@@ -72,7 +72,7 @@ impl FsrSensor {
             gain: GAIN * within("gain", 1.0 - PART_ERROR, 1.0 + PART_ERROR),
             exponent: within("exponent", EXPONENT_MIN, 1.0),
             divider: DIVIDER.0 * within("divider", 1.0 - DIVIDER.1, 1.0 + DIVIDER.1),
-            felt: 0.0,
+            force: 0.0,
             creep: 0.0,
             broken: None,
             breaks: None,
@@ -113,9 +113,9 @@ impl FsrSensor {
         let rng = &mut self.rng;
         let mut normal = || -> f64 { StandardNormal.sample(rng) };
         let force = pressure.max(0.0) * AREA;
-        // Play: the felt force moves only when pushed by either edge.
-        self.felt = self
-            .felt
+        // Hysteresis as play: the sensed force moves only when the true one leaves the band around it.
+        self.force = self
+            .force
             .clamp(force * (1.0 - HYSTERESIS), force * (1.0 + HYSTERESIS));
         let keep = (-dt / CREEP.1).exp();
         self.creep = self.creep * keep + CREEP.0 * (1.0 - keep * keep).sqrt() * normal();
@@ -125,7 +125,7 @@ impl FsrSensor {
             None | Some(FsrBreak::Stuck) if force < THRESHOLD => 0.0,
             None | Some(FsrBreak::Stuck) => {
                 let drift = 1.0 + self.creep + NOISE * normal();
-                let load = self.gain * self.felt.powf(self.exponent) * drift * self.divider;
+                let load = self.gain * self.force.powf(self.exponent) * drift * self.divider;
                 load / (1.0 + load)
             }
         };
@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn it_feels_nothing_below_its_threshold_and_remembers_where_it_came_from() {
+    fn it_reads_nothing_below_its_threshold_and_has_hysteresis() {
         let mut s = FsrSensor::new(0, Streams::new(3));
         assert!(s.sample(60.0, 0.002) == 0);
         let mut mean = |p: f64| (0..2000).map(|_| f64::from(s.sample(p, 0.0))).sum::<f64>() / 2000.0;

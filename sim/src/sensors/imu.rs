@@ -12,32 +12,32 @@ use sophie_control::params::Params;
 
 use crate::streams::Streams;
 
-/// Default, samples/s.
+/// Default sample rate, samples/s.
 const RATE_HZ: f64 = 4000.0;
-/// rad/s at 4 kHz: 2.8 mdps/√Hz over 2 kHz (datasheet).
+/// Gyro noise, rad/s at 4 kHz: 2.8 mdps/√Hz over 2 kHz (datasheet).
 const GYRO_NOISE: f64 = 2.8e-3 * (std::f64::consts::PI / 180.0) * 44.7;
-/// m/s² at 4 kHz: 70 µg/√Hz over 2 kHz (datasheet).
+/// Accel noise, m/s² at 4 kHz: 70 µg/√Hz over 2 kHz (datasheet).
 const ACCEL_NOISE: f64 = 70e-6 * 9.806_65 * 44.7;
-/// Largest, rad/s: ±0.5 dps (datasheet).
+/// Largest gyro bias, rad/s: ±0.5 dps (datasheet).
 const GYRO_BIAS: f64 = 0.5 * (std::f64::consts::PI / 180.0);
-/// Largest, m/s²: ±20 mg (datasheet).
+/// Largest accel bias, m/s²: ±20 mg (datasheet).
 const ACCEL_BIAS: f64 = 0.020 * 9.806_65;
-/// Largest, m/s²: a bench level to 0.25° (assumed).
+/// Largest bench error, m/s²: a bench level to 0.25° (assumed).
 const BENCH_ERROR: f64 = 0.04;
-/// Per rotor at 600 rad/s, rad/s and m/s² (assumed; soft arms isolate).
+/// Vibration by each rotor at 600 rad/s, rad/s and m/s² (assumed; soft arms isolate).
 const VIBRATION: (f64, f64) = (0.01, 0.25);
 
-/// How a part differs from what its board's file says.
+/// Error of the mounting or scale of a part against its board's file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Misfit {
-    /// How it sits.
+    /// Mounting of the part.
     pub mounting: Mounting,
-    /// What its accelerometer reads over what there is, by the board's axes.
+    /// Scale of its accelerometer along the board's axes; nominal 1.
     pub scale: Vec3,
 }
 
 impl Misfit {
-    /// What the part reads where one that fits reads `reading`.
+    /// Reading of the part for the `reading` of one without error.
     #[must_use]
     pub fn reads(&self, reading: ImuReading) -> ImuReading {
         ImuReading {
@@ -51,13 +51,13 @@ impl Misfit {
 #[derive(Clone, Debug)]
 pub struct Imu {
     rate: f64,
-    /// Relative to 4 kHz: it grows with the band, half the rate.
+    /// Noise relative to 4 kHz: it grows with the band, half the rate.
     noise: f64,
     /// Resolution of gyro, rad/s, and accelerometer, m/s².
     lsb: (f64, f64),
     gyro_bias: DVec3,
     accel_bias: DVec3,
-    /// `None`: it fits.
+    /// `None`: no misfit.
     pub misfit: Option<Misfit>,
     bench_error: DVec3,
     rng: Pcg64Mcg,

@@ -1,4 +1,5 @@
-//! A visual odometry or motion capture: late, noisy, with gaps, in axes of its own that slowly turn (figures assumed).
+//! A visual odometry or motion capture that sends poses: late, noisy, with gaps, in axes of its own that slowly turn
+//! (values assumed).
 
 use std::collections::VecDeque;
 use std::f64::consts::PI;
@@ -14,26 +15,26 @@ use crate::streams::Streams;
 
 /// Time between two measurements, ms: 50 a second.
 const PERIOD_MS: u64 = 20;
-/// From measurement to the line, µs.
+/// Delay from measurement to the line, µs.
 const DELAY_US: u64 = 30_000;
 /// White noise along each axis, m, and of each angle, rad.
 const NOISE: f64 = 3e-3;
 const ANGLE_NOISE: f64 = 3e-3;
 /// Constant error along each axis, m RMS.
 const CONSTANT: f64 = 5e-3;
-/// Poses for each place of the pipe, 10 a second, and the constant error of that place along each axis, m RMS.
+/// Poses per position of the pipe (10 a second), and the constant error of that position along each axis, m RMS.
 const TARGET_EACH: u64 = 5;
 const TARGET_CONSTANT: f64 = 5e-3;
-/// How far off a place of the pipe is that cannot be, m.
+/// Distance of an implausible position of the pipe, m.
 const TARGET_FAR: f64 = 50.0;
-/// Largest turn of its axes at the start, rad, and how fast they turn, rad/s: 1° a minute.
+/// Largest yaw of its axes at the start, rad, and their yaw rate, rad/s: 1° a minute.
 const TURN: f64 = PI;
 const TURN_RATE: f64 = PI / 180.0 / 60.0;
-/// Without a measurement, s, and time between two such gaps, s.
+/// Length of a gap without poses, s, and time between two gaps, s.
 const GAP: (f64, f64) = (0.3, 1.0);
 const BETWEEN: (f64, f64) = (10.0, 40.0);
 
-/// How a source that fails errs: ways so many times as long, a jump, m, and the time between two, ms.
+/// Sizes of the faults: factor on translations, jump, m, and time between two jumps, ms.
 const SCALED: f64 = 2.5;
 const JUMP: f64 = 0.6;
 const JUMP_MS: u64 = 300;
@@ -41,37 +42,37 @@ const JUMP_MS: u64 = 300;
 /// A measurement in the source's axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
-    /// When, µs after power-up.
+    /// Time of the measurement, µs after power-up.
     pub at_us: u64,
-    /// m, down as the world's.
+    /// Position, m, down as the world's.
     pub position: DVec3,
-    /// Body to its axes.
+    /// Rotation from body axes to the source's axes.
     pub attitude: DQuat,
-    /// Where it sees the pipe's crown, m, and along which heading, rad, with every fifth pose.
+    /// Position of the pipe's crown, m, and heading of the pipe, rad, with every fifth pose.
     pub target: Option<(DVec3, f64)>,
 }
 
-/// How a source of poses fails.
+/// Fault of a source of poses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PoseFault {
-    /// It says nothing.
+    /// It sends nothing.
     #[default]
     Silent,
-    /// It says the same all the time.
+    /// It repeats its last pose.
     Frozen,
     /// Its position jumps by 0.6 m, back and forth.
     Jumps,
-    /// Its ways along its second axis are turned round.
+    /// Translations along its second axis have the wrong sign.
     Mirrored,
-    /// Its ways are 2.5 times as long.
+    /// Translations are 2.5 times too long.
     Scaled,
     /// Its heading is off by half a right angle.
     Turned,
-    /// It no longer says where the pipe is.
+    /// It sends no position of the pipe.
     TargetSilent,
-    /// The pipe's place jumps by 0.6 m, back and forth.
+    /// The position of the pipe jumps by 0.6 m, back and forth.
     TargetJumps,
-    /// The pipe's place is 50 m away.
+    /// The position of the pipe is off by 50 m.
     TargetFar,
 }
 
@@ -79,13 +80,13 @@ pub enum PoseFault {
 #[derive(Clone, Debug)]
 pub struct PoseSource {
     rng: Pcg64Mcg,
-    /// Since power-up, ms.
+    /// Time since power-up, ms.
     ms: u64,
-    /// Last true position, and what the source makes of the way since the start, m.
+    /// Last true position, and the source's own path since the start, m.
     before: Option<DVec3>,
     gone: DVec3,
     constant: DVec3,
-    /// The pipe's crown in the world, with what it is off by, m; `None` where it looks for none.
+    /// The pipe's crown in world axes with its error, m; `None` without a search for the pipe.
     pipe: Option<DVec3>,
     turn: f64,
     turn_rate: f64,
@@ -93,7 +94,7 @@ pub struct PoseSource {
     gap: (u64, u64),
     failure: (u64, u64),
     fault: PoseFault,
-    /// What it stands still at.
+    /// Last pose before it froze.
     held: Option<(DVec3, DQuat)>,
     sent: VecDeque<Measured>,
 }
@@ -122,7 +123,7 @@ impl PoseSource {
         }
     }
 
-    /// The same, with an eye for the pipe whose crown is taken to be at `crown` in the world, m: with that much of it known.
+    /// The same with a search for the pipe, whose crown is assumed at `crown` in world axes, m.
     #[must_use]
     pub fn seeing(self, crown: DVec3, streams: Streams) -> Self {
         let off = normal(&mut streams.of("pose.target")) * TARGET_CONSTANT;
@@ -143,7 +144,7 @@ impl PoseSource {
         }
     }
 
-    /// A millisecond later the vehicle is at `pose`.
+    /// Advances by a millisecond to the vehicle's `pose`.
     pub fn step(&mut self, pose: &Pose) {
         self.ms += 1;
         self.turn += self.turn_rate * 1e-3;
@@ -185,13 +186,13 @@ impl PoseSource {
         });
     }
 
-    /// Where it sees the pipe; the pipe runs along the world's first axis.
+    /// Crown and heading of the pipe in the source's axes; the pipe runs along the world's first axis.
     fn target(&mut self, pose: &Pose, axes: DQuat, fault: Option<PoseFault>) -> Option<(DVec3, f64)> {
         let due = self.ms.is_multiple_of(TARGET_EACH * PERIOD_MS);
         let pipe = self
             .pipe
             .filter(|_| due && fault != Some(PoseFault::TargetSilent))?;
-        // Its axes move against the world by what its ways are off.
+        // The axes move against the world by the error of its path.
         let mut seen = self.gone + self.constant + axes * (pipe - pose.position);
         seen += normal(&mut self.rng) * NOISE;
         match fault {
@@ -202,7 +203,7 @@ impl PoseSource {
         Some((seen, self.turn))
     }
 
-    /// Where `position` in the source's axes is in the world, by where it takes the vehicle to be now.
+    /// Converts `position` from the source's present axes to world axes, m.
     #[must_use]
     pub fn in_world(&self, position: DVec3) -> DVec3 {
         let axes = DQuat::from_rotation_z(self.turn);
@@ -279,7 +280,7 @@ mod tests {
         let way = last.position - first.position;
         let time = (last.at_us - first.at_us) as f64 * 1e-6;
         assert!((way.length() / time - 1.0).abs() < 0.02, "{way}");
-        // The nose is where the way goes.
+        // The nose points along the path.
         let nose = last.attitude * DVec3::X;
         assert!(nose.dot(way.normalize()) > 0.999, "{nose} {way}");
     }

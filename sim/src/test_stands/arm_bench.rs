@@ -1,5 +1,5 @@
-//! One arm closes on a pipe, as on the paper's test bench: body fixed, gripper and tendon drive the flight stack's, the
-//! rest the plant's.
+//! Test stand of one arm that closes on a pipe, as in the paper: the body is fixed, gripper and tendon drive are the
+//! flight stack's, the other parts the plant's.
 
 use std::collections::VecDeque;
 
@@ -27,13 +27,13 @@ use crate::plant::{GRAVITY, STEP};
 use crate::sensors::fsr::{FsrBreak, FsrSensor};
 use crate::streams::Streams;
 
-/// Before closing, s.
+/// Rest before the closing, s.
 const REST: f64 = 1.0;
 /// Damping ratio of a [`Closing`]'s arm.
 const DAMPING: f64 = 0.15;
-/// RMS of the arm sensor, rad.
+/// RMS noise of the arm sensor, rad.
 const TILT_NOISE: f64 = 0.004;
-/// Of a [`Closing`]: rotor, s, and pipe.
+/// Parts of a [`Closing`]: time constant of the rotor, s, and friction of the pipe.
 const ROTOR_TAU: f64 = 0.05;
 const FRICTION: f64 = 0.6;
 /// Stop of a holding arm's rotor, s, as on a perch.
@@ -67,13 +67,13 @@ const FIXED: Acceleration = Acceleration {
 pub struct Closing {
     /// Infill of the arm, %.
     pub infill: f64,
-    /// Outer, m.
+    /// Outer diameter, m.
     pub diameter: f64,
     /// The servo fitted; the stack's parameters match it.
     pub servo: ServoSpec,
-    /// Of the arm's rotor while it closes, N.
+    /// Thrust of the arm's rotor while it closes, N.
     pub thrust: f64,
-    /// From the start of closing, s.
+    /// Time from the start of closing, s.
     pub seconds: f64,
     /// Seed of the sensors' noise.
     pub seed: u64,
@@ -90,15 +90,15 @@ pub struct BenchArm {
     pub beam: Option<BeamSpec>,
     /// The servo fitted.
     pub servo: ServoSpec,
-    /// s.
+    /// Time constant of the rotor, s.
     pub rotor_tau: f64,
-    /// May differ from the true arm.
+    /// Parameters of the stack; they may differ from the true arm.
     pub params: Params,
-    /// Outer, m.
+    /// Outer diameter, m.
     pub diameter: f64,
     /// Friction of the pipe.
     pub friction: f64,
-    /// Of the arm's rotor while it closes, N.
+    /// Thrust of the arm's rotor while it closes, N.
     pub thrust: f64,
     /// Fault of the pressure sensor.
     pub broken: Option<FsrBreak>,
@@ -198,9 +198,9 @@ pub fn try_grip(arm: &BenchArm, longest: f64) -> Tried {
 pub struct BenchSample {
     /// From the start of closing, s.
     pub t: f64,
-    /// True, at the sensor, Pa.
+    /// True pressure at the sensor, Pa.
     pub pressure: f64,
-    /// True, of the servo, N·m.
+    /// True torque of the servo, N·m.
     pub torque: f64,
     /// Tilt of the arm, rad.
     pub tilt: f64,
@@ -262,7 +262,7 @@ struct ArmBench {
     arm: Box<dyn Flexible>,
     tendon: Tendon,
     sensor: FsrSensor,
-    /// N.
+    /// Thrust, N.
     thrust: f64,
     thrust_asked: f64,
     /// Tilts delayed by the arm sensor, rad.

@@ -1,4 +1,4 @@
-//! The flight level alone under given setpoints.
+//! Test stand of the flight level alone (inertial sensor to motors) under given setpoints.
 
 use crate::board::{Board, Port};
 use crate::clock::VirtualTime;
@@ -16,7 +16,7 @@ use sophie_tasks::links::{Links, Setpoint};
 
 /// Unjudged take-off, s.
 const SETTLE: f64 = 5.0;
-/// m.
+/// Height to hold, m.
 const HEIGHT: f64 = 3.0;
 /// Held by [`Rig::fly`], and its largest thrust, N.
 const WEIGHT: f64 = 17.7;
@@ -91,14 +91,14 @@ impl Rig {
         })
     }
 
-    /// The same with an inertial sensor that is built in as `misfit` has it.
+    /// The same with an inertial sensor mounted with the errors of `misfit`.
     pub fn misfitted(scenario: &Scenario, misfit: Misfit) -> Self {
         let rig = Self::new(scenario);
         rig.board.misfit(misfit);
         rig
     }
 
-    /// The same with motors that are wired as `map` has it, whatever the parameters say.
+    /// The same with motors wired by `map`, independent of the parameters.
     pub fn wired(scenario: &Scenario, map: MotorMap) -> Self {
         let rig = Self::new(scenario);
         rig.board.wire(map);
@@ -193,7 +193,7 @@ impl Rig {
 pub struct HeightHold {
     weight: f64,
     thrust_max: f64,
-    /// m s.
+    /// Integral of the height error, m·s.
     sum: f64,
 }
 

@@ -2,7 +2,7 @@
 
 use sophie_sim::parallel::each;
 
-use super::by_itself::{campaign, flown_of, mission, touches};
+use super::autonomous::{campaign, flown_of, mission, touches};
 use super::flow::{DRIFT_RMS, HEIGHT_RMS, SPEED_RMS, blamed, by_flow, errors};
 use super::*;
 

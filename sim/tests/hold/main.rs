@@ -1,10 +1,10 @@
 //! Flights that hold their position by poses over MAVLink, or by flow and range, through every task.
 
+mod autonomous;
 mod barometer;
-mod by_itself;
+mod faults;
 mod flow;
 mod lever;
-mod on_the_way;
 mod pose;
 mod radio;
 mod scaled;
@@ -241,7 +241,7 @@ fn without_poses_the_same_mission_fails_and_the_pilot_reads_why() {
 }
 
 #[test]
-fn poses_that_nothing_is_held_by_change_nothing() {
+fn poses_change_nothing_without_a_hold() {
     let mut s = held(2, 3.0);
     s.pilot.assist = Assist::None;
     let with = fly(&s, &mut Silent);

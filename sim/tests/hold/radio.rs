@@ -1,6 +1,6 @@
 //! The radio lost for good, with a position: straight down, and beside the pipe, not onto it.
 
-use super::by_itself::mission;
+use super::autonomous::mission;
 use super::*;
 
 /// Lost `seconds` after the first sample in `mode`; the record of the whole flight is that of the same one with a radio
@@ -86,7 +86,7 @@ fn a_radio_lost_by_hand_ends_straight_below_where_there_are_poses() {
 }
 
 /// Lost `after` s of the approach; what went wrong, if anything did.
-fn lost_on_the_way(seed: u64, sensor: PositionSensor, after: f64) -> Option<String> {
+fn lost_in_approach(seed: u64, sensor: PositionSensor, after: f64) -> Option<String> {
     let record = lost_in(Mode::Approach, after, mission(seed, sensor, false))?;
     let name = format!("{seed} {sensor:?} {after:.1} s");
     if !record.samples.iter().any(|s| s.mode == Mode::Failsafe) {
@@ -116,13 +116,13 @@ fn a_radio_lost_over_the_pipe_ends_on_the_ground_beside_it() {
         (PositionSensor::Pose, 6.0),
         (PositionSensor::Flow, 25.0),
     ] {
-        assert_eq!(lost_on_the_way(2, sensor, after), None);
+        assert_eq!(lost_in_approach(2, sensor, after), None);
     }
 }
 
 #[test]
 #[ignore = "a hundred missions: .ci/campaign flies them"]
-fn a_radio_lost_at_any_moment_of_the_way_ends_on_the_ground_beside_the_pipe() {
+fn a_radio_lost_at_any_moment_ends_on_the_ground_beside_the_pipe() {
     let cases: Vec<(u64, PositionSensor, f64)> = (1..=50)
         .flat_map(|seed| {
             let t = 1.0 + (seed as f64 * 0.618_034).fract() * 40.0;
@@ -132,7 +132,7 @@ fn a_radio_lost_at_any_moment_of_the_way_ends_on_the_ground_beside_the_pipe() {
             ]
         })
         .collect();
-    let flown = sophie_sim::parallel::each(&cases, |&(seed, sensor, t)| lost_on_the_way(seed, sensor, t));
+    let flown = sophie_sim::parallel::each(&cases, |&(seed, sensor, t)| lost_in_approach(seed, sensor, t));
     let wrong: Vec<String> = flown.into_iter().flatten().collect();
     assert!(wrong.is_empty(), "{wrong:#?}");
 }

@@ -3,7 +3,7 @@
 use sophie_control::navigation::flow_range::SightFault;
 use sophie_sim::sensors::flow::FlowFault;
 
-use super::by_itself::{campaign, mission};
+use super::autonomous::{campaign, mission};
 use super::flow::by_flow;
 use super::*;
 
@@ -56,7 +56,7 @@ fn since_power_up(seed: u64) -> Result<f64, String> {
 }
 
 #[test]
-fn one_that_is_scaled_since_power_up_is_named_in_the_take_off_and_gives_no_hold() {
+fn a_range_scaled_since_power_up_is_named_in_the_take_off_and_gives_no_hold() {
     for seed in 1..=2 {
         let after = since_power_up(seed).unwrap();
         assert!(after < 6.0, "{after:.1}");
@@ -65,7 +65,7 @@ fn one_that_is_scaled_since_power_up_is_named_in_the_take_off_and_gives_no_hold(
 
 #[test]
 #[ignore = "120 flights: .ci/campaign flies them, docs/hold.md has what has come of them"]
-fn one_that_is_scaled_is_named_where_the_vehicle_climbs_with_every_seed() {
+fn a_scaled_range_is_named_in_a_climb_with_every_seed() {
     let seeds: Vec<u64> = (1..=20).collect();
     let flights = sophie_sim::parallel::each(&seeds, |&seed| {
         let climbed = FAULTS.map(|fault| {

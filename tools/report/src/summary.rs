@@ -201,7 +201,7 @@ impl Summary {
 impl Settings {
     fn of(s: &Scenario) -> Self {
         let (v, w, p) = (&s.vehicle, &s.world, &s.pilot);
-        let pipe = p.believes.pipe(w);
+        let pipe = p.assumed.pipe(w);
         // A simulated vehicle's servos have their marks, which a new board's have not.
         let usual = Scenario::default_mission().params;
         let changed = Params::TABLE.iter().filter_map(|row| {

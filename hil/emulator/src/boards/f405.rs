@@ -1,5 +1,5 @@
-//! The STM32F405, by the emulator's STM32F427 and what that lacks: external interrupts, the routing of pins to them, the
-//! timers' DMA requests, the end of an I2C read by DMA, the two-channel timer.
+//! The STM32F405, modelled by the emulator's STM32F427 with five additions: external interrupts, the routing of pins to
+//! them, the timers' DMA requests, the end of an I2C read by DMA, and the two-channel timer.
 //!
 //! The F427 has everything that the F405 has, under the same addresses, and more: twice the flash, a third more RAM, an
 //! over-drive for 180 MHz, more ports and timers. The image is held to the F405's memory when it is read. The emulator
@@ -64,7 +64,7 @@ const NO_FLAGS: &[(Clocks, u64)] = &[(Clocks::Csr, 1 << 24)];
 const SMALL_TIMER: &str = "TIM12";
 /// The motors' timer, and the one whose DMA request moves their frames (RM0090 table 43).
 const MOTOR_TIMER: &str = "TIM8";
-/// What the streams that read the arms' buses have still to take: DMA1 streams 0 and 2.
+/// Remaining counts of DMA1 streams 0 and 2, which read the arms' buses.
 const BUS_COUNTS: [DmaRegister; 2] = [DmaRegister::S0ndtr, DmaRegister::S2ndtr];
 
 /// Bits of the flash's control register that program and that start an erase, and that of its access register that has the
@@ -145,8 +145,7 @@ pub static PADS: Pads = Pads {
     foreign: &[0x5168_5BFC],
 };
 
-/// Instances that no firmware of ours uses, or that the F405 lacks. Whoever reaches one all the same finds it listed as
-/// unimplemented, and the run failed.
+/// Instances that our firmware does not use or the F405 lacks. An access is listed as unimplemented and fails the run.
 const UNUSED: [&str; 24] = [
     "TIM1", "TIM2", "TIM3", "SPI2", "SPI3", "SPI4", "SPI5", "SPI6", "I2C3", "USART6", "UART4", "UART7",
     "UART8", "ADC2", "ADC3", "SDIO", "RTC", "GPIOE", "GPIOF", "GPIOG", "GPIOH", "GPIOI", "GPIOJ", "GPIOK",
@@ -247,7 +246,7 @@ impl F405 {
         };
         let buses = BUS_COUNTS.map(|count| {
             let count = generated::DMA1.base + u64::from(count.spec().offset);
-            // Its place is taken by `Mcu::split`.
+            // `Mcu::split` fills this slot.
             ClockStretch::new(DmaI2c::new(count))
         });
         let mut part = Self {
@@ -275,12 +274,12 @@ impl F405 {
     fn write_clocks(&mut self, now: VirtualNanos, writes: &[(Clocks, u64)]) {
         for &(register, value) in writes {
             let address = generated::RCC.base + u64::from(register.spec().offset);
-            // Refused only where there is no such register.
+            // The emulator refuses a write only to a missing register.
             let _ = Operate::write(self, now, address, Width::W32, value);
         }
     }
 
-    /// Puts an F405's identity into its register.
+    /// Writes an F405's identity to the identity register.
     fn mark_revision(&mut self) {
         let file = self.inner.bus_mut().slot_mut(self.slots.debug).registers_mut();
         file.set(Debug::DbgmcuIdcode, 0x413 | self.revision << 16);
@@ -404,11 +403,11 @@ impl Mcu for F405 {
     }
 
     fn reset(&mut self, at: VirtualNanos, cause: ResetCause) {
-        // It builds its models anew, keeping what hangs on them; ours go the same way.
+        // The emulator rebuilds its models and keeps the attached devices; ours are rebuilt alike.
         for (own, stock) in self.buses.iter_mut().zip(&mut self.inner.i2c) {
             stock.inherit(&mut own.inner.inner);
         }
-        // What the outside drives stays, which it forgets.
+        // The emulator forgets the levels that the outside drives; restore them.
         let mut ports = std::mem::take(&mut self.inner.gpio);
         self.inner.reset(at, cause);
         for (fresh, old) in self.inner.gpio.iter_mut().zip(&mut ports) {

@@ -1,4 +1,4 @@
-//! The STM32H743 with what the emulator's own part lacks, and without what the board does not use.
+//! The STM32H743: the emulator's part with additions, and without the peripherals that the board does not use.
 
 mod bus_times;
 mod i2c;
@@ -64,7 +64,7 @@ const MOTOR_TIMER: usize = 2;
 /// The Matek's pads that lead to the converter, with what ArduPilot (`MatekH743`) and PX4 (`matek/h743-slim`) say of
 /// their dividers.
 const S1: AnalogPad = AnalogPad::bare(At(1, 0), 9);
-/// Bare as S1.
+/// Bare, like pad S1.
 const S2: AnalogPad = AnalogPad::bare(At(1, 1), 5);
 /// For a receiver's signal strength, 0 to 3.3 V.
 const RSSI: AnalogPad = AnalogPad::bare(At(2, 5), 8);
@@ -140,8 +140,8 @@ pub static MATEK: Pads = Pads {
     foreign: &[0x210D_99F1, 0x5168_5B62],
 };
 
-/// Instances that no firmware of ours uses. Asking their models costs half the speed; whoever reaches one all the same
-/// finds it listed as unimplemented, and the run failed.
+/// Instances that our firmware does not use; their models would halve the speed. An access is listed as unimplemented
+/// and fails the run.
 const UNUSED: [&str; 29] = [
     "TIM1", "TIM3", "TIM15", "TIM6", "TIM7", "TIM8", "TIM12", "TIM13", "TIM14", "TIM16", "TIM17", "SPI2",
     "SPI3", "SPI4", "SPI5", "SPI6", "I2C3", "I2C4", "UART4", "UART5", "UART8", "BDMA", "DMAMUX2", "ADC2",
@@ -230,7 +230,7 @@ impl H743 {
             time: IgnoreDma(Tim::new(TIMERS[TIME_TIMER])),
             motors: EdgeProbe::new(motor_timer),
             watchdog: Watchdog::default(),
-            // Their places are taken by `Mcu::split`.
+            // `Mcu::split` fills these slots.
             buses: [(); 2].map(|()| ClockStretch::new(EagerI2c::new(I2c::with_kernel_clock(HSI_HZ)))),
             usb: UsbCore::default(),
             slots,
@@ -247,17 +247,17 @@ impl H743 {
     fn write_clocks(&mut self, now: VirtualNanos, writes: &[(Clocks, u64)]) {
         for &(register, value) in writes {
             let address = RCC.base + u64::from(register.spec().offset);
-            // Refused only where there is no such register.
+            // The emulator refuses a write only to a missing register.
             let _ = Operate::write(self, now, address, Width::W32, value);
         }
     }
 
-    /// Puts another crystal in, Hz.
+    /// Replaces the crystal, Hz.
     pub fn fit_crystal(&mut self, hz: u64) {
         self.inner.rcc.attach_crystals(hz, 0);
     }
 
-    /// Puts the watchdog back to where nothing has started it.
+    /// Resets the watchdog to its stopped state.
     pub fn still_watchdog(&mut self) {
         self.watchdog = Watchdog::default();
     }
@@ -396,7 +396,7 @@ impl Mcu for H743 {
     }
 
     fn reset(&mut self, at: VirtualNanos, cause: ResetCause) {
-        // It builds its models anew, keeping what hangs on them; ours go the same way.
+        // The emulator rebuilds its models and keeps the attached devices; ours are rebuilt alike.
         for (own, stock) in self.buses.iter_mut().zip(&mut self.inner.i2c) {
             stock.inherit(&mut own.inner.inner);
         }
@@ -471,7 +471,7 @@ mod tests {
     /// For an airspeed sensor of 5 V.
     const AIRS: AnalogPad = AnalogPad::divided(At(2, 4), 4, 2.0);
 
-    /// What the flight stack reads (Pa), through the pads `pads`, of sensors that feel `pressure` (Pa).
+    /// Pressure (Pa) that the flight stack reads through `pads` at a true `pressure` (Pa).
     fn read(pads: [AnalogPad; 4], params: &Params, pressure: f64) -> [f64; 4] {
         // R_d / (R_d + R) of 3.3 V, with 10 kΩ and 100 µS/N over 1444 mm².
         let load = pressure * 0.001_444 * 1e-4 * 10e3;
@@ -516,7 +516,7 @@ mod tests {
             (690.0..693.0).contains(&airs) && (68.5..70.0).contains(&vb2),
             "{airs} {vb2}"
         );
-        // Told of their dividers they read as the others.
+        // With their dividers declared, they read as the others do.
         let set = Params {
             fsr_scale_1: 2.0,
             fsr_scale_3: 11.0,

@@ -1,4 +1,4 @@
-//! A processor with SOPHIE's parts on its pads.
+//! An emulated processor with SOPHIE's sensors, lines and outputs on its pads.
 
 use rigless::device::Level;
 use rigless::machine::{Board, Target};
@@ -109,7 +109,7 @@ impl<C: Chip> Wired<C> {
         self.chip.hold_clock(bus, u64::from(us) * 1000)
     }
 
-    /// Flags spurious bus errors on an arm bus, one in about `every` bytes; false if the chip has no such erratum.
+    /// Flags spurious bus errors on an arm bus, one in about `every` bytes; false if the part has no such errata.
     pub fn err_on_bus(&mut self, bus: usize, every: u32) -> bool {
         self.chip.err_on_bus(bus, every)
     }
@@ -179,7 +179,7 @@ impl<C: Chip> Wired<C> {
         self.chip.line(self.pads.mavlink)
     }
 
-    /// The flow and range module's.
+    /// Port of the flow and range module.
     pub fn ground(&mut self) -> Option<&mut Line> {
         self.chip.line(self.pads.ground)
     }

@@ -102,7 +102,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn functions_are_told_apart_by_their_paths() {
+    fn functions_are_grouped_by_their_paths() {
         for (function, group) in [
             ("<sophie_control::allocation::mixer::Mixer>::allocate", "laws"),
             (

@@ -36,15 +36,15 @@ mod reg {
 }
 
 const MS: u64 = 1_000_000;
-/// From power-on and from a reset, ns.
+/// Start-up time from power-on and from a reset, ns.
 const BOOT: [u64; 2] = [400 * MS, 650 * MS];
 /// Into and out of configuration mode, ns.
 const SWITCH: [u64; 2] = [19 * MS, 7 * MS];
-/// ns.
+/// Period of the fusion, ns.
 const FUSION: u64 = 10 * MS;
 /// Rest per step of the gyroscope's calibration, ns (assumed).
 const CALIBRATION: u64 = 1000 * MS;
-/// From register 0: chip, accelerometer, magnetometer, gyroscope, software revision, boot loader.
+/// Identity registers from 0 on: chip, accelerometer, magnetometer, gyroscope, software revision, boot loader.
 const IDENTITY: [u8; 7] = [0xA0, 0xFB, 0x32, 0x0F, 0x11, 0x03, 0x15];
 const RESET_VALUES: [(u8, u8); 6] = [
     (0x36, 0x0F),
@@ -65,7 +65,7 @@ pub struct Bno055 {
     boots_at: u64,
     /// Next mode and its time, ns.
     switch: Option<(u8, u64)>,
-    /// ns.
+    /// Time of power-on or of the last reset, ns.
     since: u64,
     fused: u64,
     /// The byte that resets it is not acknowledged.

@@ -1,4 +1,4 @@
-//! The emulator's DPS310, whose signal is in whole pascals, 8 cm of air, with the fraction.
+//! The emulator's DPS310 with a resolution below its whole pascals, each 8 cm of air.
 
 use rigless::chip::dps310::{Dps310, Sdo};
 use rigless::chip::{Timeline, i2c};
@@ -12,15 +12,15 @@ const MEAS_CFG: u8 = 0x08;
 const PRESSURE: u8 = 0x01;
 /// Counts that a pascal takes off a result of 8 samples (table 9), by the coefficients of the emulator's part.
 const COUNTS_PER_PASCAL: f64 = 7_864_320.0 / 52_113.0;
-/// Milliseconds of a measurement of 8 samples after which what it will give is felt.
+/// Time from the start of a measurement of 8 samples to the pressure that it reports, ms.
 const FELT_AFTER: u8 = 14;
 
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Barometer {
     inner: Dps310,
-    /// Milliseconds until the present measurement feels the pressure.
+    /// Time until the present measurement samples the pressure, ms.
     due: u8,
-    /// Pascals that the inner part has not been given.
+    /// Fraction of a pascal that the inner part did not get.
     fraction: f64,
     /// The next byte is the register's address.
     addressed: bool,

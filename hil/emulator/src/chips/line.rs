@@ -8,7 +8,7 @@ use rigless::snapshot::store;
 use rigless::time::VirtualNanos;
 use serde::{Deserialize, Serialize};
 
-/// Data bits of a word whose noise is drawn: 8N1.
+/// Data bits of a word to which noise is added: 8N1.
 const BITS: u32 = 8;
 
 /// Both directions of a line; the port times the bytes by its rate.
@@ -16,14 +16,14 @@ const BITS: u32 = 8;
 pub struct Line {
     pub outgoing: VecDeque<u16>,
     pub incoming: Vec<u16>,
-    /// The port's own draws of noise. Runs take no snapshots.
+    /// The port's own random noise. Runs take no snapshots.
     #[serde(skip)]
     noise: Errors,
 }
 
 impl Line {
-    /// Continues the port's draws of noise, which it makes of words that it receives. It flips what it draws: flipped
-    /// beforehand, a word arrives right, as the better of three samples gives it.
+    /// Advances the port's noise by a word. The port flips the bits that the noise hits; flipped here first, the word
+    /// arrives right, as a majority of three samples would make it.
     pub fn align(&mut self, noise: Errors) {
         if self.outgoing.is_empty() {
             self.noise = noise;

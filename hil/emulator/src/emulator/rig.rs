@@ -33,7 +33,7 @@ const STALL_EVERY: u64 = 1_700_000;
 const CRYSTAL: u64 = 6_000_000;
 /// Parameter flash.
 const PARAMETERS: std::ops::Range<u64> = 0x081C_0000..0x0820_0000;
-/// Half the supply, V.
+/// Test voltage: half the supply, V.
 const HALF: f64 = 1.65;
 /// The same from resistors 20 % apart.
 const UNEQUAL: f64 = 1.5;
@@ -69,7 +69,7 @@ pub enum Defect {
     Stalls,
     /// The watchdog's clock stands still.
     Watchdog,
-    /// A reset erases what is stored.
+    /// A reset erases the stored parameters.
     Forgets,
 }
 
@@ -87,7 +87,7 @@ pub struct Ended {
 /// Reads the reference board's test image, the only rig here.
 ///
 /// # Errors
-/// One line: what is wrong with the file.
+/// One line: the mistake in the file.
 pub fn read(path: &Path) -> Result<Firmware, String> {
     Firmware::read(path, board_kind::find(MATEK.name)?)
 }

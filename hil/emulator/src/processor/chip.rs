@@ -1,5 +1,5 @@
-//! The bench's interface to a processor. The emulator has a type per part; [`same_on_this_part!`] implements the common
-//! methods.
+//! Interface of a run to an emulated processor. The emulator has a type for each part; [`same_on_this_part!`]
+//! implements the methods that all parts share.
 
 use std::fmt::Debug;
 
@@ -36,7 +36,7 @@ pub const CRYSTAL_READY: u64 = 1 << 17;
 /// Core PLL locked bit, in the same register.
 pub const PLL_LOCKED: u64 = 1 << 25;
 
-/// A processor with the bench's parts on its interfaces.
+/// A processor with the emulated chips on its interfaces.
 pub trait Chip: Mcu + Debug + Send + 'static {
     fn attach(&mut self, pads: &Pads);
     fn imu(&mut self, interface: usize) -> Option<&mut Imu>;
@@ -69,7 +69,7 @@ pub trait Chip: Mcu + Debug + Send + 'static {
         let _ = (bus, speed);
         None
     }
-    /// Flags spurious bus errors, one in about `every` bytes; false if the chip has no such erratum.
+    /// Flags a spurious bus error in one of about `every` bytes; false if the part has no such errata.
     fn err_on_bus(&mut self, bus: usize, every: u32) -> bool {
         let _ = (bus, every);
         false

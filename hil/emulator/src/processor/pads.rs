@@ -1,4 +1,4 @@
-//! Which processor pin is wired to what.
+//! Wiring of a board: the processor pin and interface of each device.
 
 use std::fmt::{self, Display, Formatter};
 
@@ -95,11 +95,11 @@ pub struct Pads {
     pub imu_select: (&'static str, u8),
     /// Data-ready pin of the sensor.
     pub imu_ready: At,
-    /// From body axes (forward, right, down) to the sensor's.
+    /// Conversion from body axes (forward, right, down) to the sensor's.
     pub imu_axes: fn([f64; 3]) -> [f64; 3],
     /// Bus and address, arms 1 to 4.
     pub arms: [(usize, u8); 4],
-    /// Bus of the barometer, and its place on it behind the arms' sensors.
+    /// Bus of the barometer, and its index on it after the arms' sensors.
     pub barometer: Option<(usize, usize)>,
     /// 1 to 4.
     pub pressure: [AnalogPad; 4],

@@ -1,5 +1,5 @@
-//! Settings of a serial port. The emulator carries words at any rate, without levels or polarity, so the settings of
-//! receiver and MAVLink are read from their ports' registers.
+//! Settings of a serial port, read from its registers and checked: the emulator itself carries words at any rate, level
+//! and polarity.
 
 use std::fmt::{self, Display, Formatter};
 
@@ -25,7 +25,7 @@ pub struct Setup {
 impl Setup {
     /// Required settings of the MAVLink line.
     pub const MAVLINK: Self = Self::plain(57_600.0);
-    /// Required settings of the line of the flow and range module, where there is one.
+    /// Required settings of the line to the flow and range module.
     pub const GROUND: Self = Self::plain(115_200.0);
 
     /// 8N1 at `rate` baud.

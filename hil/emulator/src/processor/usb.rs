@@ -1,5 +1,5 @@
-//! The USB core with no host at its socket: its flags, which the emulator's models leave as they are written, and the sleep
-//! of a bus on which nothing happens (RM0090 §34.16.2, RM0433 §57.14.6).
+//! The USB core without a host: its interrupt flags, which the emulator's models store as written, and the suspend of
+//! an idle bus (RM0090 §34.16.2, RM0433 §57.14.6).
 
 use rigless::device::{Device, DeviceContext, Level, RegisterFile};
 use rigless::emulator::InterruptLine;
@@ -7,9 +7,9 @@ use rigless::soc::stm32f427::{generated::otg_fs_global as f4, peripherals::otg::
 use rigless::soc::stm32h743::{generated::otg1_hs_global as h7, peripherals::otg::Otg as H7Otg};
 use rigless::time::{EventId, VirtualNanos};
 
-/// Flags that a one clears; the others follow what they stand for.
+/// Flags that a written one clears; the others follow their state.
 const CLEARED_BY_ONE: u64 = 0xF0B0_FC0A;
-/// `ESUSP` and `USBSUSP`, and when they rise: nothing has happened on the bus for 3 ms.
+/// `ESUSP` and `USBSUSP`, which rise after 3 ms of an idle bus.
 const SUSPENDED: u64 = 1 << 10 | 1 << 11;
 const IDLE: u64 = 3_000_000;
 /// Lets the flags through to the interrupt.

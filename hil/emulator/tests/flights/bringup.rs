@@ -9,7 +9,7 @@ use sophie_console::bringup::{self, STEPS};
 use sophie_console::port::PortName;
 use sophie_console::session::Session;
 use sophie_control::params::MotorMap;
-use sophie_emulator::bench_operator::Hands;
+use sophie_emulator::bench_operator::BenchOperator;
 use sophie_emulator::closed_loop::Setup;
 use sophie_emulator::flight::Stood;
 use sophie_emulator::terminal::Sockets;
@@ -57,8 +57,8 @@ struct Walked {
 }
 
 /// A new H743 on the table, and `builder` at its console.
-fn walk(folder: &Folder, builder: impl FnOnce(Hands) -> Builder) -> Walked {
-    let hands = Hands::default();
+fn walk(folder: &Folder, builder: impl FnOnce(BenchOperator) -> Builder) -> Walked {
+    let hands = BenchOperator::default();
     // The motors of 2 and 3 hang at each other's output.
     hands.change(|held| held.wiring = MotorMap::M1324);
     let mut builder = builder(hands.clone());

@@ -7,7 +7,7 @@ use sophie_console::bringup::{Reply, User};
 use sophie_control::calibration::Face;
 use sophie_control::params::Params;
 use sophie_control::pilot::rc::{ArmChoice, StickMode, Sticks};
-use sophie_emulator::bench_operator::{Hands, Held};
+use sophie_emulator::bench_operator::{BenchOperator, Handling};
 
 /// Board's time in which what hands have changed has gone through turn and filters, ms.
 const SETTLED: u64 = 800;
@@ -23,18 +23,18 @@ const THUMB: f64 = 900.0;
 /// What hands do for so long, ms of the board's time.
 struct Move {
     ms: u64,
-    hands: fn(&mut Held),
+    hands: fn(&mut Handling),
 }
 
 pub(super) struct Builder {
-    hands: Hands,
+    hands: BenchOperator,
     /// Stops at this step.
     until: Option<&'static str>,
     said: String,
     /// Present step, and the line of it that was said last.
     step: String,
     last: String,
-    /// Hands' moves of a live step that are still to be made, and the board's time at which the last is over.
+    /// BenchOperator' moves of a live step that are still to be made, and the board's time at which the last is over.
     moves: Option<VecDeque<Move>>,
     over: u64,
     /// Moves of the servos.
@@ -44,7 +44,7 @@ pub(super) struct Builder {
 }
 
 impl Builder {
-    pub(super) fn new(hands: Hands, until: Option<&'static str>) -> Self {
+    pub(super) fn new(hands: BenchOperator, until: Option<&'static str>) -> Self {
         Self {
             hands,
             until,
@@ -89,8 +89,8 @@ impl Builder {
         number.unwrap_or(1) - 1
     }
 
-    /// Hands do that, and leave it so until it has gone through; what is so already takes no time.
-    fn does(&self, change: impl FnOnce(&mut Held)) {
+    /// BenchOperator do that, and leave it so until it has gone through; what is so already takes no time.
+    fn does(&self, change: impl FnOnce(&mut Handling)) {
         let mut changed = false;
         self.hands.change(|held| {
             let before = held.clone();
@@ -248,7 +248,7 @@ fn ends(sign: f32, on: bool) -> Sticks {
 
 /// What hands do in the live step `id`.
 fn live(id: &str) -> VecDeque<Move> {
-    let all: &[fn(&mut Held)] = match id {
+    let all: &[fn(&mut Handling)] = match id {
         "live-imu" => &[
             |held| held.below = Face::Right,
             |held| held.below = Face::Nose,

@@ -214,7 +214,7 @@ fn a_processor_that_stands_still_is_reset_by_its_watchdog_with_the_motors_stoppe
 }
 
 #[test]
-fn a_pulled_reset_pin_is_told_as_such() {
+fn a_pulled_reset_pin_is_named_as_the_cause() {
     let flight = with_small(Trouble::Board(BoardFault::ResetPin), AIRBORNE + 2.0);
     assert!(
         logged_at(&flight, AIRBORNE, "start after Pin").is_some(),
@@ -298,7 +298,7 @@ fn overflows(task: &'static str, small: bool) {
 
 #[test]
 #[ignore = "minutes of emulated flight: .ci/campaign flies it"]
-fn a_stack_that_overflows_stops_the_motors_and_is_told_at_the_next_start() {
+fn a_stack_overflow_stops_the_motors_and_is_reported_at_the_next_start() {
     overflows("control", false);
 }
 

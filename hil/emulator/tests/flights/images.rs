@@ -14,7 +14,7 @@ fn refused(name: &str, bytes: &[u8]) -> String {
 }
 
 #[test]
-fn what_is_no_image_of_the_board_is_refused_in_one_line() {
+fn an_image_of_another_board_or_none_is_refused_in_one_line() {
     assert!(refused("text", b"no program").contains("is no ELF file"));
     let host = std::fs::read(std::env::current_exe().unwrap()).unwrap();
     assert!(refused("host", &host).contains("not for a 32-bit Arm"));

@@ -16,7 +16,7 @@ fn start(change: impl FnOnce(&mut Scenario)) -> Scenario {
 }
 
 #[test]
-fn the_image_flies_what_is_stored() {
+fn the_image_flies_with_stored_parameters() {
     let scenario = start(|s| {
         s.params.rc_protocol = RcProtocol::Sbus;
         s.params.motor_protocol = MotorProtocol::Dshot600;
@@ -34,7 +34,7 @@ fn the_image_flies_what_is_stored() {
 }
 
 #[test]
-fn the_small_board_flies_what_is_stored() {
+fn the_small_board_flies_with_stored_parameters() {
     let scenario = start(|s| s.params.rc_protocol = RcProtocol::Sbus);
     let flight = fly_small(&scenario, &[]);
     assert!(
@@ -48,7 +48,7 @@ fn the_small_board_flies_what_is_stored() {
 
 #[test]
 #[ignore = "minutes of emulated flight: .ci/campaign flies it"]
-fn corrupt_storage_starts_with_the_defaults_says_so_and_forbids_arming() {
+fn corrupt_storage_starts_with_the_defaults_reports_it_and_refuses_arming() {
     let scenario = start(|s| s.params.motor_protocol = MotorProtocol::Dshot600);
     let flight = fly(
         &scenario,

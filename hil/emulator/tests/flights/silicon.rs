@@ -1,6 +1,6 @@
 //! Start-up checks of the chip, and failed clocks.
 
-use sophie_emulator::silicon::{self, Look};
+use sophie_emulator::silicon::{self, SiliconCheck};
 use sophie_emulator::wires::BoardFault;
 
 use super::*;
@@ -29,30 +29,30 @@ fn on_the_bench(board: &str, seconds: f64, fault: Option<BoardFault>) -> Flight 
     }
 }
 
-fn looks(flight: &Flight) -> Vec<Look> {
+fn checks(flight: &Flight) -> Vec<SiliconCheck> {
     let lines = flight.board.lines.iter();
     lines.filter_map(|line| silicon::parse(&line.text)).collect()
 }
 
-fn look(flight: &Flight, name: &str) -> Look {
-    let all = looks(flight);
-    let found = all.iter().find(|look| look.name == name);
+fn check(flight: &Flight, name: &str) -> SiliconCheck {
+    let all = checks(flight);
+    let found = all.iter().find(|check| check.name == name);
     found
         .unwrap_or_else(|| panic!("no {name}: {}", log(flight)))
         .clone()
 }
 
 #[test]
-fn every_look_at_a_sound_chip_is_as_expected() {
+fn every_start_up_check_of_a_sound_chip_passes() {
     for (board, [caches, on]) in BOARDS {
         let flight = on_the_bench(board, 1.5, None);
-        let all = looks(&flight);
+        let all = checks(&flight);
         assert!(
-            all.len() >= 8 && all.iter().all(|look| look.ok),
+            all.len() >= 8 && all.iter().all(|check| check.ok),
             "{board}: {all:#?}"
         );
-        assert_eq!(look(&flight, caches).read, on, "{board}");
-        assert_eq!(look(&flight, "brown-out level").read, "3", "{board}");
+        assert_eq!(check(&flight, caches).read, on, "{board}");
+        assert_eq!(check(&flight, "brown-out level").read, "3", "{board}");
         assert_eq!(flight.gaps, [], "{board}");
     }
 }
@@ -61,7 +61,7 @@ fn every_look_at_a_sound_chip_is_as_expected() {
 fn a_chip_without_a_brown_out_level_does_not_arm() {
     for (board, _) in BOARDS {
         let flight = on_the_bench(board, 1.5, Some(BoardFault::FactoryOptions));
-        let level = look(&flight, "brown-out level");
+        let level = check(&flight, "brown-out level");
         assert_eq!((level.read.as_str(), level.ok), ("0", false), "{board}");
         assert!(
             logged_at(&flight, 0.0, "arming blocked: brown-out level not set").is_some(),
@@ -75,7 +75,7 @@ fn a_chip_without_a_brown_out_level_does_not_arm() {
 #[test]
 fn a_first_revision_flies_without_prefetch_or_not_at_all() {
     let flight = on_the_bench("f405", 1.5, Some(BoardFault::FirstRevision));
-    let caches = look(&flight, "flash acceleration");
+    let caches = check(&flight, "flash acceleration");
     assert_eq!((caches.read.as_str(), caches.ok), ("prefetch- I+ D+", true));
     assert_eq!(
         logged_at(&flight, 0.0, "chip not as expected"),
@@ -85,7 +85,7 @@ fn a_first_revision_flies_without_prefetch_or_not_at_all() {
     );
 
     let flight = on_the_bench("matek-h743", 1.5, Some(BoardFault::FirstRevision));
-    let revision = look(&flight, "revision");
+    let revision = check(&flight, "revision");
     assert_eq!((revision.read.as_str(), revision.ok), ("0x450 0x1003", false));
     assert!(
         logged_at(&flight, 0.0, "arming blocked: chip not as expected").is_some(),
@@ -95,7 +95,7 @@ fn a_first_revision_flies_without_prefetch_or_not_at_all() {
 }
 
 #[test]
-fn another_firmwares_parameters_are_named_with_what_to_do() {
+fn parameters_of_another_firmware_are_named_with_a_remedy() {
     // The emulated F405's flash cannot be written.
     let flight = on_the_bench("matek-h743", 1.5, Some(BoardFault::ForeignParameters));
     for words in [
@@ -109,7 +109,7 @@ fn another_firmwares_parameters_are_named_with_what_to_do() {
         );
     }
     assert_eq!(logged_at(&flight, 0.0, "unreadable"), None, "{}", log(&flight));
-    assert_eq!(look(&flight, "stored data of").read, "ArduPilot");
+    assert_eq!(check(&flight, "stored data of").read, "ArduPilot");
 }
 
 /// Requires a message and repeated resets, motor pins low.
@@ -147,7 +147,7 @@ fn a_start_by_the_chips_loader_begins_with_one_reset() {
             "{board}: {}",
             log(&flight)
         );
-        assert!(looks(&flight).iter().all(|look| look.ok), "{board}");
+        assert!(checks(&flight).iter().all(|check| check.ok), "{board}");
         // On the H7 a PLL that runs refuses its dividers, which would be listed here.
         assert_eq!(flight.gaps, [], "{board}");
     }
@@ -167,13 +167,13 @@ fn clocks_that_outlive_a_reset_are_reset_once() {
 }
 
 #[test]
-fn a_crystal_that_does_not_start_is_told_and_resets_the_board() {
+fn a_crystal_that_does_not_start_is_reported_and_resets_the_board() {
     let message = "the run before ended with: the 8 MHz crystal does not start";
     never_starts("f405", BoardFault::NoCrystal, message, "IWDG");
 }
 
 #[test]
-fn a_pll_that_never_locks_is_told_and_ends_by_the_watchdog() {
+fn a_pll_that_never_locks_is_reported_and_ends_by_the_watchdog() {
     let message = "the run before ended with: the clocks did not start: a PLL does not lock";
     never_starts("f405", BoardFault::NoPll, message, "IWDG");
 }

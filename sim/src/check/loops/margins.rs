@@ -10,14 +10,14 @@ pub struct Margins {
     /// Factor by which the gain may rise or fall, the nearer of both; below 1 for an oscillating loop: the share of its
     /// gain at which it is stable.
     pub gain: f64,
-    /// Loss of phase at which it oscillates, rad; negative if it does.
+    /// Phase margin, rad; negative for an oscillating loop.
     pub phase: f64,
     /// Disk margin: the loop is stable with any factor (1 + δ/2) / (1 - δ/2), |δ| below it, on its gain: gain and phase off
     /// at once. 2 at most for a loop that a gain of 0 leaves stable; 0 for an oscillating one.
     pub disk: f64,
-    /// Frequency at which that is least, rad/s.
+    /// Frequency of the disk margin, rad/s.
     pub critical: f64,
-    /// Highest frequency at which the gain is 1, rad/s (bandwidth); 0 if there is none.
+    /// Highest frequency at which the gain is 1, rad/s (bandwidth); 0 without one.
     pub crossover: f64,
 }
 

@@ -1,4 +1,4 @@
-//! The roll loop of a vehicle on a pipe, where it acts with [`RESTING_ROLL_GAIN`] times its moment.
+//! The roll loop of a vehicle on a pipe, with [`RESTING_ROLL_GAIN`] times its moment.
 //!
 //! In the air P = A/(I s), A motors and arms. Standing, the body rocks on its pads at ±w about the middle between them, h
 //! below its centre of mass: P' = P I s² / (J s² + c s + k), J = I + m h², k = Σ k_pad w² - m g h, c = Σ c_pad w². Sliding on
@@ -19,7 +19,7 @@ use crate::scenario::Scenario;
 
 const ROLL: usize = 0;
 
-/// Where the vehicle is while the roll loop takes it to rest on a pipe.
+/// Place of the vehicle while the roll loop brings it to rest on a pipe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Place {
     /// Off the pipe again, after a bounce.
@@ -49,7 +49,8 @@ pub fn resting_margins(scenario: &Scenario, place: Place, share: f64) -> Margins
     Margins::of(&curve)
 }
 
-/// Growth of a slide on a pipe of `diameter` m without friction, 1/s: with the loop, and without. 0: it comes back.
+/// Growth rate of a slide on a pipe of `diameter` m without friction, 1/s, with the loop and without; 0 if the vehicle
+/// returns.
 #[must_use]
 pub fn slide(scenario: &Scenario, diameter: f64) -> (f64, f64) {
     let (body, p) = (&scenario.vehicle.body, &scenario.params);

@@ -30,8 +30,9 @@ fn stiff_level_arms_leave_the_motor_and_the_inertia() {
 
 #[test]
 fn arms_that_differ_turn_no_other_axis_into_the_loop() {
-    // A vehicle that yaws 1 rad/s precesses at a few tenths of a hertz, where the loop of pitch has a gain of 10 to 100: open
-    // in all axes it was found to oscillate at more than a quarter of its gain, and flew.
+    // A vehicle that yaws at 1 rad/s precesses at a few tenths of a hertz, where the pitch loop has a gain of 10 to
+    // 100. With all axes open the identification called it oscillating at more than a quarter of its gain, but it
+    // flies.
     let mut s = Scenario::default_mission();
     let (alike, matched) = (Hovering::of(&s).response(1), margins(&s));
     s.vehicle.arm_gain = [1.2, 0.8, 1.1, 0.9];

@@ -30,7 +30,7 @@ const PLANT_STEPS: u32 = (DT / STEP) as u32;
 const TRIM_STEPS: u64 = 3000;
 /// Just enough to hold an attitude meanwhile, 1/s, whatever gains are judged.
 const GENTLE: [f32; 4] = [1.5, 3.0, 0.5, 1.0];
-/// Per reading of the arm sensors.
+/// Steps per reading of the arm sensors.
 const ARM_STEPS: u64 = 10;
 /// Largest share of full thrust for hover: beyond it rotors cannot respond, and the thrust row reports it.
 const HOVER_SHARE: f64 = 0.9;
@@ -43,7 +43,7 @@ const LONGEST: usize = 5000;
 const ENDED: f64 = 1e-3;
 /// Steps to stay below it: two periods of the slowest arm mode, 1 Hz, fit in.
 const QUIET: usize = 300;
-/// m, NED: off ground and pipe.
+/// Position of the vehicle, m, NED: off ground and pipe.
 const PLACE: DVec3 = DVec3::new(0.0, 0.0, -1000.0);
 
 #[cfg(test)]
@@ -60,7 +60,7 @@ pub struct Hovering {
     mixing: Mixing<Mixer>,
     mix: MixOutput,
     params: Params,
-    /// Of the settled hover.
+    /// Rotor wrench of the settled hover.
     wrench: Wrench,
     /// Scale of the impulses for which the rotors have room.
     push: f64,
@@ -125,7 +125,7 @@ impl Hovering {
         }
     }
 
-    /// What the gentle loops ask for.
+    /// Moments of the gentle loops.
     fn held(&mut self) -> Wrench {
         let pose = self.plant.pose();
         let [x, y, z, w] = pose.attitude.to_array().map(|q| q as f32);

@@ -35,14 +35,14 @@ pub struct BeamArm {
     contact: BeamContact,
     /// Middle and tip, as `q` and `rate` have them.
     places: [Point; 2],
-    /// Of the tilt.
+    /// Sine of the tilt.
     sin: f64,
     cos: f64,
-    /// Of the twist.
+    /// Sine of the twist.
     twist_sin: f64,
     twist_cos: f64,
     thrust: f64,
-    /// Of this step.
+    /// Equations of this step.
     equations: Equations,
 }
 
@@ -60,7 +60,7 @@ struct Equations {
 }
 
 impl BeamArm {
-    /// Arm `index`, 0 to 3, without thrust; its tip on the ground where it would droop below.
+    /// Arm `index`, 0 to 3, without thrust. If it would droop below the ground, its tip rests on it.
     #[must_use]
     pub fn new(index: usize, spec: BeamSpec) -> Self {
         // A tip held up by a force adds β (ξ - ξ²/2) to the slope, L β/3 to the height.
@@ -99,7 +99,7 @@ impl BeamArm {
         self.q
     }
 
-    /// Of motor and propeller about the arm, rad.
+    /// Twist of motor and propeller about the arm, rad.
     #[must_use]
     pub fn twist(&self) -> f64 {
         self.twist
@@ -161,7 +161,7 @@ impl BeamArm {
         let Carrier { omega, gravity, .. } = *carrier;
         let masses = self.spec.masses;
         let (axis, (tangent, normal)) = (self.axis(), self.tip_axes());
-        // What rates alone do to the motor's angular acceleration.
+        // Part of the motor's angular acceleration that depends on rates alone.
         let tip_rate = self.tip_rate();
         let turning =
             normal * (self.twist_rate * tip_rate) + omega.cross(axis * tip_rate + tangent * self.twist_rate);
@@ -236,7 +236,7 @@ impl Carried for BeamArm {
         for (point, kg) in self.places.iter().zip([masses.middle, masses.tip]) {
             mass.add_point(kg, self.position(point));
         }
-        // The motor turns with the body, but for what the twist gives way.
+        // The motor turns with the body except for the twist.
         mass.add_inertia(masses.block, tangent);
         let [c, d] = e.columns;
         let [[aa, ab], [_, bb]] = e.inverse;
@@ -286,7 +286,7 @@ impl Flexible for BeamArm {
         let (tangent, _) = self.tip_axes();
         let twist = self.spec.twist;
         let twisting = moment.dot(tangent) - twist.stiffness * self.twist - twist.damping * self.twist_rate;
-        // An arm whose mass the body does not feel is one on a level bench.
+        // An arm without coupling to the body is one on a level bench.
         let bench = Carrier {
             omega: DVec3::ZERO,
             gravity: DVec3::new(0.0, 0.0, GRAVITY),

@@ -1,4 +1,4 @@
-//! What an arm carries and where.
+//! Point masses of an arm and their positions.
 
 use super::super::body::{ArmPoint, BodySpec};
 use super::super::contact::{ARM_LENGTH, ARM_X, HINGE_Z};
@@ -20,16 +20,16 @@ pub const MIDDLE: f64 = 0.5;
 /// moment and inertia of a straight arm as they are. The root's share belongs to the body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Masses {
-    /// Halfway along the arm, kg.
+    /// Mass halfway along the arm, kg.
     pub middle: f64,
-    /// At the tip, motor included, kg.
+    /// Mass at the tip, motor included, kg.
     pub tip: f64,
-    /// Of motor and propeller about their own centre, any axis, kg·m².
+    /// Inertia of motor and propeller about their own centre, any axis, kg·m².
     pub block: f64,
 }
 
 impl Masses {
-    /// Of a vehicle's arms: Table II's, or less where the vehicle's inertia or mass has no room for them.
+    /// Masses of a vehicle's arms: those of Table II, or less if the vehicle's inertia or mass is too small for them.
     #[must_use]
     pub fn of(spec: &BodySpec) -> Self {
         let whole = Self::scaled(1.0);
@@ -44,7 +44,7 @@ impl Masses {
         Self::scaled(room.into_iter().fold(1.0, f64::min))
     }
 
-    /// `share` of Table II's.
+    /// The masses of Table II times `share`.
     #[must_use]
     pub fn scaled(share: f64) -> Self {
         Self {

@@ -13,7 +13,7 @@ use crate::plant::load::Load;
 const RISE: f64 = 10.0;
 /// Beyond any tendon's, N.
 const MOST: f64 = 400.0;
-/// Deepest tilt that is looked at, rad.
+/// Deepest tilt of the search, rad.
 const DEEPEST: f64 = -2.0;
 /// Time to rest without a tendon, s.
 const SETTLE: f64 = 1.0;
@@ -57,7 +57,7 @@ pub struct SlowArm {
     lever: f64,
     thrust: f64,
     pipe: Option<Pipe>,
-    /// At the sensor, Pa.
+    /// Pressure at the sensor, Pa.
     pub pressure: f64,
 }
 
@@ -90,7 +90,7 @@ impl SlowArm {
         }
     }
 
-    /// Force (N) that presses with `target` Pa, from no force up; `None` where none does.
+    /// Least force (N) that presses with `target` Pa; `None` if no force does.
     #[must_use]
     pub fn pull_to(mut self, target: f64) -> Option<f64> {
         let mut force = 0.0;

@@ -1,4 +1,4 @@
-//! The beam's section: which moment bends it how much, so that its tip follows Eq. 1.
+//! The beam's section: curvature over moment, chosen so that the tip follows Eq. 1.
 //!
 //! A thrust T bends the section at ξ by the moment M = T L (1 - ξ). With the curvature c1 M + c2 M² the tip tilts by
 //! c1 T L²/2 + c2 T² L³/3; Eq. 1's A T + B T² therefore needs c1 = 2A/L², c2 = 3B/L³. A taper e(ξ) divides the curvature. As Eq. 1 is measured with the arm's
@@ -19,7 +19,7 @@ const GAUSS: [(f64, f64); 3] = [
     (0.5, 8.0 / 18.0),
     (0.887_298_334_620_741_7, 5.0 / 18.0),
 ];
-/// N: the damping ratio holds here.
+/// Hover thrust, N: the damping ratio holds here.
 const HOVER_THRUST: f64 = 4.425;
 
 /// An arm as built.

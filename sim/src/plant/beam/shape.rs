@@ -1,4 +1,4 @@
-//! Where the bent arm's points are, and how they move with the shape.
+//! Positions of points on the bent arm, and their derivatives by the shape.
 //!
 //! In the arm's plane: `out` from the root, `up` from the neutral line at the root. r(ξ) = L ∫ (cos θ, sin θ) by Gauss's
 //! two points on each piece. Derivatives are those of the sum, so that forces and energy agree exactly.
@@ -12,15 +12,15 @@ const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 /// A point of the neutral line.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Point {
-    /// m.
+    /// Distance from the root, outward, m.
     pub out: f64,
-    /// m.
+    /// Height over the neutral line at the root, m.
     pub up: f64,
     /// ∂out/∂q, m.
     pub out_by: PerTerm,
     /// ∂up/∂q, m.
     pub up_by: PerTerm,
-    /// What the rates alone do to the acceleration along `out` and `up`, m/s².
+    /// Part of the acceleration along `out` and `up` that depends on rates alone, m/s².
     pub bias: (f64, f64),
 }
 

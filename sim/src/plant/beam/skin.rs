@@ -15,20 +15,20 @@ use crate::plant::load::Load;
 /// Shape, motion and place of an arm.
 #[derive(Clone, Copy, Debug)]
 pub struct Bent {
-    /// rad.
+    /// Terms of the shape, rad.
     pub q: PerTerm,
-    /// rad/s.
+    /// Rates of the terms, rad/s.
     pub rate: PerTerm,
-    /// Of the arm, m, body.
+    /// Root of the arm, m, body.
     pub x: f64,
-    /// +1 on the right.
+    /// Side of the arm: +1 right, -1 left.
     pub side: f64,
 }
 
 /// A point of the arm that may touch, body axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spot {
-    /// m.
+    /// Position, m.
     pub place: DVec3,
     /// ∂place/∂q, m.
     pub by: [DVec3; TERMS],

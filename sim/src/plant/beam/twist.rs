@@ -14,9 +14,9 @@ pub const STIFFNESS_RATIO: f64 = 0.562;
 /// Of one arm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TwistSpec {
-    /// N·m/rad.
+    /// Stiffness, N·m/rad.
     pub stiffness: f64,
-    /// N·m·s/rad.
+    /// Damping, N·m·s/rad.
     pub damping: f64,
 }
 

@@ -17,7 +17,7 @@ use crate::plant::mass_matrix::MassMatrix;
 
 /// Motor, propeller and the arm's share, kg (assumed; gives 5 Hz in hover).
 pub const TIP_MASS: f64 = 0.077;
-/// The mass that an arm of one hinge carries.
+/// Point mass of an arm on one hinge.
 pub const TIP: [ArmPoint; 1] = [ArmPoint {
     mass: TIP_MASS,
     out: ARM_LENGTH,
@@ -25,35 +25,35 @@ pub const TIP: [ArmPoint; 1] = [ArmPoint {
 }];
 /// A1, A2, B1, B2 of Eq. 1 (paper, Table I).
 pub const TABLE_1: [f64; 4] = [2.4387, -0.1997, -0.162, 0.0151];
-/// N: half of the paper's largest.
+/// Level thrust, N: half of the paper's largest.
 const LEVEL_THRUST: f64 = 4.15;
-/// N: the damping ratio holds here.
+/// Hover thrust, N: the damping ratio holds here.
 const HOVER_THRUST: f64 = 4.425;
-/// Over the compliance at rest, for large thrusts, where Eq. 1's parabola turns.
+/// Least compliance over that at rest, for large thrusts, beyond the turn of Eq. 1's parabola.
 const LEAST_COMPLIANCE: f64 = 0.15;
 
 /// An arm as built.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ArmSpec {
     offset: f64,
-    /// Of the nominal arm, rad/N and rad/N².
+    /// Linear and quadratic coefficients of the nominal arm, rad/N and rad/N².
     nominal: (f64, f64),
-    /// rad/N.
+    /// Linear coefficient, rad/N.
     linear: f64,
-    /// rad/N².
+    /// Quadratic coefficient, rad/N².
     quadratic: f64,
     /// Thrust beyond which the spring is linear, N.
     knee: f64,
-    /// N·m·s/rad.
+    /// Damping, N·m·s/rad.
     damping: f64,
 }
 
-/// An arm's print.
+/// Parameters of a printed arm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ArmPrint {
     /// A1, A2, B1, B2: °/N, °/(N %), °/N², °/(N² %).
     pub coefficients: [f64; 4],
-    /// %.
+    /// Infill, %.
     pub infill: f64,
     /// Gain on Eq. 1's elastic term.
     pub gain_k: f64,

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::*;
 
 #[test]
-fn bad_values_name_file_line_key_value_and_what_is_allowed() {
+fn bad_values_name_file_line_key_value_and_allowed_range() {
     for (text, line) in [
         (
             "[vehicle]\n\ninfill = 3.5",
@@ -208,7 +208,7 @@ fn steps_must_make_a_mission() {
 }
 
 #[test]
-fn what_is_no_toml_is_refused_in_one_line() {
+fn invalid_toml_is_refused_in_one_line() {
     for text in [
         "infill = ",
         "[vehicle",

@@ -1,4 +1,4 @@
-//! The emulator's I2C interface, with what that lacks:
+//! The emulator's I2C interface with two additions:
 //!
 //! - no acknowledge for the last byte of a DMA read. The part's DMA controller signals that byte (RM0090 §27.3.7, bit
 //!   LAST); otherwise the emulator reads one byte too many;

@@ -1,4 +1,4 @@
-//! Checks an I2C's times against its mode: the emulator's chips answer at any.
+//! Checks the timing of an I2C interface against its mode. The emulator's chips answer at any timing.
 
 use sophie_control::params::ArmBusSpeed;
 
@@ -43,7 +43,7 @@ mod tests {
     }
 
     #[test]
-    fn a_time_that_a_bus_does_not_want_is_told() {
+    fn a_wrong_bus_timing_is_reported() {
         let wrong = |fields| wrong(register(fields), 100e6, ArmBusSpeed::Fast);
         assert_eq!(wrong([2, 13, 8, 26, 54]), None);
         for (fields, complaint) in [

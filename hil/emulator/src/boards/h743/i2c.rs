@@ -1,7 +1,7 @@
-//! The emulator's I2C interface, with what that lacks:
+//! The emulator's I2C interface with two additions:
 //!
-//! - spurious bus errors: F7 and H7 flag some as a master while the transfer continues (ST's errata, "Spurious bus error
-//!   detection in master mode");
+//! - spurious bus errors: as a master, F7 and H7 flag some while the transfer continues (ST's errata, "Spurious bus
+//! error detection in master mode");
 //! - a data register that asks for its next byte as soon as the last one has moved on to the wire, and not only after its
 //!   acknowledge (RM0433 §47.9.7, TXIS; ST's own driver flushes that byte after a missing acknowledge).
 
@@ -15,7 +15,7 @@ pub struct EagerI2c {
     pub inner: I2c,
     /// One bus error in about this many bytes; 0: none.
     pub errors: u32,
-    /// Of the generator that draws them (Numerical Recipes' constants).
+    /// State of the generator that places them (Numerical Recipes' constants).
     state: u32,
     /// Bytes that the transfer will still ask for.
     left: u64,

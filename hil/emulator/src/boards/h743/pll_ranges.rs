@@ -1,4 +1,4 @@
-//! Checks the PLLs' ranges: the emulator's lock in any, real ones do not.
+//! Checks the frequency ranges of the PLLs. The emulator's PLLs lock at any frequency, real ones do not.
 
 /// Clock registers: `CR`, `PLLCKSELR`, `PLLCFGR` and each PLL's `DIVR`.
 pub struct Settings {
@@ -8,7 +8,7 @@ pub struct Settings {
     pub multipliers: [u64; 3],
 }
 
-/// Of the input ranges, MHz (RM0433 §8.7.12).
+/// Limits of the input ranges, MHz (RM0433 §8.7.12).
 const INPUTS: [[f64; 2]; 4] = [[1.0, 2.0], [2.0, 4.0], [4.0, 8.0], [8.0, 16.0]];
 /// Wide and medium oscillator, MHz (RM0433 §8.5.5, datasheet of revision V).
 const WIDE: [f64; 2] = [192.0, 836.0];
@@ -61,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pll_outside_its_range_is_told() {
+    fn a_pll_outside_its_range_is_reported() {
         assert_eq!(first(1, 100, 3, 0), None);
         assert_eq!(first(4, 100, 1, 0), None);
         for ((divider, multiplier, input, medium), complaint) in [

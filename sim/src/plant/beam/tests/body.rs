@@ -1,4 +1,4 @@
-//! Arms on a body that moves: energy, momentum, and the signs of what rotors do.
+//! Arms on a moving body: energy, momentum, and the signs of the rotors' moments.
 
 use glam::DQuat;
 
@@ -7,7 +7,7 @@ use super::super::shape::points;
 use super::*;
 use crate::plant::contact::{ARM_LENGTH, HINGE_Z, Pose};
 
-/// A vehicle that nothing holds, without weight.
+/// A free vehicle without weight.
 struct Loose {
     body: Body,
     pose: Pose,
@@ -139,7 +139,7 @@ fn lost(dt: f64) -> [f64; 3] {
 
 #[test]
 fn nothing_is_lost_without_damping() {
-    // What is missing is the step's: it goes with its length.
+    // The error comes from the step and shrinks with its length.
     let (long, short) = (lost(STEP / 5.0), lost(STEP / 10.0));
     assert!(long[0] < 0.1 && long[1] < 0.005 && long[2] < 0.005, "{long:?}");
     for (long, short) in long.into_iter().zip(short) {

@@ -108,7 +108,7 @@ fn force_for(target: f64, diameter: f64, lever: f64, thrust: f64) -> f64 {
 }
 
 #[test]
-fn the_tendon_of_a_lying_arm_takes_what_a_beam_of_many_terms_takes() {
+fn the_tendon_force_of_a_lying_arm_is_that_of_a_beam_of_many_terms() {
     // A beam of six terms with the same law on the same three stations, solved apart: 21.8 N with the rotor stopped and
     // 31.6 N at 2.5 N for 950 Pa with h = 25 mm, at -68° and -74°.
     for (thrust, force, tilt) in [(0.0, 21.8, -68.2), (2.5, 31.6, -74.1)] {
@@ -121,7 +121,7 @@ fn the_tendon_of_a_lying_arm_takes_what_a_beam_of_many_terms_takes() {
 }
 
 #[test]
-fn a_thrust_takes_less_tendon_off_the_pipe_than_one_hinge_says() {
+fn a_thrust_relieves_the_tendon_less_than_the_hinge_model_predicts() {
     // One hinge: L/h = 11.9 N/N at 15 mm. A beam: 0.55 of it.
     let per_thrust =
         (force_for(950.0, 0.30, TENDON_LEVER, 2.5) - force_for(950.0, 0.30, TENDON_LEVER, 0.0)) / 2.5;

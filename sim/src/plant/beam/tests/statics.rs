@@ -101,7 +101,7 @@ fn the_tip_follows_equation_1_under_thrust_alone() {
 }
 
 #[test]
-fn a_free_arm_bends_by_two_levers_over_its_length_of_what_a_thrust_does() {
+fn a_tendon_bends_a_free_arm_by_two_levers_over_its_length_of_a_thrust() {
     // ρ 6.9 below rest: 8.22 °/N by thrust, 2h/L of it by a tendon at h = 15 mm: 1.385 °/N.
     let spec = built(6.9);
     let at = |force: f64| settled(spec, &tendon(-super::super::TENDON_LEVER * force)).tilt();

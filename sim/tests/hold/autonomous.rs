@@ -30,7 +30,7 @@ pub(super) fn mission(seed: u64, sensors: PositionSensor, calm: bool) -> Scenari
     ];
     s.time_limit = 900.0;
     s.sensors.position = sensors;
-    s.pilot.assist = Assist::Itself;
+    s.pilot.assist = Assist::Autonomous;
     s.world.pipe_length = 3.6;
     if calm {
         (s.world.gust_force, s.world.gust_moment, s.world.steady_wind) = (0.0, 0.0, 0.0);
@@ -224,7 +224,7 @@ fn wind_across_the_pipe_costs_no_more_than_along_it() {
 }
 
 #[test]
-fn a_pose_or_a_place_of_the_pipe_that_fails_on_the_way_ends_it_by_its_name() {
+fn a_pose_or_target_that_fails_during_the_approach_ends_it_by_name() {
     let cases = [
         (PoseFault::TargetSilent, Reason::TargetStale.text()),
         (PoseFault::TargetJumps, Reason::TargetJumps.text()),

@@ -1,15 +1,15 @@
 //! Flow, range, poses and the place of the pipe that fail at any moment of perching and leaving by themselves.
 
-mod draw;
+mod sample;
 
-use draw::Draw;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
+use sample::FaultSample;
 use sophie_control::navigation::{external_pose::PoseFault as Called, flow_range::SightFault};
 use sophie_sim::sensors::flow::FlowFault;
 use sophie_sim::sensors::pose::PoseFault;
 
-use super::by_itself::mission;
+use super::autonomous::mission;
 use super::*;
 
 /// For how long it fails, s.
@@ -158,23 +158,23 @@ fn flown(seed: u64, fault: Fault, part: Part, at: f64) -> Option<String> {
 }
 
 #[test]
-fn what_fails_at_any_moment_is_named_and_harms_nothing() {
-    let wrong = Draw::of(1, &[2], 12).judge();
+fn a_fault_at_any_moment_is_named_and_harms_nothing() {
+    let wrong = FaultSample::of(1, &[2], 12).judge();
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
 #[test]
 #[ignore = "two hundred missions: .ci/campaign flies them, docs/hold.md has what has come of them"]
-fn what_fails_at_any_moment_is_named_and_harms_nothing_with_many_seeds() {
-    let wrong = Draw::of(2, &[1, 2, 3, 4, 5, 6, 7, 8], 200).judge();
+fn a_fault_at_any_moment_is_named_and_harms_nothing_with_many_seeds() {
+    let wrong = FaultSample::of(2, &[1, 2, 3, 4, 5, 6, 7, 8], 200).judge();
     println!("{} of 200: {wrong:#?}", wrong.len());
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
 #[test]
 #[ignore = "two hundred missions, or what the variables ask for: docs/hold.md has what has come of several draws"]
-fn what_is_drawn_is_named_and_harms_nothing() {
-    let draw = Draw::asked();
+fn sampled_faults_are_named_and_harm_nothing() {
+    let draw = FaultSample::asked();
     let wrong = draw.judge();
     println!("{} of {}: {wrong:#?}", wrong.len(), draw.count);
     assert!(wrong.is_empty(), "{wrong:#?}");
@@ -225,7 +225,7 @@ fn a_heading_that_turns_is_not_flown_by() {
 /// Pressed an arm onto the pipe, or drifted with 3.7 to 4.4 m/s, while what had failed before the lift-off passed for a bias of
 /// the inertial sensor.
 #[test]
-fn what_has_failed_before_the_lift_off_is_no_bias() {
+fn a_fault_before_the_lift_off_changes_no_bias() {
     let (jumps, mirrored) = (FlowFault::RangeJumps, FlowFault::Mirrored);
     let cases = [
         (2, jumps, 77.10),
@@ -256,7 +256,7 @@ fn poses_scaled_from_the_lift_off_on_sink_nothing() {
 /// Every other one too long.
 #[test]
 #[ignore = "forty missions: .ci/campaign flies them"]
-fn a_range_that_becomes_too_short_harms_nothing_on_the_way() {
+fn a_range_that_becomes_too_short_harms_nothing() {
     let of = |seed| Some((seed, parts(seed, PositionSensor::Flow)?));
     let known: Vec<_> = (1..=8).filter_map(of).collect();
     let mut rng = Pcg64Mcg::seed_from_u64(7);

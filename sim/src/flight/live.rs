@@ -2,14 +2,14 @@
 
 use sophie_control::mode::Mode;
 
-use super::Live;
-use crate::flight::World;
-use crate::flight::aircraft::Aircraft;
-use crate::flight::stack::Stack;
+use super::World;
+use super::aircraft::Aircraft;
+use super::stack::Stack;
+use crate::live::Live;
 use crate::record::{FlightRecord, Observer};
 use crate::scenario::Scenario;
 
-/// A vehicle that runs until it is stopped from outside.
+/// A vehicle that runs until the user stops it.
 pub struct LiveFlight<'a> {
     scenario: &'a Scenario,
     world: World<Stack>,
@@ -31,12 +31,12 @@ impl<'a> LiveFlight<'a> {
     /// Flies the mission.
     pub fn fly(&mut self, observer: &mut dyn Observer) -> FlightRecord {
         let record = self.world.fly(self.scenario, observer);
-        // Sticks without a hand must not fly: without a transmitter the vehicle lands by itself.
+        // The sticks are unattended now: with the transmitter off, the failsafe lands a flying vehicle.
         self.transmitter = record.outcome.accomplished && self.world.stack.mode() == Mode::Disarmed;
         record
     }
 
-    /// Keeps the vehicle running until it is stopped from outside; at once after a simulation that diverged.
+    /// Keeps the vehicle running until the user stops it; returns at once after a simulation that diverged.
     pub fn wait(&mut self) {
         self.world.leave_alone();
         while self.world.is_finite() && self.world.step(self.transmitter).is_ok() {}
@@ -50,8 +50,8 @@ mod tests {
     use std::sync::atomic::{AtomicBool, Ordering};
     use std::time::{Duration, Instant};
 
-    use super::super::{Pace, Udp};
     use super::*;
+    use crate::live::{Pace, Udp};
     use crate::record::Silent;
     use crate::scenario::Step;
 
@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mission_that_ends_in_the_air_lands_by_itself_while_it_waits() {
+    fn a_mission_that_ends_in_the_air_lands_autonomously_while_it_waits() {
         let mut scenario = hop();
         scenario.steps.truncate(2);
         let stop = Arc::new(AtomicBool::new(false));

@@ -6,7 +6,7 @@ use rand_pcg::Pcg64Mcg;
 use super::*;
 
 /// Missions of which seed, part and moment are drawn.
-pub(super) struct Draw {
+pub(super) struct FaultSample {
     number: u64,
     seeds: Vec<u64>,
     faults: Vec<Fault>,
@@ -14,7 +14,7 @@ pub(super) struct Draw {
     pub(super) count: usize,
 }
 
-impl Draw {
+impl FaultSample {
     /// `count` missions of `seeds` with every fault in every part.
     pub(super) fn of(number: u64, seeds: &[u64], count: usize) -> Self {
         Self {
@@ -37,7 +37,7 @@ impl Draw {
         };
         Self {
             number: number("SOPHIE_DRAW", 1),
-            seeds: super::super::by_itself::campaign(),
+            seeds: super::super::autonomous::campaign(),
             faults: named_in("SOPHIE_FAULTS", &FAULTS),
             parts: named_in("SOPHIE_PARTS", &PARTS),
             count: number("SOPHIE_COUNT", 200) as usize,
