@@ -74,7 +74,7 @@ impl Default for Hands {
             bent: [0.0; 4],
             height: 0.0,
             sticks: None,
-            wiring: MotorMap::M1234,
+            wiring: MotorMap::STRAIGHT,
         };
         let seen = Seen::default();
         Self {
