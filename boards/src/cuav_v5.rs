@@ -43,9 +43,9 @@ use crate::Board;
 use crate::cortex_m::{enable_caches, levels_on};
 use crate::stm32::{
     AnalogInputs, ArmBus, BoardStorage, BusErrors, DmaChip, Dog, EscTimer, Lamp, Lights, PlainChip,
-    PortLevels, ReadyLine, ReadyStamp, Selected, ServoPairs, ThisChip, Tone, UsbPort, WatchErrors, Wiring,
-    console_lines, drive, ground_line, hold, i2c_bus, load_parameters, look, mavlink_lines, pad,
-    receiver_line, spi_config,
+    PortLevels, ReadyLine, ReadyStamp, Selected, ServoPairs, StorageCell, ThisChip, Tone, UsbPort,
+    WatchErrors, Wiring, console_lines, drive, ground_line, hold, i2c_bus, load_parameters, look,
+    mavlink_lines, pad, receiver_line, spi_config,
 };
 
 /// Name in the log.
@@ -101,6 +101,8 @@ pub type WatchdogPort = Dog<peripherals::IWDG>;
 pub type StoragePort = BoardStorage<Fram<PlainChip>>;
 /// Lights and buzzer.
 pub type LightsPort = Lights<Tone<peripherals::TIM9>>;
+
+static STORAGE: StorageCell<Fram<PlainChip>> = StorageCell::new();
 
 levels_on!(SAI1, SAI2);
 i2c_bus!(LeftArms, Irqs, I2C1);
@@ -420,7 +422,7 @@ fn storage(p: StorageParts) -> StoragePort {
     let config = spi_config(&p.spi, 20_000_000);
     let bus = Spi::new_blocking(p.spi, p.clock, p.data_out, p.data_in, config);
     let memory = Fram::new(Selected::new(BlockingAsync::new(bus), p.select));
-    BoardStorage::new(memory, &DEFAULTS)
+    BoardStorage::new(&STORAGE, memory, &DEFAULTS)
 }
 
 fn lights(p: LightParts) -> LightsPort {

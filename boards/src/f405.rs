@@ -42,8 +42,9 @@ use crate::Board;
 use crate::cortex_m::levels_on;
 use crate::stm32::{
     AnalogInputs, ArmBus, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, ParamFlash, PortLevels,
-    ReadyLine, ReadyStamp, Selected, ServoPairs, ThisChip, UsbPort, Wiring, accelerator, console_lines,
-    drive, ground_line, i2c_bus, load_parameters, look, mavlink_lines, pad, receiver_line, spi_config,
+    ReadyLine, ReadyStamp, Selected, ServoPairs, StorageCell, ThisChip, UsbPort, Wiring, accelerator,
+    console_lines, drive, ground_line, i2c_bus, load_parameters, look, mavlink_lines, pad, receiver_line,
+    spi_config,
 };
 
 /// Name in the log.
@@ -87,6 +88,8 @@ pub type WatchdogPort = Dog<peripherals::IWDG>;
 pub type StoragePort = BoardStorage<ParamFlash<0x4000>>;
 /// Lights and buzzer.
 pub type LightsPort = Lights<Lamp>;
+
+static STORAGE: StorageCell<ParamFlash<0x4000>> = StorageCell::new();
 
 levels_on!(CAN1_TX, CAN2_TX);
 i2c_bus!(LeftArms, Irqs, I2C1);
@@ -343,7 +346,7 @@ fn analog(p: AnalogParts) -> AnalogPort {
 }
 
 fn storage(p: StorageParts) -> StoragePort {
-    BoardStorage::new(ParamFlash::new(p.flash), &DEFAULTS)
+    BoardStorage::new(&STORAGE, ParamFlash::new(p.flash), &DEFAULTS)
 }
 
 fn lights(p: LightParts) -> LightsPort {

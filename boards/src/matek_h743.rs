@@ -42,9 +42,9 @@ use crate::Board;
 use crate::cortex_m::{enable_caches, levels_on};
 use crate::stm32::{
     AnalogInputs, ArmBus, BoardStorage, BusErrors, DmaChip, Dog, EscTimer, Lamp, Lights, ParamFlash,
-    PortLevels, ReadyLine, ReadyStamp, Selected, ServoTimer, ThisChip, UsbPort, WatchErrors, Wiring,
-    console_lines, drive, ground_line, i2c_bus, load_parameters, look, mavlink_lines, pad, receiver_line,
-    spi_config,
+    PortLevels, ReadyLine, ReadyStamp, Selected, ServoTimer, StorageCell, ThisChip, UsbPort, WatchErrors,
+    Wiring, console_lines, drive, ground_line, i2c_bus, load_parameters, look, mavlink_lines, pad,
+    receiver_line, spi_config,
 };
 
 /// Name in the log.
@@ -95,6 +95,8 @@ pub type StoragePort = BoardStorage<ParamFlash<0x2_0000>>;
 pub type LightsPort = Lights<Lamp>;
 
 static RIGHT_BUS: StaticCell<Mutex<Raw, ArmBus<RightArms>>> = StaticCell::new();
+
+static STORAGE: StorageCell<ParamFlash<0x2_0000>> = StorageCell::new();
 
 levels_on!(SAI3, SAI4);
 i2c_bus!(LeftArms, Irqs, I2C1);
@@ -366,7 +368,7 @@ fn analog(p: AnalogParts) -> AnalogPort {
 }
 
 fn storage(p: StorageParts) -> StoragePort {
-    BoardStorage::new(ParamFlash::new(p.flash), &DEFAULTS)
+    BoardStorage::new(&STORAGE, ParamFlash::new(p.flash), &DEFAULTS)
 }
 
 fn lights(p: LightParts) -> LightsPort {

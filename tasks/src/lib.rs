@@ -46,7 +46,6 @@ pub mod retained_state;
 pub mod retained_store;
 pub mod schedule;
 pub mod servos;
-pub mod shared;
 pub mod shell;
 pub mod silence;
 pub mod stack_use;

@@ -72,7 +72,7 @@ pub use servos::ServoTimer;
 pub use silicon::look;
 pub use spi::PlainChip;
 pub use spi::{DmaChip, Selected, spi_config};
-pub use storage::{BoardStorage, load_parameters};
+pub use storage::{BoardStorage, StorageCell, load_parameters};
 pub use tone::Tone;
 pub use usb::{USB_BYTES_PER_SECOND, UsbDriver, UsbPort};
 pub use watchdog::{Dog, stop_with_core};
