@@ -11,9 +11,6 @@ use crate::registers::Setting;
 use crate::self_test::{Limits, Stage};
 use crate::spi_imu::{Chip, Raw, Settings, SpiImu, Watch};
 
-/// Rated SPI clock, Hz.
-pub const SPI_HZ: u32 = 8_000_000;
-
 /// ICM-20689 on SPI device `S` with its INT on `D`.
 pub type Icm20689<S, D> = SpiImu<Config, S, D>;
 
@@ -137,6 +134,7 @@ impl Default for Config {
 
 impl Chip for Config {
     const NAME: &'static str = "ICM-20689";
+    const SPI_HZ: u32 = 8_000_000;
     const WHO_AM_I: u8 = reg::WHO_AM_I;
     const IDENTITY: u8 = 0x98;
     const ALIKE: &'static [(u8, &'static str)] = &[];

@@ -13,9 +13,6 @@ use crate::registers::Setting;
 use crate::self_test::{Limits, Stage};
 use crate::spi_imu::{Chip, Raw, Settings, SpiImu, Watch};
 
-/// Rated SPI clock, Hz.
-pub const SPI_HZ: u32 = 24_000_000;
-
 /// ICM-42688-P on SPI device `S` with its INT1 on `D`.
 pub type Icm42688p<S, D> = SpiImu<Config, S, D>;
 
@@ -196,6 +193,7 @@ impl Default for Config {
 
 impl Chip for Config {
     const NAME: &'static str = "ICM-42688-P";
+    const SPI_HZ: u32 = 24_000_000;
     const WHO_AM_I: u8 = reg::WHO_AM_I;
     const IDENTITY: u8 = 0x47;
     const ALIKE: &'static [(u8, &'static str)] = &[(0xDB, "ICM-42688-V")];
