@@ -22,9 +22,7 @@
 //! and ArduPilot (`fmuv5`) name.
 
 use assign_resources::assign_resources;
-use embassy_embedded_hal::adapter::BlockingAsync;
 use embassy_stm32::gpio::Level;
-use embassy_stm32::spi::Spi;
 use embassy_stm32::time::mhz;
 use embassy_stm32::{Peri, bind_interrupts, dma, exti, i2c, interrupt, pac, peripherals, rcc, usart, usb};
 use embassy_time::{Duration, Timer};
@@ -36,8 +34,8 @@ use sophie_drivers::ms5611::{self, Ms5611};
 
 use crate::cortex_m::levels_on;
 use crate::stm32::{
-    BusErrors, EscTimer, Lamp, Lights, PlainChip, PortLevels, ReadyStamp, Selected, ServoPairs, Tone,
-    WatchErrors, Wiring, hold, i2c_bus, pad, ports, spi_config,
+    BusErrors, EscTimer, Lamp, Lights, PlainChip, PortLevels, ReadyStamp, ServoPairs, Tone, WatchErrors,
+    Wiring, hold, i2c_bus, pad, plain_chip, ports,
 };
 
 /// Flash sectors that hold parameters: none, an FRAM does.
@@ -220,12 +218,20 @@ ports! { |parts, params|
     name: "cuav-v5";
     time: TIM5;
     first: rails(parts.rails).await;
-    storage: Fram<PlainChip> = memory(parts.storage);
+    storage: Fram<PlainChip> = {
+        // Without DMA: its streams serve what flies. The part takes 40 MHz, the bus gives 13.5 MHz.
+        let s = parts.storage;
+        Fram::new(plain_chip(s.spi, s.clock, s.data_out, s.data_in, s.select, 20_000_000))
+    };
     // At 6.75 MHz: the next divider below.
     imu: icm20689::Config;
     // Marking up, x to the right (ArduPilot: ROTATION_NONE after its driver's swap of x and y).
     mounting: Mounting::top_up(Heading::Right);
-    barometer: Ms5611<PlainChip> = barometer(parts.barometer);
+    barometer: Ms5611<PlainChip> = {
+        // Without DMA: a transfer is of four bytes, 2 µs.
+        let b = parts.barometer;
+        Ms5611::on(plain_chip(b.spi, b.clock, b.data_out, b.data_in, b.select, ms5611::SPI_HZ))
+    };
     motors: EscTimer<peripherals::TIM1, peripherals::DMA2_CH5, Irqs>;
     servos: ServoPairs<peripherals::TIM4, peripherals::TIM12> = {
         let s = parts.servos;
@@ -304,17 +310,3 @@ pub const FIRST_LEVELS: [PortLevels; 7] = [
     PortLevels::new(pac::GPIOF, &[12], &[2, 3, 4, 5, 10, 11]),
     PortLevels::new(pac::GPIOG, &[4], &[10]),
 ];
-
-fn barometer(p: BarometerParts) -> BarometerPort {
-    // Without DMA: a transfer is of four bytes, 2 µs.
-    let config = spi_config(&p.spi, ms5611::SPI_HZ);
-    let bus = Spi::new_blocking(p.spi, p.clock, p.data_out, p.data_in, config);
-    Ms5611::on(Selected::new(BlockingAsync::new(bus), p.select))
-}
-
-fn memory(p: StorageParts) -> Fram<PlainChip> {
-    // Without DMA: its streams serve what flies. The part takes 40 MHz, the bus gives 13.5 MHz.
-    let config = spi_config(&p.spi, 20_000_000);
-    let bus = Spi::new_blocking(p.spi, p.clock, p.data_out, p.data_in, config);
-    Fram::new(Selected::new(BlockingAsync::new(bus), p.select))
-}

@@ -66,14 +66,13 @@ pub(crate) use ports::ports;
 pub use rails::{PortLevels, drive, hold};
 pub use reset::take_reset_cause;
 pub use serial::{
-    BufferedInput, BufferedOutput, GroundLine, MAVLINK_BYTES_PER_SECOND, ReceiverLine, TelemetryLine,
-    console_lines, ground_line, mavlink_lines, receiver_line,
+    BufferedInput, BufferedLine, BufferedOutput, GroundLine, MAVLINK_BYTES_PER_SECOND, ReceiverLine,
+    TelemetryLine, ground_line, receiver_line,
 };
 pub use servo_pairs::ServoPairs;
 pub use servos::ServoTimer;
 pub use silicon::look;
-pub use spi::PlainChip;
-pub use spi::{DmaChip, Selected, spi_config};
+pub use spi::{DmaChip, PlainChip, Selected, plain_chip, spi_config};
 pub use storage::{BoardStorage, StorageCell, load_parameters};
 pub use tone::Tone;
 pub use usb::{USB_BYTES_PER_SECOND, UsbDriver, UsbPort};

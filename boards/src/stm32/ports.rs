@@ -75,9 +75,9 @@ macro_rules! ports {
             let (receiver, telemetry) =
                 $crate::stm32::receiver_line(r.uart, r.rx, r.tx, r.rx_dma, r.tx_dma, Irqs, $params);
             let c = $parts.console;
-            let (console_input, console_output) = $crate::stm32::console_lines(c.uart, c.rx, c.tx, Irqs);
+            let (console_input, console_output) = $crate::stm32::BufferedLine::console().open(c.uart, c.rx, c.tx, Irqs);
             let m = $parts.mavlink;
-            let (mavlink_input, mavlink_output) = $crate::stm32::mavlink_lines(m.uart, m.rx, m.tx, Irqs);
+            let (mavlink_input, mavlink_output) = $crate::stm32::BufferedLine::mavlink().open(m.uart, m.rx, m.tx, Irqs);
             let g = $parts.ground;
             let ground = $crate::stm32::ground_line(g.uart, g.rx, g.tx, Irqs, $params);
             $(let $bus = $shared;)?
