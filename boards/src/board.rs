@@ -8,7 +8,7 @@ mod chosen;
 
 pub use chosen::{
     AnalogPort, ArmsPort, BarometerPort, ImuPort, LightsPort, MotorsPort, NAME, ServosPort, StoragePort,
-    WIRING, WatchdogPort, start_levels, stop_motors, take,
+    WIRING, start_levels, take,
 };
 #[cfg(not(family = "f4"))]
 pub(crate) use chosen::{DATA_CACHE, FIRST_LEVELS};
@@ -16,8 +16,13 @@ use sophie_control::params::Params;
 use sophie_ports::storage::Loaded;
 
 use crate::stm32::{
-    BufferedInput, BufferedOutput, GroundLine, ReceiverLine, TelemetryLine, ThisChip, UsbPort,
+    BufferedInput, BufferedOutput, Dog, GroundLine, ReceiverLine, TelemetryLine, ThisChip, UsbPort, drive,
 };
+
+/// The motors' pins low, whatever drives them: the last resort of a fault handler.
+pub fn stop_motors() {
+    drive(&chosen::MOTORS_LOW);
+}
 
 /// A board's ports for the tasks.
 pub struct Board {
@@ -50,7 +55,7 @@ pub struct Board {
     /// USB, for console and MAVLink.
     pub usb: UsbPort,
     /// The running watchdog.
-    pub watchdog: WatchdogPort,
+    pub watchdog: Dog,
     /// Lights and buzzer.
     pub lights: LightsPort,
     /// Parameter storage.

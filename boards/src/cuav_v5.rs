@@ -22,36 +22,21 @@
 //! and ArduPilot (`fmuv5`) name.
 
 use assign_resources::assign_resources;
-use embassy_embedded_hal::adapter::BlockingAsync;
-use embassy_stm32::adc::AdcChannel;
-use embassy_stm32::exti::ExtiInput;
-use embassy_stm32::gpio::{Level, Pin, Pull};
-use embassy_stm32::spi::Spi;
+use embassy_stm32::gpio::Level;
 use embassy_stm32::time::mhz;
 use embassy_stm32::{Peri, bind_interrupts, dma, exti, i2c, interrupt, pac, peripherals, rcc, usart, usb};
 use embassy_time::{Duration, Timer};
 use sophie_control::params::Params;
-use sophie_drivers::arm_buses::ArmBuses;
-use sophie_drivers::bno055;
-use sophie_drivers::esc_protocol::EscProtocol;
 use sophie_drivers::fram::Fram;
-use sophie_drivers::icm20689::{self, Icm20689};
+use sophie_drivers::icm20689;
 use sophie_drivers::mounting::{Heading, Mounting};
 use sophie_drivers::ms5611::{self, Ms5611};
 
-use crate::Board;
-use crate::cortex_m::{enable_caches, levels_on};
+use crate::cortex_m::levels_on;
 use crate::stm32::{
-    AnalogInputs, ArmBus, BoardStorage, BusErrors, DmaChip, Dog, EscTimer, Lamp, Lights, PlainChip,
-    PortLevels, ReadyLine, ReadyStamp, Selected, ServoPairs, ThisChip, Tone, UsbPort, WatchErrors, Wiring,
-    console_lines, drive, ground_line, hold, i2c_bus, load_parameters, look, mavlink_lines, pad,
-    receiver_line, spi_config,
+    BusErrors, EscTimer, Lamp, Lights, PlainChip, PortLevels, ReadyStamp, ServoPairs, Tone, WatchErrors,
+    Wiring, hold, i2c_bus, pad, plain_chip, ports,
 };
-
-/// Name in the log.
-pub const NAME: &str = "cuav-v5";
-/// What it calls itself on USB.
-const PRODUCT: &str = "SOPHIE cuav-v5";
 
 /// Flash sectors that hold parameters: none, an FRAM does.
 const PARAM_SECTORS: u32 = 0;
@@ -82,25 +67,6 @@ pub const WIRING: Wiring = Wiring {
     ],
     divider: (pad("RSSI (PB0)", pac::GPIOB, 0), 2),
 };
-
-/// The vehicle's inertial sensor.
-pub type ImuPort = Icm20689<DmaChip, ReadyLine>;
-/// The arms' inertial sensors.
-pub type ArmsPort = ArmBuses<ArmBus<LeftArms>, ArmBus<RightArms>>;
-/// The barometer.
-pub type BarometerPort = Ms5611<PlainChip>;
-/// Pressure sensors and battery.
-pub type AnalogPort = AnalogInputs<peripherals::DMA2_CH4, Irqs>;
-/// The motors.
-pub type MotorsPort = EscTimer<peripherals::TIM1, peripherals::DMA2_CH5, Irqs>;
-/// The tendon servos.
-pub type ServosPort = ServoPairs<peripherals::TIM4, peripherals::TIM12>;
-/// The watchdog.
-pub type WatchdogPort = Dog<peripherals::IWDG>;
-/// Where parameters are stored.
-pub type StoragePort = BoardStorage<Fram<PlainChip>>;
-/// Lights and buzzer.
-pub type LightsPort = Lights<Tone<peripherals::TIM9>>;
 
 levels_on!(SAI1, SAI2);
 i2c_bus!(LeftArms, Irqs, I2C1);
@@ -248,49 +214,36 @@ assign_resources! {
     }
 }
 
-/// Starts the clocks, loads the parameters and builds every port as they say. Called once.
-pub async fn take() -> Board {
-    let p = crate::stm32::start(clocks(), pac::TIM5);
-    enable_caches(DATA_CACHE);
-    let parts = split_resources!(p);
-    rails(parts.rails).await;
-    let mut storage = storage(parts.storage);
-    let (params, loaded) = load_parameters(&mut storage);
-    let chip = ThisChip::new(look(loaded, PARAM_SECTORS));
-    let r = parts.receiver;
-    let (receiver, telemetry) = receiver_line(r.uart, r.rx, r.tx, r.rx_dma, r.tx_dma, Irqs, &params);
-    let c = parts.console;
-    let (console_input, console_output) = console_lines(c.uart, c.rx, c.tx, Irqs);
-    let m = parts.mavlink;
-    let (mavlink_input, mavlink_output) = mavlink_lines(m.uart, m.rx, m.tx, Irqs);
-    let g = parts.ground;
-    let ground = ground_line(g.uart, g.rx, g.tx, Irqs, &params);
-    Board {
-        watchdog: Dog::start(parts.watchdog.dog),
-        motors: motors(parts.motors, &params),
-        imu: imu(parts.imu, &params),
-        arms: ArmBuses::new(
-            ArmBus::new(parts.left_arms, params.arm_bus_khz),
-            ArmBus::new(parts.right_arms, params.arm_bus_khz),
-            [bno055::Config::default(); 4],
-        ),
-        barometer: barometer(parts.barometer),
-        analog: analog(parts.analog),
-        servos: servos(parts.servos, &params),
-        receiver,
-        telemetry,
-        console_input,
-        console_output,
-        mavlink_input,
-        mavlink_output,
-        ground,
-        usb: UsbPort::new(parts.usb.core, parts.usb.dp, parts.usb.dm, Irqs, PRODUCT),
-        lights: lights(parts.lights),
-        storage,
-        params,
-        loaded,
-        chip,
-    }
+ports! { |parts, params|
+    name: "cuav-v5";
+    time: TIM5;
+    first: rails(parts.rails).await;
+    storage: Fram<PlainChip> = {
+        // Without DMA: its streams serve what flies. The part takes 40 MHz, the bus gives 13.5 MHz.
+        let s = parts.storage;
+        Fram::new(plain_chip(s.spi, s.clock, s.data_out, s.data_in, s.select, 20_000_000))
+    };
+    // At 6.75 MHz: the next divider below.
+    imu: icm20689::Config;
+    // Marking up, x to the right (ArduPilot: ROTATION_NONE after its driver's swap of x and y).
+    mounting: Mounting::top_up(Heading::Right);
+    barometer: Ms5611<PlainChip> = {
+        // Without DMA: a transfer is of four bytes, 2 µs.
+        let b = parts.barometer;
+        Ms5611::on(plain_chip(b.spi, b.clock, b.data_out, b.data_in, b.select, ms5611::SPI_HZ))
+    };
+    motors: EscTimer<peripherals::TIM1, peripherals::DMA2_CH5, Irqs>;
+    servos: ServoPairs<peripherals::TIM4, peripherals::TIM12> = {
+        let s = parts.servos;
+        ServoPairs::new(s.first, (s.servo_1, s.servo_2), s.second, (s.servo_3, s.servo_4), params)
+    };
+    analog: DMA2_CH4;
+    lights: Lights<Tone<peripherals::TIM9>> = Lights {
+        // As PX4 drives them: their other end may be at 5 V.
+        state: Lamp::open_drain(parts.lights.green),
+        fault: Lamp::open_drain(parts.lights.red),
+        buzzer: Tone::new(parts.lights.tone, parts.lights.buzzer),
+    };
 }
 
 /// 16 MHz crystal; core 216 MHz, buses 54 and 108 MHz, timers 108 and 216 MHz.
@@ -340,38 +293,11 @@ async fn rails(p: RailParts) {
     Timer::after(SENSORS_START).await;
 }
 
-fn imu(p: ImuParts, params: &Params) -> ImuPort {
-    // 6.75 MHz: the next divider below.
-    let config = spi_config(&p.spi, icm20689::SPI_HZ);
-    let bus = Spi::new(
-        p.spi, p.clock, p.data_out, p.data_in, p.tx_dma, p.rx_dma, Irqs, config,
-    );
-    let number = p.ready.pin();
-    let ready = ReadyLine::new(ExtiInput::new(p.ready, p.ready_line, Pull::Down, Irqs), number);
-    // Marking up, x to the right (ArduPilot: ROTATION_NONE after its driver's swap of x and y).
-    let mounting = Mounting::top_up(Heading::Right);
-    Icm20689::new(
-        Selected::new(bus, p.select),
-        ready,
-        icm20689::Config::from_params(params),
-        mounting,
-    )
-}
-
-fn motors(p: MotorParts, params: &Params) -> MotorsPort {
-    let pins = (p.motor_1, p.motor_2, p.motor_3, p.motor_4);
-    EscTimer::new(p.timer, pins, p.dma, Irqs, EscProtocol::from_params(params))
-}
-
-const MOTORS_LOW: [PortLevels; 2] = [
+/// The motors' pins, low.
+pub const MOTORS_LOW: [PortLevels; 2] = [
     PortLevels::new(pac::GPIOE, &[9, 11, 14], &[]),
     PortLevels::new(pac::GPIOA, &[10], &[]),
 ];
-
-/// The motors' pins low, whatever drives them: the last resort of a fault handler.
-pub fn stop_motors() {
-    drive(&MOTORS_LOW);
-}
 
 /// What the outputs are until their ports take them: motors, servos and sounder low, no chip selected, the radio not held
 /// in its loader, every supply on, as they were before a restart.
@@ -384,50 +310,3 @@ pub const FIRST_LEVELS: [PortLevels; 7] = [
     PortLevels::new(pac::GPIOF, &[12], &[2, 3, 4, 5, 10, 11]),
     PortLevels::new(pac::GPIOG, &[4], &[10]),
 ];
-
-fn servos(p: ServoParts, params: &Params) -> ServosPort {
-    ServoPairs::new(
-        p.first,
-        (p.servo_1, p.servo_2),
-        p.second,
-        (p.servo_3, p.servo_4),
-        params,
-    )
-}
-
-fn barometer(p: BarometerParts) -> BarometerPort {
-    // Without DMA: a transfer is of four bytes, 2 µs.
-    let config = spi_config(&p.spi, ms5611::SPI_HZ);
-    let bus = Spi::new_blocking(p.spi, p.clock, p.data_out, p.data_in, config);
-    Ms5611::on(Selected::new(BlockingAsync::new(bus), p.select))
-}
-
-fn analog(p: AnalogParts) -> AnalogPort {
-    let channels = [
-        p.fsr_1.degrade_adc(),
-        p.fsr_2.degrade_adc(),
-        p.fsr_3.degrade_adc(),
-        p.fsr_4.degrade_adc(),
-        p.battery_voltage.degrade_adc(),
-        p.battery_current.degrade_adc(),
-        p.servo_battery.degrade_adc(),
-    ];
-    AnalogInputs::new(p.adc, channels, p.dma, Irqs)
-}
-
-fn storage(p: StorageParts) -> StoragePort {
-    // Without DMA: its streams serve what flies. The part takes 40 MHz, the bus gives 13.5 MHz.
-    let config = spi_config(&p.spi, 20_000_000);
-    let bus = Spi::new_blocking(p.spi, p.clock, p.data_out, p.data_in, config);
-    let memory = Fram::new(Selected::new(BlockingAsync::new(bus), p.select));
-    BoardStorage::new(memory, &DEFAULTS)
-}
-
-fn lights(p: LightParts) -> LightsPort {
-    Lights {
-        // As PX4 drives them: their other end may be at 5 V.
-        state: Lamp::open_drain(p.green),
-        fault: Lamp::open_drain(p.red),
-        buzzer: Tone::new(p.tone, p.buzzer),
-    }
-}

@@ -21,35 +21,20 @@
 //! stream that does not serve its peripheral, and a stream that is used twice.
 
 use assign_resources::assign_resources;
-use embassy_stm32::adc::AdcChannel;
-use embassy_stm32::exti::ExtiInput;
-use embassy_stm32::gpio::{Level, Pin, Pull};
-use embassy_stm32::spi::Spi;
+use embassy_stm32::gpio::Level;
 use embassy_stm32::time::mhz;
 use embassy_stm32::{Peri, bind_interrupts, dma, exti, i2c, interrupt, pac, peripherals, rcc, usart, usb};
 use sophie_control::params::Params;
-use sophie_drivers::arm_buses::ArmBuses;
-use sophie_drivers::bno055;
-use sophie_drivers::esc_protocol::EscProtocol;
 #[cfg(feature = "imu-icm20689")]
 use sophie_drivers::icm20689 as part;
 #[cfg(not(feature = "imu-icm20689"))]
 use sophie_drivers::icm42688p as part;
 use sophie_drivers::mounting::{Heading, Mounting};
-use sophie_drivers::spi_imu::SpiImu;
 
-use crate::Board;
 use crate::cortex_m::levels_on;
 use crate::stm32::{
-    AnalogInputs, ArmBus, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, ParamFlash, PortLevels,
-    ReadyLine, ReadyStamp, Selected, ServoPairs, ThisChip, UsbPort, Wiring, accelerator, console_lines,
-    drive, ground_line, i2c_bus, load_parameters, look, mavlink_lines, pad, receiver_line, spi_config,
+    EscTimer, Lamp, Lights, ParamFlash, PortLevels, ReadyStamp, ServoPairs, Wiring, i2c_bus, pad, ports,
 };
-
-/// Name in the log.
-pub const NAME: &str = "f405";
-/// What it calls itself on USB.
-const PRODUCT: &str = "SOPHIE f405";
 
 /// Flash sectors that hold parameters, a bit each.
 const PARAM_SECTORS: u32 = 1 << 1 | 1 << 2;
@@ -68,25 +53,6 @@ pub const WIRING: Wiring = Wiring {
     receiver: [pad("PA9", pac::GPIOA, 9), pad("PA10", pac::GPIOA, 10)],
     divider: (pad("PC1", pac::GPIOC, 1), 1),
 };
-
-/// The vehicle's inertial sensor.
-pub type ImuPort = SpiImu<part::Config, DmaChip, ReadyLine>;
-/// The arms' inertial sensors.
-pub type ArmsPort = ArmBuses<ArmBus<LeftArms>, ArmBus<RightArms>>;
-/// No barometer.
-pub type BarometerPort = ();
-/// Pressure sensors and battery.
-pub type AnalogPort = AnalogInputs<peripherals::DMA2_CH4, Irqs>;
-/// The motors.
-pub type MotorsPort = EscTimer<peripherals::TIM8, peripherals::DMA2_CH1, Irqs>;
-/// The tendon servos.
-pub type ServosPort = ServoPairs<peripherals::TIM4, peripherals::TIM12>;
-/// The watchdog.
-pub type WatchdogPort = Dog<peripherals::IWDG>;
-/// Where parameters are stored.
-pub type StoragePort = BoardStorage<ParamFlash<0x4000>>;
-/// Lights and buzzer.
-pub type LightsPort = Lights<Lamp>;
 
 levels_on!(CAN1_TX, CAN2_TX);
 i2c_bus!(LeftArms, Irqs, I2C1);
@@ -211,48 +177,25 @@ assign_resources! {
     }
 }
 
-/// Starts the clocks, loads the parameters and builds every port as they say. Called once.
-pub async fn take() -> Board {
-    let p = crate::stm32::start(clocks(), pac::TIM5);
-    accelerator::enable();
-    let parts = split_resources!(p);
-    let mut storage = storage(parts.storage);
-    let (params, loaded) = load_parameters(&mut storage);
-    let chip = ThisChip::new(look(loaded, PARAM_SECTORS));
-    let r = parts.receiver;
-    let (receiver, telemetry) = receiver_line(r.uart, r.rx, r.tx, r.rx_dma, r.tx_dma, Irqs, &params);
-    let c = parts.console;
-    let (console_input, console_output) = console_lines(c.uart, c.rx, c.tx, Irqs);
-    let m = parts.mavlink;
-    let (mavlink_input, mavlink_output) = mavlink_lines(m.uart, m.rx, m.tx, Irqs);
-    let g = parts.ground;
-    let ground = ground_line(g.uart, g.rx, g.tx, Irqs, &params);
-    Board {
-        watchdog: Dog::start(parts.watchdog.dog),
-        motors: motors(parts.motors, &params),
-        imu: imu(parts.imu, &params),
-        arms: ArmBuses::new(
-            ArmBus::new(parts.left_arms, params.arm_bus_khz),
-            ArmBus::new(parts.right_arms, params.arm_bus_khz),
-            [bno055::Config::default(); 4],
-        ),
-        barometer: (),
-        analog: analog(parts.analog),
-        servos: servos(parts.servos, &params),
-        receiver,
-        telemetry,
-        console_input,
-        console_output,
-        mavlink_input,
-        mavlink_output,
-        ground,
-        usb: UsbPort::new(parts.usb.core, parts.usb.dp, parts.usb.dm, Irqs, PRODUCT),
-        lights: lights(parts.lights),
-        storage,
-        params,
-        loaded,
-        chip,
-    }
+ports! { |parts, params|
+    name: "f405";
+    time: TIM5;
+    storage: ParamFlash<0x4000> = ParamFlash::new(parts.storage.flash);
+    // The next divider of 84 MHz below: 21 MHz, and 5.25 MHz for the ICM-20689.
+    imu: part::Config;
+    // Marking up, x forward; a board of one's own says here how it is.
+    mounting: Mounting::top_up(Heading::Forward);
+    motors: EscTimer<peripherals::TIM8, peripherals::DMA2_CH1, Irqs>;
+    servos: ServoPairs<peripherals::TIM4, peripherals::TIM12> = {
+        let s = parts.servos;
+        ServoPairs::new(s.first, (s.servo_1, s.servo_2), s.second, (s.servo_3, s.servo_4), params)
+    };
+    analog: DMA2_CH4;
+    lights: Lights<Lamp> = Lights {
+        state: Lamp::new(parts.lights.state, Level::High),
+        fault: Lamp::new(parts.lights.fault, Level::High),
+        buzzer: Lamp::new(parts.lights.buzzer, Level::High),
+    };
 }
 
 /// 8 MHz crystal; core 168 MHz, buses 42 and 84 MHz, timers 84 and 168 MHz.
@@ -282,35 +225,8 @@ fn clocks() -> embassy_stm32::Config {
     config
 }
 
-fn imu(p: ImuParts, params: &Params) -> ImuPort {
-    // The next divider of 84 MHz below: 21 MHz, and 5.25 MHz for the ICM-20689.
-    let config = spi_config(&p.spi, part::SPI_HZ);
-    let bus = Spi::new(
-        p.spi, p.clock, p.data_out, p.data_in, p.tx_dma, p.rx_dma, Irqs, config,
-    );
-    let number = p.ready.pin();
-    let ready = ReadyLine::new(ExtiInput::new(p.ready, p.ready_line, Pull::Down, Irqs), number);
-    // Marking up, x forward; a board of one's own says here how it is.
-    let mounting = Mounting::top_up(Heading::Forward);
-    SpiImu::new(
-        Selected::new(bus, p.select),
-        ready,
-        part::Config::from_params(params),
-        mounting,
-    )
-}
-
-fn motors(p: MotorParts, params: &Params) -> MotorsPort {
-    let pins = (p.motor_1, p.motor_2, p.motor_3, p.motor_4);
-    EscTimer::new(p.timer, pins, p.dma, Irqs, EscProtocol::from_params(params))
-}
-
-const MOTORS_LOW: [PortLevels; 1] = [PortLevels::new(pac::GPIOC, &[6, 7, 8, 9], &[])];
-
-/// The motors' pins low, whatever drives them: the last resort of a fault handler.
-pub fn stop_motors() {
-    drive(&MOTORS_LOW);
-}
+/// The motors' pins, low.
+pub const MOTORS_LOW: [PortLevels; 1] = [PortLevels::new(pac::GPIOC, &[6, 7, 8, 9], &[])];
 
 /// What the outputs are until their ports take them: motors, servos and buzzer low, the inertial sensor not selected.
 pub const FIRST_LEVELS: [PortLevels; 3] = [
@@ -318,38 +234,3 @@ pub const FIRST_LEVELS: [PortLevels; 3] = [
     PortLevels::new(pac::GPIOB, &[6, 7, 14, 15], &[]),
     PortLevels::new(pac::GPIOA, &[8], &[4]),
 ];
-
-fn servos(p: ServoParts, params: &Params) -> ServosPort {
-    ServoPairs::new(
-        p.first,
-        (p.servo_1, p.servo_2),
-        p.second,
-        (p.servo_3, p.servo_4),
-        params,
-    )
-}
-
-fn analog(p: AnalogParts) -> AnalogPort {
-    let channels = [
-        p.fsr_1.degrade_adc(),
-        p.fsr_2.degrade_adc(),
-        p.fsr_3.degrade_adc(),
-        p.fsr_4.degrade_adc(),
-        p.battery_voltage.degrade_adc(),
-        p.battery_current.degrade_adc(),
-        p.servo_battery.degrade_adc(),
-    ];
-    AnalogInputs::new(p.adc, channels, p.dma, Irqs)
-}
-
-fn storage(p: StorageParts) -> StoragePort {
-    BoardStorage::new(ParamFlash::new(p.flash), &DEFAULTS)
-}
-
-fn lights(p: LightParts) -> LightsPort {
-    Lights {
-        state: Lamp::new(p.state, Level::High),
-        fault: Lamp::new(p.fault, Level::High),
-        buzzer: Lamp::new(p.buzzer, Level::High),
-    }
-}

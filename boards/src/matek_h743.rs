@@ -21,10 +21,7 @@
 
 use assign_resources::assign_resources;
 use embassy_embedded_hal::shared_bus::asynch::i2c::I2cDevice;
-use embassy_stm32::adc::AdcChannel;
-use embassy_stm32::exti::ExtiInput;
-use embassy_stm32::gpio::{Level, Pin, Pull};
-use embassy_stm32::spi::Spi;
+use embassy_stm32::gpio::Level;
 use embassy_stm32::time::mhz;
 use embassy_stm32::{Peri, bind_interrupts, dma, exti, i2c, interrupt, pac, peripherals, rcc, usart, usb};
 use embassy_sync::mutex::Mutex;
@@ -32,25 +29,16 @@ use sophie_control::params::Params;
 use sophie_drivers::arm_buses::ArmBuses;
 use sophie_drivers::bno055;
 use sophie_drivers::dps310::Dps310;
-use sophie_drivers::esc_protocol::EscProtocol;
-use sophie_drivers::icm42688p::{self, Icm42688p};
+use sophie_drivers::icm42688p;
 use sophie_drivers::mounting::{Heading, Mounting};
 use sophie_tasks::links::Raw;
 use static_cell::StaticCell;
 
-use crate::Board;
-use crate::cortex_m::{enable_caches, levels_on};
+use crate::cortex_m::levels_on;
 use crate::stm32::{
-    AnalogInputs, ArmBus, BoardStorage, BusErrors, DmaChip, Dog, EscTimer, Lamp, Lights, ParamFlash,
-    PortLevels, ReadyLine, ReadyStamp, Selected, ServoTimer, ThisChip, UsbPort, WatchErrors, Wiring,
-    console_lines, drive, ground_line, i2c_bus, load_parameters, look, mavlink_lines, pad, receiver_line,
-    spi_config,
+    ArmBus, BusErrors, EscTimer, Lamp, Lights, ParamFlash, PortLevels, ReadyStamp, ServoTimer, WatchErrors,
+    Wiring, i2c_bus, pad, ports,
 };
-
-/// Name in the log.
-pub const NAME: &str = "matek-h743";
-/// What it calls itself on USB.
-const PRODUCT: &str = "SOPHIE matek-h743";
 
 /// Flash sectors that hold parameters, a bit each: sectors 6 and 7 of bank 2.
 const PARAM_SECTORS: u32 = 1 << 14 | 1 << 15;
@@ -73,27 +61,8 @@ pub const WIRING: Wiring = Wiring {
     divider: (pad("RSSI (PC5)", pac::GPIOC, 5), 2),
 };
 
-/// The vehicle's inertial sensor.
-pub type ImuPort = Icm42688p<DmaChip, ReadyLine>;
-/// The arms' inertial sensors.
-pub type ArmsPort = ArmBuses<ArmBus<LeftArms>, RightBus>;
-/// The barometer.
-pub type BarometerPort = Dps310<RightBus>;
 /// The bus of arm sensors 3 and 4 and of the barometer: who waits for it waits for one transaction, half a millisecond.
 type RightBus = I2cDevice<'static, Raw, ArmBus<RightArms>>;
-/// Pressure sensors and battery.
-pub type AnalogPort = AnalogInputs<peripherals::DMA2_CH4, Irqs>;
-/// The motors.
-pub type MotorsPort = EscTimer<peripherals::TIM4, peripherals::DMA1_CH0, Irqs>;
-/// The tendon servos.
-pub type ServosPort = ServoTimer<peripherals::TIM5>;
-/// The watchdog.
-pub type WatchdogPort = Dog<peripherals::IWDG1>;
-/// Where parameters are stored.
-pub type StoragePort = BoardStorage<ParamFlash<0x2_0000>>;
-/// Lights and buzzer.
-pub type LightsPort = Lights<Lamp>;
-
 static RIGHT_BUS: StaticCell<Mutex<Raw, ArmBus<RightArms>>> = StaticCell::new();
 
 levels_on!(SAI3, SAI4);
@@ -218,49 +187,31 @@ assign_resources! {
     }
 }
 
-/// Starts the clocks, loads the parameters and builds every port as they say. Called once.
-pub async fn take() -> Board {
-    let p = crate::stm32::start(clocks(), pac::TIM2);
-    enable_caches(DATA_CACHE);
-    let parts = split_resources!(p);
-    let mut storage = storage(parts.storage);
-    let (params, loaded) = load_parameters(&mut storage);
-    let chip = ThisChip::new(look(loaded, PARAM_SECTORS));
-    let r = parts.receiver;
-    let (receiver, telemetry) = receiver_line(r.uart, r.rx, r.tx, r.rx_dma, r.tx_dma, Irqs, &params);
-    let c = parts.console;
-    let (console_input, console_output) = console_lines(c.uart, c.rx, c.tx, Irqs);
-    let m = parts.mavlink;
-    let (mavlink_input, mavlink_output) = mavlink_lines(m.uart, m.rx, m.tx, Irqs);
-    let g = parts.ground;
-    let ground = ground_line(g.uart, g.rx, g.tx, Irqs, &params);
-    let right: &'static _ = RIGHT_BUS.init(Mutex::new(ArmBus::new(parts.right_arms, params.arm_bus_khz)));
-    Board {
-        watchdog: Dog::start(parts.watchdog.dog),
-        motors: motors(parts.motors, &params),
-        imu: imu(parts.imu, &params),
-        arms: ArmBuses::new(
-            ArmBus::new(parts.left_arms, params.arm_bus_khz),
-            I2cDevice::new(right),
-            [bno055::Config::default(); 4],
-        ),
-        barometer: Dps310::at(I2cDevice::new(right)),
-        analog: analog(parts.analog),
-        servos: servos(parts.servos, &params),
-        receiver,
-        telemetry,
-        console_input,
-        console_output,
-        mavlink_input,
-        mavlink_output,
-        ground,
-        usb: UsbPort::new(parts.usb.core, parts.usb.dp, parts.usb.dm, Irqs, PRODUCT),
-        lights: lights(parts.lights),
-        storage,
-        params,
-        loaded,
-        chip,
-    }
+ports! { |parts, params|
+    name: "matek-h743";
+    time: TIM2;
+    storage: ParamFlash<0x2_0000> = ParamFlash::new(parts.storage.flash);
+    imu: icm42688p::Config;
+    // On the underside, turned by half a turn about the vertical (ArduPilot: ROTATION_YAW_180).
+    mounting: Mounting::top_down(Heading::Back);
+    let right = &*RIGHT_BUS.init(Mutex::new(ArmBus::new(parts.right_arms, params.arm_bus_khz)));
+    arms: ArmBuses<ArmBus<LeftArms>, RightBus> = ArmBuses::new(
+        ArmBus::new(parts.left_arms, params.arm_bus_khz),
+        I2cDevice::new(right),
+        [bno055::Config::default(); 4],
+    );
+    barometer: Dps310<RightBus> = Dps310::at(I2cDevice::new(right));
+    motors: EscTimer<peripherals::TIM4, peripherals::DMA1_CH0, Irqs>;
+    servos: ServoTimer<peripherals::TIM5> = {
+        let s = parts.servos;
+        ServoTimer::new(s.timer, (s.servo_1, s.servo_2, s.servo_3, s.servo_4), params)
+    };
+    analog: DMA2_CH4;
+    lights: Lights<Lamp> = Lights {
+        state: Lamp::new(parts.lights.green, Level::Low),
+        fault: Lamp::new(parts.lights.blue, Level::Low),
+        buzzer: Lamp::new(parts.lights.buzzer, Level::High),
+    };
 }
 
 /// 8 MHz crystal; core 400 MHz, buses 100 MHz, timers 200 MHz, SPI1 and USB 48 MHz, converter 50 MHz (halved inside).
@@ -312,34 +263,8 @@ fn clocks() -> embassy_stm32::Config {
     config
 }
 
-fn imu(p: ImuParts, params: &Params) -> ImuPort {
-    let config = spi_config(&p.spi, icm42688p::SPI_HZ);
-    let bus = Spi::new(
-        p.spi, p.clock, p.data_out, p.data_in, p.tx_dma, p.rx_dma, Irqs, config,
-    );
-    let number = p.ready.pin();
-    let ready = ReadyLine::new(ExtiInput::new(p.ready, p.ready_line, Pull::Down, Irqs), number);
-    // On the underside, turned by half a turn about the vertical (ArduPilot: ROTATION_YAW_180).
-    let mounting = Mounting::top_down(Heading::Back);
-    Icm42688p::new(
-        Selected::new(bus, p.select),
-        ready,
-        icm42688p::Config::from_params(params),
-        mounting,
-    )
-}
-
-fn motors(p: MotorParts, params: &Params) -> MotorsPort {
-    let pins = (p.motor_1, p.motor_2, p.motor_3, p.motor_4);
-    EscTimer::new(p.timer, pins, p.dma, Irqs, EscProtocol::from_params(params))
-}
-
-const MOTORS_LOW: [PortLevels; 1] = [PortLevels::new(pac::GPIOD, &[12, 13, 14, 15], &[])];
-
-/// The motors' pins low, whatever drives them: the last resort of a fault handler.
-pub fn stop_motors() {
-    drive(&MOTORS_LOW);
-}
+/// The motors' pins, low.
+pub const MOTORS_LOW: [PortLevels; 1] = [PortLevels::new(pac::GPIOD, &[12, 13, 14, 15], &[])];
 
 /// What the outputs are until their ports take them: motors, servos and buzzer low, the inertial sensor not selected.
 pub const FIRST_LEVELS: [PortLevels; 3] = [
@@ -347,32 +272,3 @@ pub const FIRST_LEVELS: [PortLevels; 3] = [
     PortLevels::new(pac::GPIOA, &[0, 1, 2, 3, 15], &[]),
     PortLevels::new(pac::GPIOC, &[], &[15]),
 ];
-
-fn servos(p: ServoParts, params: &Params) -> ServosPort {
-    ServoTimer::new(p.timer, (p.servo_1, p.servo_2, p.servo_3, p.servo_4), params)
-}
-
-fn analog(p: AnalogParts) -> AnalogPort {
-    let channels = [
-        p.fsr_1.degrade_adc(),
-        p.fsr_2.degrade_adc(),
-        p.fsr_3.degrade_adc(),
-        p.fsr_4.degrade_adc(),
-        p.battery_voltage.degrade_adc(),
-        p.battery_current.degrade_adc(),
-        p.servo_battery.degrade_adc(),
-    ];
-    AnalogInputs::new(p.adc, channels, p.dma, Irqs)
-}
-
-fn storage(p: StorageParts) -> StoragePort {
-    BoardStorage::new(ParamFlash::new(p.flash), &DEFAULTS)
-}
-
-fn lights(p: LightParts) -> LightsPort {
-    Lights {
-        state: Lamp::new(p.green, Level::Low),
-        fault: Lamp::new(p.blue, Level::Low),
-        buzzer: Lamp::new(p.buzzer, Level::High),
-    }
-}

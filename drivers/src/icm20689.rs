@@ -11,9 +11,6 @@ use crate::registers::Setting;
 use crate::self_test::{Limits, Stage};
 use crate::spi_imu::{Chip, Raw, Settings, SpiImu, Watch};
 
-/// Rated SPI clock, Hz.
-pub const SPI_HZ: u32 = 8_000_000;
-
 /// ICM-20689 on SPI device `S` with its INT on `D`.
 pub type Icm20689<S, D> = SpiImu<Config, S, D>;
 
@@ -36,34 +33,24 @@ mod reg {
     pub const WHO_AM_I: u8 = 0x75;
 }
 
-/// Gyroscope range, GYRO_CONFIG bits 4:3.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[repr(u8)]
-pub enum GyroRange {
-    /// 250 °/s.
-    Dps250 = 0,
-    /// 500 °/s.
-    Dps500 = 1,
-    /// 1000 °/s.
-    Dps1000 = 2,
-    /// 2000 °/s.
-    #[default]
-    Dps2000 = 3,
+/// FS_SEL, GYRO_CONFIG bits 4:3.
+const fn gyro_code(range: ImuGyroRange) -> u8 {
+    match range {
+        ImuGyroRange::Dps250 => 0,
+        ImuGyroRange::Dps500 => 1,
+        ImuGyroRange::Dps1000 => 2,
+        ImuGyroRange::Dps2000 => 3,
+    }
 }
 
-/// Accelerometer range, ACCEL_CONFIG bits 4:3.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[repr(u8)]
-pub enum AccelRange {
-    /// 2 g.
-    G2 = 0,
-    /// 4 g.
-    G4 = 1,
-    /// 8 g.
-    G8 = 2,
-    /// 16 g.
-    #[default]
-    G16 = 3,
+/// ACCEL_FS_SEL, ACCEL_CONFIG bits 4:3.
+const fn accel_code(range: ImuAccelRange) -> u8 {
+    match range {
+        ImuAccelRange::G2 => 0,
+        ImuAccelRange::G4 => 1,
+        ImuAccelRange::G8 => 2,
+        ImuAccelRange::G16 => 3,
+    }
 }
 
 /// Gyroscope filter and rate: DLPF_CFG, CONFIG bits 2:0.
@@ -96,9 +83,9 @@ pub enum AccelFilter {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Config {
     /// Gyroscope range.
-    pub gyro_range: GyroRange,
+    pub gyro_range: ImuGyroRange,
     /// Accelerometer range.
-    pub accel_range: AccelRange,
+    pub accel_range: ImuAccelRange,
     /// Gyroscope filter and rate.
     pub gyro_filter: GyroFilter,
     /// Accelerometer filter.
@@ -118,21 +105,9 @@ impl Config {
             ImuRate::Hz4000 => 2,
             ImuRate::Hz8000 => 1,
         };
-        let gyro_range = match p.imu_gyro_range {
-            ImuGyroRange::Dps250 => GyroRange::Dps250,
-            ImuGyroRange::Dps500 => GyroRange::Dps500,
-            ImuGyroRange::Dps1000 => GyroRange::Dps1000,
-            ImuGyroRange::Dps2000 => GyroRange::Dps2000,
-        };
-        let accel_range = match p.imu_accel_range {
-            ImuAccelRange::G2 => AccelRange::G2,
-            ImuAccelRange::G4 => AccelRange::G4,
-            ImuAccelRange::G8 => AccelRange::G8,
-            ImuAccelRange::G16 => AccelRange::G16,
-        };
         let config = Self {
-            gyro_range,
-            accel_range,
+            gyro_range: p.imu_gyro_range,
+            accel_range: p.imu_accel_range,
             read_every,
             ..Self::default()
         };
@@ -147,8 +122,8 @@ impl Default for Config {
     /// 2000 °/s, 16 g, 250 Hz filter, read at 4 kHz.
     fn default() -> Self {
         Self {
-            gyro_range: GyroRange::default(),
-            accel_range: AccelRange::default(),
+            gyro_range: ImuGyroRange::Dps2000,
+            accel_range: ImuAccelRange::G16,
             gyro_filter: GyroFilter::default(),
             accel_filter: AccelFilter::default(),
             read_every: 2,
@@ -159,6 +134,7 @@ impl Default for Config {
 
 impl Chip for Config {
     const NAME: &'static str = "ICM-20689";
+    const SPI_HZ: u32 = 8_000_000;
     const WHO_AM_I: u8 = reg::WHO_AM_I;
     const IDENTITY: u8 = 0x98;
     const ALIKE: &'static [(u8, &'static str)] = &[];
@@ -202,8 +178,8 @@ impl Chip for Config {
             Setting::all(reg::SMPLRT_DIV, 0x00),
             Setting::bits(0, reg::CONFIG, 0x87, self.gyro_filter as u8),
             // Self-test off, FCHOICE_B 0: filter in the path.
-            Setting::bits(0, reg::GYRO_CONFIG, 0xFB, (self.gyro_range as u8) << 3),
-            Setting::bits(0, reg::ACCEL_CONFIG, 0xF8, (self.accel_range as u8) << 3),
+            Setting::bits(0, reg::GYRO_CONFIG, 0xFB, gyro_code(self.gyro_range) << 3),
+            Setting::bits(0, reg::ACCEL_CONFIG, 0xF8, accel_code(self.accel_range) << 3),
             Setting::bits(0, reg::ACCEL_CONFIG2, 0x0F, self.accel_filter as u8),
             Setting::all(reg::FIFO_EN, 0x00),
             // Active high, push-pull, pulses of 50 µs.
@@ -262,21 +238,11 @@ impl Chip for Config {
     }
 
     fn gyro_range(&self) -> f32 {
-        match self.gyro_range {
-            GyroRange::Dps250 => 250.0,
-            GyroRange::Dps500 => 500.0,
-            GyroRange::Dps1000 => 1000.0,
-            GyroRange::Dps2000 => 2000.0,
-        }
+        self.gyro_range.number()
     }
 
     fn accel_range(&self) -> f32 {
-        match self.accel_range {
-            AccelRange::G2 => 2.0,
-            AccelRange::G4 => 4.0,
-            AccelRange::G8 => 8.0,
-            AccelRange::G16 => 16.0,
-        }
+        self.accel_range.number()
     }
 
     fn watch(&self) -> Watch {

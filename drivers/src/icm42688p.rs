@@ -13,9 +13,6 @@ use crate::registers::Setting;
 use crate::self_test::{Limits, Stage};
 use crate::spi_imu::{Chip, Raw, Settings, SpiImu, Watch};
 
-/// Rated SPI clock, Hz.
-pub const SPI_HZ: u32 = 24_000_000;
-
 /// ICM-42688-P on SPI device `S` with its INT1 on `D`.
 pub type Icm42688p<S, D> = SpiImu<Config, S, D>;
 
@@ -50,60 +47,33 @@ mod reg {
     pub const B2_XA_ST_DATA: u8 = 0x3B;
 }
 
-/// Gyroscope range (§14.37).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[repr(u8)]
-pub enum GyroRange {
-    /// 2000 °/s.
-    #[default]
-    Dps2000 = 0,
-    /// 1000 °/s.
-    Dps1000 = 1,
-    /// 500 °/s.
-    Dps500 = 2,
-    /// 250 °/s.
-    Dps250 = 3,
+/// GYRO_FS_SEL (§14.37).
+const fn gyro_code(range: ImuGyroRange) -> u8 {
+    match range {
+        ImuGyroRange::Dps2000 => 0,
+        ImuGyroRange::Dps1000 => 1,
+        ImuGyroRange::Dps500 => 2,
+        ImuGyroRange::Dps250 => 3,
+    }
 }
 
-/// Accelerometer range (§14.38).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[repr(u8)]
-pub enum AccelRange {
-    /// 16 g.
-    #[default]
-    G16 = 0,
-    /// 8 g.
-    G8 = 1,
-    /// 4 g.
-    G4 = 2,
-    /// 2 g.
-    G2 = 3,
+/// ACCEL_FS_SEL (§14.38).
+const fn accel_code(range: ImuAccelRange) -> u8 {
+    match range {
+        ImuAccelRange::G16 => 0,
+        ImuAccelRange::G8 => 1,
+        ImuAccelRange::G4 => 2,
+        ImuAccelRange::G2 => 3,
+    }
 }
 
-/// Sample rate of both sensors (§14.37).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[repr(u8)]
-pub enum Rate {
-    /// 8000 Hz.
-    Khz8 = 3,
-    /// 4000 Hz.
-    #[default]
-    Khz4 = 4,
-    /// 2000 Hz.
-    Khz2 = 5,
-    /// 1000 Hz.
-    Khz1 = 6,
-}
-
-impl Rate {
-    /// Sample rate, Hz.
-    pub const fn hz(self) -> f32 {
-        match self {
-            Self::Khz8 => 8000.0,
-            Self::Khz4 => 4000.0,
-            Self::Khz2 => 2000.0,
-            Self::Khz1 => 1000.0,
-        }
+/// GYRO_ODR and ACCEL_ODR, which have the same codes (§14.37).
+const fn rate_code(rate: ImuRate) -> u8 {
+    match rate {
+        ImuRate::Hz8000 => 3,
+        ImuRate::Hz4000 => 4,
+        ImuRate::Hz2000 => 5,
+        ImuRate::Hz1000 => 6,
     }
 }
 
@@ -172,14 +142,14 @@ impl AntiAlias {
 }
 
 /// Configuration.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Config {
     /// Gyroscope range.
-    pub gyro_range: GyroRange,
+    pub gyro_range: ImuGyroRange,
     /// Accelerometer range.
-    pub accel_range: AccelRange,
-    /// Sample rate.
-    pub rate: Rate,
+    pub accel_range: ImuAccelRange,
+    /// Sample rate of both sensors.
+    pub rate: ImuRate,
     /// Order of both UI filters.
     pub filter_order: FilterOrder,
     /// Bandwidth of both UI filters at 1 kHz.
@@ -195,36 +165,35 @@ pub struct Config {
 impl Config {
     /// Rate and ranges of the parameters, defaults otherwise.
     pub fn from_params(p: &Params) -> Self {
-        let rate = match p.imu_rate {
-            ImuRate::Hz1000 => Rate::Khz1,
-            ImuRate::Hz2000 => Rate::Khz2,
-            ImuRate::Hz4000 => Rate::Khz4,
-            ImuRate::Hz8000 => Rate::Khz8,
-        };
-        let gyro_range = match p.imu_gyro_range {
-            ImuGyroRange::Dps250 => GyroRange::Dps250,
-            ImuGyroRange::Dps500 => GyroRange::Dps500,
-            ImuGyroRange::Dps1000 => GyroRange::Dps1000,
-            ImuGyroRange::Dps2000 => GyroRange::Dps2000,
-        };
-        let accel_range = match p.imu_accel_range {
-            ImuAccelRange::G2 => AccelRange::G2,
-            ImuAccelRange::G4 => AccelRange::G4,
-            ImuAccelRange::G8 => AccelRange::G8,
-            ImuAccelRange::G16 => AccelRange::G16,
-        };
         Self {
-            rate,
-            gyro_range,
-            accel_range,
-            watch: Watch::at(rate.hz()),
+            rate: p.imu_rate,
+            gyro_range: p.imu_gyro_range,
+            accel_range: p.imu_accel_range,
+            watch: Watch::at(p.imu_rate.number()),
             ..Self::default()
+        }
+    }
+}
+
+impl Default for Config {
+    /// 2000 °/s, 16 g, 4 kHz, first-order filters.
+    fn default() -> Self {
+        Self {
+            gyro_range: ImuGyroRange::Dps2000,
+            accel_range: ImuAccelRange::G16,
+            rate: ImuRate::Hz4000,
+            filter_order: FilterOrder::default(),
+            ui_bandwidth: UiBandwidth::default(),
+            gyro_anti_alias: AntiAlias::default(),
+            accel_anti_alias: AntiAlias::default(),
+            watch: Watch::default(),
         }
     }
 }
 
 impl Chip for Config {
     const NAME: &'static str = "ICM-42688-P";
+    const SPI_HZ: u32 = 24_000_000;
     const WHO_AM_I: u8 = reg::WHO_AM_I;
     const IDENTITY: u8 = 0x47;
     const ALIKE: &'static [(u8, &'static str)] = &[(0xDB, "ICM-42688-V")];
@@ -259,7 +228,7 @@ impl Chip for Config {
     fn settings(&self) -> Settings {
         let order = self.filter_order as u8;
         let bandwidth = self.ui_bandwidth as u8;
-        let rate = self.rate as u8;
+        let rate = rate_code(self.rate);
         let (gyro_delt, gyro_square, gyro_shift) = self.gyro_anti_alias.codes();
         let (accel_delt, accel_square, accel_shift) = self.accel_anti_alias.codes();
         let [gyro_square_high, gyro_square_low] = gyro_square.to_be_bytes();
@@ -278,8 +247,13 @@ impl Chip for Config {
             // stalls for some 2 ms (ArduPilot pull request 25332; also off in Betaflight and INAV). PLL clock when
             // available.
             Setting::bits(0, reg::INTF_CONFIG1, 0xC3, 0x41),
-            Setting::bits(0, reg::GYRO_CONFIG0, 0xEF, (self.gyro_range as u8) << 5 | rate),
-            Setting::bits(0, reg::ACCEL_CONFIG0, 0xEF, (self.accel_range as u8) << 5 | rate),
+            Setting::bits(0, reg::GYRO_CONFIG0, 0xEF, gyro_code(self.gyro_range) << 5 | rate),
+            Setting::bits(
+                0,
+                reg::ACCEL_CONFIG0,
+                0xEF,
+                accel_code(self.accel_range) << 5 | rate,
+            ),
             Setting::bits(0, reg::GYRO_CONFIG1, 0x0C, order << 2),
             Setting::all(reg::GYRO_ACCEL_CONFIG0, bandwidth << 4 | bandwidth),
             Setting::bits(0, reg::ACCEL_CONFIG1, 0x18, order << 3),
@@ -316,8 +290,8 @@ impl Chip for Config {
             // with the sensors off (§12.9).
             Stage::Rest => Settings::from_array([
                 Setting::bits(0, reg::PWR_MGMT0, 0x2F, 0x00),
-                Setting::bits(0, reg::GYRO_CONFIG0, 0xEF, 3 << 5 | Rate::Khz1 as u8),
-                Setting::bits(0, reg::ACCEL_CONFIG0, 0xEF, 3 << 5 | Rate::Khz1 as u8),
+                Setting::bits(0, reg::GYRO_CONFIG0, 0xEF, 3 << 5 | rate_code(ImuRate::Hz1000)),
+                Setting::bits(0, reg::ACCEL_CONFIG0, 0xEF, 3 << 5 | rate_code(ImuRate::Hz1000)),
                 Setting::bits(0, reg::GYRO_CONFIG1, 0x0C, 2 << 2),
                 Setting::bits(0, reg::ACCEL_CONFIG1, 0x18, 2 << 3),
                 Setting::all(reg::GYRO_ACCEL_CONFIG0, 0x44),
@@ -356,25 +330,15 @@ impl Chip for Config {
     }
 
     fn rate_hz(&self) -> f32 {
-        self.rate.hz()
+        self.rate.number()
     }
 
     fn gyro_range(&self) -> f32 {
-        match self.gyro_range {
-            GyroRange::Dps2000 => 2000.0,
-            GyroRange::Dps1000 => 1000.0,
-            GyroRange::Dps500 => 500.0,
-            GyroRange::Dps250 => 250.0,
-        }
+        self.gyro_range.number()
     }
 
     fn accel_range(&self) -> f32 {
-        match self.accel_range {
-            AccelRange::G16 => 16.0,
-            AccelRange::G8 => 8.0,
-            AccelRange::G4 => 4.0,
-            AccelRange::G2 => 2.0,
-        }
+        self.accel_range.number()
     }
 
     fn watch(&self) -> Watch {

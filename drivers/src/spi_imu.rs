@@ -89,6 +89,8 @@ impl Default for Watch {
 pub trait Chip {
     /// Name in messages.
     const NAME: &'static str;
+    /// Rated SPI clock, Hz.
+    const SPI_HZ: u32;
     /// Identity register.
     const WHO_AM_I: u8;
     /// Content of the identity register.

@@ -12,9 +12,9 @@ use fake::spi::{Bus, DataReady, Failure, Kind, Part};
 use sophie_control::chain::ImuReading;
 use sophie_control::maths::scalar::GRAVITY;
 use sophie_control::maths::vector::Vec3;
-use sophie_control::params::Params;
+use sophie_control::params::{ImuAccelRange, ImuGyroRange, ImuRate, Params};
 use sophie_drivers::fault::{Fault, Sensor};
-use sophie_drivers::icm42688p::{AccelRange, AntiAlias, Config, FilterOrder, GyroRange, Icm42688p, Rate};
+use sophie_drivers::icm42688p::{AntiAlias, Config, FilterOrder, Icm42688p};
 use sophie_drivers::mounting::{Heading, Mounting};
 use sophie_ports::error::PortError;
 use sophie_ports::sensors::Imu;
@@ -97,9 +97,9 @@ fn the_default_configuration_is_what_the_datasheet_asks_for() {
 #[test]
 fn every_choice_reaches_its_register() {
     let config = Config {
-        gyro_range: GyroRange::Dps500,
-        accel_range: AccelRange::G8,
-        rate: Rate::Khz8,
+        gyro_range: ImuGyroRange::Dps500,
+        accel_range: ImuAccelRange::G8,
+        rate: ImuRate::Hz8000,
         filter_order: FilterOrder::Third,
         gyro_anti_alias: AntiAlias::Hz1962,
         accel_anti_alias: AntiAlias::Off,

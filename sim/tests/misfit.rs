@@ -5,11 +5,11 @@ use std::rc::Rc;
 
 use embassy_time::Timer;
 use sophie_control::allocation::wrench::Configuration;
-use sophie_control::attitude::mounting::Mounting;
+use sophie_control::attitude::mounting::{Direction, Mounting};
 use sophie_control::calibration::Face;
 use sophie_control::chain::ImuReading;
 use sophie_control::maths::vector::Vec3;
-use sophie_control::params::{ImuMounting, Params};
+use sophie_control::params::Params;
 use sophie_drivers::param_store::ParamStore;
 use sophie_fakes::{FakeChip, FakeImu, FakeLine, Flash};
 use sophie_ports::error::PortError;
@@ -24,10 +24,17 @@ use sophie_tasks::links::Links;
 use sophie_tasks::pilot::commander;
 use sophie_tasks::storage::parameters;
 
-/// Turned by 90 degrees to the left, 3 % off along two axes.
+/// Turned by 90 degrees to the left.
+const TURNED: Mounting = Mounting {
+    nose: Direction::Right,
+    right: Direction::Back,
+    belly: Direction::Down,
+};
+
+/// Turned, and 3 % off along two axes.
 fn misfit() -> Misfit {
     Misfit {
-        mounting: Mounting::from(ImuMounting::RightDown),
+        mounting: TURNED,
         scale: Vec3::new(1.03, 0.97, 1.03),
     }
 }
@@ -149,7 +156,7 @@ fn a_sensor_built_in_wrong_is_calibrated_at_the_console_and_then_hovers() {
     assert!(again.contains("mounted as the firmware has it"), "{again}");
 
     let found = stored(&flash);
-    assert_eq!(found.imu_mounting, ImuMounting::RightDown);
+    assert_eq!(Mounting::from(found.imu_mounting), TURNED);
     let calibrated = hover(found);
     println!("{calibrated:?}");
     assert!(

@@ -6,7 +6,9 @@ use sophie_sim::mixers::Variant;
 use sophie_sim::test_stands::flight_level::{Errors, Rig, level, vehicle};
 
 /// Outputs 1 and 2 changed places, and 3 and 4.
-const WIRED: MotorMap = MotorMap::M2143;
+fn wired() -> MotorMap {
+    MotorMap::of([1, 0, 3, 2]).unwrap()
+}
 
 fn hover(motor_map: MotorMap) -> Errors {
     let mut scenario = vehicle(Configuration::default(), 7.75, 6.9, Variant::Flexible);
@@ -14,14 +16,14 @@ fn hover(motor_map: MotorMap) -> Errors {
         motor_map,
         ..scenario.params
     };
-    Rig::wired(&scenario, WIRED).fly(12.0, level)
+    Rig::wired(&scenario, wired()).fly(12.0, level)
 }
 
 #[test]
 fn a_vehicle_hovers_by_the_map_of_its_wires_and_turns_over_without_it() {
-    let mapped = hover(WIRED);
+    let mapped = hover(wired());
     assert!(mapped.worst_roll < 3.0 && mapped.worst_pitch < 3.0, "{mapped:?}");
-    let straight = hover(MotorMap::M1234);
+    let straight = hover(MotorMap::STRAIGHT);
     assert!(
         straight.worst_roll.max(straight.worst_pitch) > 45.0,
         "{straight:?}"

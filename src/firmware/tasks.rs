@@ -2,21 +2,18 @@
 //! the other levels are in `sophie_flight`, compiled for speed.
 
 use embassy_executor::SpawnError;
-use embassy_sync::mutex::Mutex;
 use sophie_boards::retained::Memory;
-use sophie_boards::{BarometerPort, Board, BufferedInput, BufferedOutput, ThisChip, UsbDriver};
+use sophie_boards::{BarometerPort, Board, BufferedInput, BufferedOutput, StoragePort, ThisChip, UsbDriver};
 use sophie_flight::tasks as flight;
 use sophie_ports::chip::Look;
 use sophie_ports::sensors::Barometer;
 use sophie_ports::signing::Stored;
-use sophie_ports::storage::Storage;
 use sophie_tasks::console::one_of::OneOf;
 use sophie_tasks::console::terminals::{Keyboards, Screens, Served};
 use sophie_tasks::ground_station::console_pipe::{Shell, ShellPort};
 use sophie_tasks::ground_station::mavlink::Lines;
-use sophie_tasks::links::{Links, Raw};
+use sophie_tasks::links::Links;
 use sophie_tasks::schedule::TaskId;
-use sophie_tasks::storage::shared_storage::SharedStorage;
 use sophie_tasks::usb::{self, Identity, Memory as UsbMemory, Port, UsbInput, UsbOutput};
 use static_cell::StaticCell;
 
@@ -26,8 +23,6 @@ use super::Levels;
 type ConsoleInput = Keyboards<'static, OneOf<OneOf<BufferedInput, UsbInput<'static>>, ShellPort<'static>>, 3>;
 type ConsoleOutput =
     Screens<'static, OneOf<OneOf<BufferedOutput, UsbOutput<'static>>, ShellPort<'static>>, 3>;
-/// The parameters' storage, for the console and MAVLink.
-type StoragePort = SharedStorage<'static, sophie_boards::StoragePort>;
 
 /// Input of MAVLink, of a serial line or of USB.
 type MavlinkInput = OneOf<BufferedInput, UsbInput<'static>>;
@@ -38,7 +33,6 @@ static SHELL: Shell = Shell::new();
 static SERVED: StaticCell<Served> = StaticCell::new();
 static USB_PORT: StaticCell<Port> = StaticCell::new();
 static USB_MEMORY: StaticCell<UsbMemory<'static>> = StaticCell::new();
-static STORAGE: StaticCell<Mutex<Raw, sophie_boards::StoragePort>> = StaticCell::new();
 
 /// Spawns every task; `self_test`: the inertial sensor's, first. Called once.
 ///
@@ -87,10 +81,10 @@ pub fn spawn(
         OneOf::First(OneOf::Second(usb_output)),
         OneOf::Second(SHELL.port()),
     ]);
-    let defaults = board.storage.defaults();
-    let storage: &'static _ = STORAGE.init(Mutex::new(board.storage));
-    let storage = || SharedStorage::new(storage, defaults);
-    levels.spawn_unmeasured("console", console(links, input, output, storage(), board.chip)?);
+    levels.spawn_unmeasured(
+        "console",
+        console(links, input, output, board.storage, board.chip)?,
+    );
     let (usb_input, usb_output) = port.mavlink();
     let lines = Lines {
         inputs: [OneOf::First(board.mavlink_input), OneOf::Second(usb_input)],
@@ -102,7 +96,7 @@ pub fn spawn(
     };
     levels.spawn(
         TaskId::Mavlink,
-        mavlink(links, lines, storage(), board.loaded.signing)?,
+        mavlink(links, lines, board.storage, board.loaded.signing)?,
     );
     match board.usb.driver {
         Some(driver) => {

@@ -1,5 +1,4 @@
 //! Stored parameters: checked at start-up, saved while the motors stand, shared by console and MAVLink.
 
 pub mod parameters;
-pub mod shared_storage;
 pub mod storing;

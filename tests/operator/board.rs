@@ -119,7 +119,7 @@ impl Default for Hands {
             unplugged_at: None,
             board: "table",
             build: 0x1234_ABCD,
-            wiring: MotorMap::M1234,
+            wiring: MotorMap::STRAIGHT,
             real_time: false,
         }
     }

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use sophie_control::calibration::Face;
 use sophie_control::maths::vector::Vec3;
-use sophie_control::params::{MotorMap, Params};
+use sophie_control::params::Params;
 use sophie_control::pilot::rc::{ArmChoice, StickMode, Sticks};
 use sophie_sim::live::Key;
 
@@ -411,7 +411,7 @@ fn brought_up(temp: &Temp, board: &Board, more: &[&str]) {
     assert_eq!((status, &*complaint), (Some(0), ""), "{said}");
     assert!(said.contains("\nall 28 steps passed"), "{said}");
     assert!(file().contains("state = \"all 28 steps passed\""), "{}", file());
-    assert_eq!(board.stored().motor_map, MotorMap::M1324);
+    assert_eq!(board.stored().motor_map.number(), 1324.0);
     let build = "build 1234abcd, ";
     assert_eq!(file().matches(build).count(), 1 + 28, "{}", file());
     let name = board.name();

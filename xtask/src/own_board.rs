@@ -21,17 +21,12 @@ const OF_THE_COPY: &str = "-copy";
 const ORIGINAL: &str = "matek-h743";
 
 /// In the board file: old and new.
-const CHANGES: [(&str, &str); 10] = [
+const CHANGES: [(&str, &str); 9] = [
+    ("    name: \"matek-h743\";", "    name: \"own-h743\";"),
     (
-        "pub const NAME: &str = \"matek-h743\"",
-        "pub const NAME: &str = \"own-h743\"",
+        "BusErrors, EscTimer, Lamp,",
+        "BusErrors, EscTimer, EscTimers, hold, Lamp,",
     ),
-    (
-        "EscTimer<peripherals::TIM4, peripherals::DMA1_CH0, Irqs>;",
-        "EscTimers<EscTimer<peripherals::TIM4, peripherals::DMA1_CH0, Irqs>, \
-         EscTimer<peripherals::TIM3, peripherals::DMA1_CH5, Irqs>>;",
-    ),
-    ("Dog, EscTimer, Lamp,", "Dog, EscTimer, EscTimers, hold, Lamp,"),
     (
         "        DMA2_STREAM0 =>",
         "        DMA1_STREAM5 => dma::InterruptHandler<peripherals::DMA1_CH5>;\n        DMA2_STREAM0 =>",
@@ -42,15 +37,16 @@ const CHANGES: [(&str, &str); 10] = [
          motor_3: PC8,\n        more_dma: DMA1_CH5,\n",
     ),
     (
-        "    let pins = (p.motor_1, p.motor_2, p.motor_3, p.motor_4);\n    \
-         EscTimer::new(p.timer, pins, p.dma, Irqs, EscProtocol::from_params(params))\n",
-        "    let protocol = EscProtocol::from_params(params);\n    EscTimers::new(\n        \
-         EscTimer::first(p.timer, p.dma, Irqs, protocol).motor(0, p.motor_1).motor(3, p.motor_4),\n        \
-         EscTimer::second(p.second, p.more_dma, Irqs, protocol).motor(1, p.motor_2).motor(2, p.motor_3),\n    )\n",
+        "    motors: EscTimer<peripherals::TIM4, peripherals::DMA1_CH0, Irqs>;\n",
+        "    motors: EscTimers<EscTimer<peripherals::TIM4, peripherals::DMA1_CH0, Irqs>, \
+         EscTimer<peripherals::TIM3, peripherals::DMA1_CH5, Irqs>> = {\n        let m = parts.motors;\n        \
+         let protocol = sophie_drivers::esc_protocol::EscProtocol::from_params(params);\n        EscTimers::new(\n            \
+         EscTimer::first(m.timer, m.dma, Irqs, protocol).motor(0, m.motor_1).motor(3, m.motor_4),\n            \
+         EscTimer::second(m.second, m.more_dma, Irqs, protocol).motor(1, m.motor_2).motor(2, m.motor_3),\n        )\n    };\n",
     ),
     (
-        "const MOTORS_LOW: [PortLevels; 1] = [PortLevels::new(pac::GPIOD, &[12, 13, 14, 15], &[])];\n",
-        "const MOTORS_LOW: [PortLevels; 2] = [\n    PortLevels::new(pac::GPIOD, &[12, 15], &[]),\n    \
+        "pub const MOTORS_LOW: [PortLevels; 1] = [PortLevels::new(pac::GPIOD, &[12, 13, 14, 15], &[])];\n",
+        "pub const MOTORS_LOW: [PortLevels; 2] = [\n    PortLevels::new(pac::GPIOD, &[12, 15], &[]),\n    \
          PortLevels::new(pac::GPIOC, &[8, 9], &[]),\n];\n",
     ),
     (
@@ -62,9 +58,9 @@ const CHANGES: [(&str, &str); 10] = [
         "    supply: SupplyParts {\n        sensors: PE5,\n    }\n    motors: MotorParts {",
     ),
     (
-        "    let mut storage = storage(parts.storage);\n",
-        "    hold(parts.supply.sensors.into(), Level::High);\n    embassy_time::Timer::after_millis(100).await;\n    \
-         let mut storage = storage(parts.storage);\n",
+        "    storage: ParamFlash<0x2_0000> =",
+        "    first: {\n        hold(parts.supply.sensors.into(), Level::High);\n        \
+         embassy_time::Timer::after_millis(100).await;\n    };\n    storage: ParamFlash<0x2_0000> =",
     ),
 ];
 

@@ -1,4 +1,4 @@
-//! From reset to running clocks. Outputs and watchdog come first: nothing may spin or hang while crystal and PLLs
+//! From reset to running clocks and caches. Outputs and watchdog come first: nothing may spin or hang while crystal and PLLs
 //! start.
 
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -31,7 +31,7 @@ pub fn micros() -> u64 {
     }
 }
 
-/// Starts the watchdog, then the clocks of `config`; `timer` is embassy-time's. If the crystal or a PLL fails, the
+/// Starts the watchdog, then the clocks of `config`, then the caches; `timer` is embassy-time's. If the crystal or a PLL fails, the
 /// watchdog resets, and the next start reports which. Called once.
 pub fn start(config: Config, timer: TimGp32) -> Peripherals {
     watchdog::start();
@@ -51,6 +51,10 @@ pub fn start(config: Config, timer: TimGp32) -> Peripherals {
     BUS.store(bus.map_or(0, |hz| hz.0), Ordering::Relaxed);
     COUNTING.store(true, Ordering::Relaxed);
     retained::forget();
+    #[cfg(family = "f4")]
+    super::accelerator::enable();
+    #[cfg(not(family = "f4"))]
+    crate::cortex_m::enable_caches(crate::DATA_CACHE);
     peripherals
 }
 

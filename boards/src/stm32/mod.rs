@@ -15,7 +15,7 @@ compile_error!(
 );
 
 #[cfg(family = "f4")]
-pub mod accelerator;
+mod accelerator;
 #[cfg_attr(family = "h7", path = "adc_h7.rs")]
 #[cfg_attr(not(family = "h7"), path = "adc_f4.rs")]
 mod adc;
@@ -35,6 +35,7 @@ mod loader;
 #[cfg_attr(not(family = "h7"), path = "options_f4.rs")]
 mod options;
 mod pads;
+mod ports;
 mod pulse_timer;
 mod rails;
 mod reset;
@@ -61,18 +62,18 @@ pub use i2c_bus::{BusErrors, WatchErrors, set_times};
 pub use lights::{Lamp, Lights};
 pub use loader::{enter_or_leave_loader, leave_for_loader};
 pub use pads::{Pad, Pupdr, Taken, Wiring, pad};
+pub(crate) use ports::ports;
 pub use rails::{PortLevels, drive, hold};
 pub use reset::take_reset_cause;
 pub use serial::{
-    BufferedInput, BufferedOutput, GroundLine, MAVLINK_BYTES_PER_SECOND, ReceiverLine, TelemetryLine,
-    console_lines, ground_line, mavlink_lines, receiver_line,
+    BufferedInput, BufferedLine, BufferedOutput, GroundLine, MAVLINK_BYTES_PER_SECOND, ReceiverLine,
+    TelemetryLine, ground_line, receiver_line,
 };
 pub use servo_pairs::ServoPairs;
 pub use servos::ServoTimer;
 pub use silicon::look;
-pub use spi::PlainChip;
-pub use spi::{DmaChip, Selected, spi_config};
-pub use storage::{BoardStorage, load_parameters};
+pub use spi::{DmaChip, PlainChip, Selected, plain_chip, spi_config};
+pub use storage::{BoardStorage, StorageCell, load_parameters};
 pub use tone::Tone;
 pub use usb::{USB_BYTES_PER_SECOND, UsbDriver, UsbPort};
 pub use watchdog::{Dog, stop_with_core};

@@ -113,38 +113,6 @@ pub fn receiver_line<T: Instance, R: RxDma<T>, D: TxDma<T>>(
     )
 }
 
-/// Console line: 115,200 baud, 8N1.
-pub fn console_lines<T: Instance>(
-    uart: Peri<'static, T>,
-    rx: Peri<'static, impl RxPin<T>>,
-    tx: Peri<'static, impl TxPin<T>>,
-    irqs: impl Binding<T::Interrupt, BufferedInterruptHandler<T>> + 'static,
-) -> (BufferedInput, BufferedOutput) {
-    let line = BufferedLine {
-        baud: 115_200,
-        priority: AS_DRIVERS,
-        input: CONSOLE_IN.take(),
-        output: CONSOLE_OUT.take(),
-    };
-    line.open(uart, rx, tx, irqs)
-}
-
-/// MAVLink line: [`MAVLINK_BAUD`], 8N1, its interrupts between the flight and the steady level.
-pub fn mavlink_lines<T: Instance>(
-    uart: Peri<'static, T>,
-    rx: Peri<'static, impl RxPin<T>>,
-    tx: Peri<'static, impl TxPin<T>>,
-    irqs: impl Binding<T::Interrupt, BufferedInterruptHandler<T>> + 'static,
-) -> (BufferedInput, BufferedOutput) {
-    let line = BufferedLine {
-        baud: MAVLINK_BAUD,
-        priority: BELOW_FLIGHT,
-        input: MAVLINK_IN.take(),
-        output: MAVLINK_OUT.take(),
-    };
-    line.open(uart, rx, tx, irqs)
-}
-
 /// Line of the module that `flow_port` names: [`GROUND_BAUD`], 8N1, its interrupts as MAVLink's. Without one the port stays
 /// as the reset left it.
 pub fn ground_line<T: Instance>(
@@ -169,7 +137,7 @@ pub fn ground_line<T: Instance>(
 }
 
 /// A line moved by the processor through two rings, an interrupt a byte: DMA streams are scarce.
-struct BufferedLine {
+pub struct BufferedLine {
     baud: u32,
     priority: Priority,
     input: &'static mut [u8],
@@ -177,7 +145,28 @@ struct BufferedLine {
 }
 
 impl BufferedLine {
-    fn open<T: Instance>(
+    /// Console line: 115,200 baud. Called once.
+    pub fn console() -> Self {
+        Self {
+            baud: 115_200,
+            priority: AS_DRIVERS,
+            input: CONSOLE_IN.take(),
+            output: CONSOLE_OUT.take(),
+        }
+    }
+
+    /// MAVLink line: [`MAVLINK_BAUD`], its interrupts between the flight and the steady level. Called once.
+    pub fn mavlink() -> Self {
+        Self {
+            baud: MAVLINK_BAUD,
+            priority: BELOW_FLIGHT,
+            input: MAVLINK_IN.take(),
+            output: MAVLINK_OUT.take(),
+        }
+    }
+
+    /// The line on its port and pins, 8N1.
+    pub fn open<T: Instance>(
         self,
         uart: Peri<'static, T>,
         rx: Peri<'static, impl RxPin<T>>,

@@ -1,8 +1,9 @@
 //! One chip on its own SPI bus.
 
+use embassy_embedded_hal::adapter::BlockingAsync;
 use embassy_stm32::gpio::{Level, Output, Pin, Speed};
 use embassy_stm32::spi::mode::Master;
-use embassy_stm32::spi::{Config, Instance as SpiInstance, MODE_3, Spi};
+use embassy_stm32::spi::{Config, Instance as SpiInstance, MODE_3, MisoPin, MosiPin, SckPin, Spi};
 use embassy_stm32::time::Hertz;
 use embassy_stm32::{Peri, rcc};
 use embassy_time::Timer;
@@ -40,10 +41,22 @@ impl<B> Selected<B> {
 /// A chip on a bus with DMA.
 pub type DmaChip = Selected<Spi<'static, embassy_stm32::mode::Async, Master>>;
 
+/// A chip of up to `most_hz` on a bus without DMA.
+pub fn plain_chip<T: SpiInstance>(
+    spi: Peri<'static, T>,
+    clock: Peri<'static, impl SckPin<T>>,
+    data_out: Peri<'static, impl MosiPin<T>>,
+    data_in: Peri<'static, impl MisoPin<T>>,
+    select: Peri<'static, impl Pin>,
+    most_hz: u32,
+) -> PlainChip {
+    let config = spi_config(&spi, most_hz);
+    let bus = Spi::new_blocking(spi, clock, data_out, data_in, config);
+    Selected::new(BlockingAsync::new(bus), select)
+}
+
 /// A chip on a bus without DMA: the processor waits.
-pub type PlainChip = Selected<
-    embassy_embedded_hal::adapter::BlockingAsync<Spi<'static, embassy_stm32::mode::Blocking, Master>>,
->;
+pub type PlainChip = Selected<BlockingAsync<Spi<'static, embassy_stm32::mode::Blocking, Master>>>;
 
 /// Selects the chip; a dropped transfer also releases it.
 struct Hold<'a>(&'a mut Output<'static>);

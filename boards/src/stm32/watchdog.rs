@@ -7,7 +7,11 @@ use embassy_stm32::pac::IWDG;
 #[cfg(family = "h7")]
 use embassy_stm32::pac::IWDG1 as IWDG;
 use embassy_stm32::pac::iwdg::vals::{Key, Pr};
-use embassy_stm32::wdg::{IndependentWatchdog, Instance};
+#[cfg(not(family = "h7"))]
+use embassy_stm32::peripherals::IWDG as DogPeripheral;
+#[cfg(family = "h7")]
+use embassy_stm32::peripherals::IWDG1 as DogPeripheral;
+use embassy_stm32::wdg::IndependentWatchdog;
 use embassy_time::Timer;
 use sophie_ports::chip::Watchdog;
 
@@ -40,18 +44,18 @@ pub fn stop_with_core() {
 }
 
 /// The running watchdog.
-pub struct Dog<T: Instance + 'static>(IndependentWatchdog<'static, T>);
+pub struct Dog(IndependentWatchdog<'static, DogPeripheral>);
 
-impl<T: Instance + 'static> Dog<T> {
+impl Dog {
     /// Starts the watchdog for good.
-    pub fn start(instance: Peri<'static, T>) -> Self {
+    pub fn start(instance: Peri<'static, DogPeripheral>) -> Self {
         let mut dog = IndependentWatchdog::new(instance, PERIOD_US);
         dog.unleash();
         Self(dog)
     }
 }
 
-impl<T: Instance + 'static> Watchdog for Dog<T> {
+impl Watchdog for Dog {
     fn feed(&mut self) {
         self.0.pet();
     }

@@ -182,7 +182,7 @@ mod tests {
             seen.insert(name);
         }
         assert_eq!(seen.len(), 24);
-        assert_eq!(Mounting::from(ImuMounting::ForwardDown), Mounting::AS_BUILT);
+        assert_eq!(Mounting::from(ImuMounting::FORWARD_DOWN), Mounting::AS_BUILT);
     }
 
     /// The limit case of each rotation: a vehicle that rests on one side feels 1 g away from it, and one that turns
@@ -207,7 +207,12 @@ mod tests {
             assert!(m.to_vehicle(a.cross(b)) == m.to_vehicle(a).cross(m.to_vehicle(b)));
         }
         // By hand: a board turned by 90 degrees to the left has the nose at its right.
-        let left = Mounting::from(ImuMounting::RightDown);
+        let left = Mounting {
+            nose: Direction::Right,
+            right: Direction::Back,
+            belly: Direction::Down,
+        };
+        assert_eq!(left.parameter().map(ImuMounting::number), Some(8.0));
         assert!(left.to_vehicle(Vec3::new(0.0, 1.0, 0.0)) == Vec3::new(1.0, 0.0, 0.0));
         assert!(left.to_vehicle(Vec3::new(1.0, 0.0, 0.0)) == Vec3::new(0.0, -1.0, 0.0));
     }

@@ -35,25 +35,12 @@ const fn most(choices: &[Choice]) -> f32 {
     }
 }
 
-macro_rules! choices {
-    ($( $(#[$doc:meta])+ $name:ident { $( $(#[$item_doc:meta])+ $item:ident = $number:literal, $text:literal; )+ } )+) => { $(
-        $(#[$doc])+
-        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-        pub enum $name {
-            $( $(#[$item_doc])+ $item ),+
-        }
-
+/// What every type of a few values has, found by its `ALL` and its `CHOICES`.
+macro_rules! one_of_choices {
+    ($name:ident) => {
         impl $name {
-            /// Every one of them, by ascending number.
-            pub const ALL: &'static [Self] = &[$( Self::$item ),+];
-            pub(super) const CHOICES: &'static [Choice] = &[$( Choice { value: $number, name: $text } ),+];
             pub(super) const MIN: f32 = least(Self::CHOICES);
             pub(super) const MAX: f32 = most(Self::CHOICES);
-
-            /// Its number in the table, in the parameter's unit.
-            pub const fn number(self) -> f32 {
-                match self { $( Self::$item => $number ),+ }
-            }
         }
 
         impl Value for $name {
@@ -66,6 +53,53 @@ macro_rules! choices {
                 Self::ALL.get(at).copied()
             }
         }
+    };
+}
+
+/// Values that code distinguishes: a variant each.
+macro_rules! choices {
+    ($( $(#[$doc:meta])+ $name:ident { $( $(#[$item_doc:meta])+ $item:ident = $number:literal, $text:literal; )+ } )+) => { $(
+        $(#[$doc])+
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum $name {
+            $( $(#[$item_doc])+ $item ),+
+        }
+
+        impl $name {
+            /// Every one of them, by ascending number.
+            pub const ALL: &'static [Self] = &[$( Self::$item ),+];
+            pub(super) const CHOICES: &'static [Choice] = &[$( Choice { value: $number, name: $text } ),+];
+
+            /// Its number in the table, in the parameter's unit.
+            pub const fn number(self) -> f32 {
+                match self { $( Self::$item => $number ),+ }
+            }
+        }
+
+        one_of_choices!($name);
+    )+ };
+}
+
+/// Values that code computes with: whole numbers, with names for people or none.
+macro_rules! numbers {
+    ($( $(#[$doc:meta])+ $name:ident($repr:ident) { $( $number:literal $(= $text:literal)? ),+ $(,)? } )+) => { $(
+        $(#[$doc])+
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub struct $name($repr);
+
+        impl $name {
+            /// Every one of them, by ascending number.
+            pub const ALL: &'static [Self] = &[$( Self($number) ),+];
+            pub(super) const CHOICES: &'static [Choice] =
+                &[$( Choice { value: $number as f32, name: concat!($($text)?) } ),+];
+
+            /// Its number in the table, in the parameter's unit.
+            pub const fn number(self) -> f32 {
+                self.0 as f32
+            }
+        }
+
+        one_of_choices!($name);
     )+ };
 }
 
@@ -152,110 +186,6 @@ choices! {
         Along = 1.0, "along";
     }
 
-    /// How the vehicle's inertial sensor sits: where the axes of the board's file have the vehicle's nose and belly.
-    ImuMounting {
-        /// Nose forward, belly down.
-        ForwardDown = 0.0, "forward_down";
-        /// Nose forward, belly up.
-        ForwardUp = 1.0, "forward_up";
-        /// Nose forward, belly right.
-        ForwardRight = 2.0, "forward_right";
-        /// Nose forward, belly left.
-        ForwardLeft = 3.0, "forward_left";
-        /// Nose back, belly down.
-        BackDown = 4.0, "back_down";
-        /// Nose back, belly up.
-        BackUp = 5.0, "back_up";
-        /// Nose back, belly right.
-        BackRight = 6.0, "back_right";
-        /// Nose back, belly left.
-        BackLeft = 7.0, "back_left";
-        /// Nose right, belly down.
-        RightDown = 8.0, "right_down";
-        /// Nose right, belly up.
-        RightUp = 9.0, "right_up";
-        /// Nose right, belly forward.
-        RightForward = 10.0, "right_forward";
-        /// Nose right, belly back.
-        RightBack = 11.0, "right_back";
-        /// Nose left, belly down.
-        LeftDown = 12.0, "left_down";
-        /// Nose left, belly up.
-        LeftUp = 13.0, "left_up";
-        /// Nose left, belly forward.
-        LeftForward = 14.0, "left_forward";
-        /// Nose left, belly back.
-        LeftBack = 15.0, "left_back";
-        /// Nose down, belly right.
-        DownRight = 16.0, "down_right";
-        /// Nose down, belly left.
-        DownLeft = 17.0, "down_left";
-        /// Nose down, belly forward.
-        DownForward = 18.0, "down_forward";
-        /// Nose down, belly back.
-        DownBack = 19.0, "down_back";
-        /// Nose up, belly right.
-        UpRight = 20.0, "up_right";
-        /// Nose up, belly left.
-        UpLeft = 21.0, "up_left";
-        /// Nose up, belly forward.
-        UpForward = 22.0, "up_forward";
-        /// Nose up, belly back.
-        UpBack = 23.0, "up_back";
-    }
-
-    /// Which rotor hangs at each motor output: the digits, from the left, are the rotors at outputs 1 to 4.
-    MotorMap {
-        /// Rotors 1, 2, 3 and 4 at outputs 1 to 4.
-        M1234 = 1234.0, "";
-        /// Rotors 1, 2, 4 and 3 at outputs 1 to 4.
-        M1243 = 1243.0, "";
-        /// Rotors 1, 3, 2 and 4 at outputs 1 to 4.
-        M1324 = 1324.0, "";
-        /// Rotors 1, 3, 4 and 2 at outputs 1 to 4.
-        M1342 = 1342.0, "";
-        /// Rotors 1, 4, 2 and 3 at outputs 1 to 4.
-        M1423 = 1423.0, "";
-        /// Rotors 1, 4, 3 and 2 at outputs 1 to 4.
-        M1432 = 1432.0, "";
-        /// Rotors 2, 1, 3 and 4 at outputs 1 to 4.
-        M2134 = 2134.0, "";
-        /// Rotors 2, 1, 4 and 3 at outputs 1 to 4.
-        M2143 = 2143.0, "";
-        /// Rotors 2, 3, 1 and 4 at outputs 1 to 4.
-        M2314 = 2314.0, "";
-        /// Rotors 2, 3, 4 and 1 at outputs 1 to 4.
-        M2341 = 2341.0, "";
-        /// Rotors 2, 4, 1 and 3 at outputs 1 to 4.
-        M2413 = 2413.0, "";
-        /// Rotors 2, 4, 3 and 1 at outputs 1 to 4.
-        M2431 = 2431.0, "";
-        /// Rotors 3, 1, 2 and 4 at outputs 1 to 4.
-        M3124 = 3124.0, "";
-        /// Rotors 3, 1, 4 and 2 at outputs 1 to 4.
-        M3142 = 3142.0, "";
-        /// Rotors 3, 2, 1 and 4 at outputs 1 to 4.
-        M3214 = 3214.0, "";
-        /// Rotors 3, 2, 4 and 1 at outputs 1 to 4.
-        M3241 = 3241.0, "";
-        /// Rotors 3, 4, 1 and 2 at outputs 1 to 4.
-        M3412 = 3412.0, "";
-        /// Rotors 3, 4, 2 and 1 at outputs 1 to 4.
-        M3421 = 3421.0, "";
-        /// Rotors 4, 1, 2 and 3 at outputs 1 to 4.
-        M4123 = 4123.0, "";
-        /// Rotors 4, 1, 3 and 2 at outputs 1 to 4.
-        M4132 = 4132.0, "";
-        /// Rotors 4, 2, 1 and 3 at outputs 1 to 4.
-        M4213 = 4213.0, "";
-        /// Rotors 4, 2, 3 and 1 at outputs 1 to 4.
-        M4231 = 4231.0, "";
-        /// Rotors 4, 3, 1 and 2 at outputs 1 to 4.
-        M4312 = 4312.0, "";
-        /// Rotors 4, 3, 2 and 1 at outputs 1 to 4.
-        M4321 = 4321.0, "";
-    }
-
     /// Servos whose marks have been measured: their digits, ascending.
     ServoMarks {
         /// No servo.
@@ -303,6 +233,36 @@ choices! {
         /// ±16 g.
         G16 = 16.0, "";
     }
+}
+
+numbers! {
+    /// How the vehicle's inertial sensor sits: where the axes of the board's file have the vehicle's nose and belly.
+    ImuMounting(u8) {
+        0 = "forward_down", 1 = "forward_up", 2 = "forward_right", 3 = "forward_left",
+        4 = "back_down", 5 = "back_up", 6 = "back_right", 7 = "back_left",
+        8 = "right_down", 9 = "right_up", 10 = "right_forward", 11 = "right_back",
+        12 = "left_down", 13 = "left_up", 14 = "left_forward", 15 = "left_back",
+        16 = "down_right", 17 = "down_left", 18 = "down_forward", 19 = "down_back",
+        20 = "up_right", 21 = "up_left", 22 = "up_forward", 23 = "up_back",
+    }
+
+    /// Which rotor hangs at each motor output: the digits, from the left, are the rotors at outputs 1 to 4.
+    MotorMap(u16) {
+        1234, 1243, 1324, 1342, 1423, 1432,
+        2134, 2143, 2314, 2341, 2413, 2431,
+        3124, 3142, 3214, 3241, 3412, 3421,
+        4123, 4132, 4213, 4231, 4312, 4321,
+    }
+}
+
+impl ImuMounting {
+    /// Nose forward, belly down: as the board's file has them.
+    pub const FORWARD_DOWN: Self = Self(0);
+}
+
+impl MotorMap {
+    /// Rotors 1 to 4 at outputs 1 to 4.
+    pub const STRAIGHT: Self = Self(1234);
 }
 
 impl ServoMarks {

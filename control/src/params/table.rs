@@ -112,7 +112,7 @@ params! {
     motor_pulse_max = 2000.0, "us", 1200.0 ..= 2200.0;
     /// Which rotor hangs at each motor output (`rotors`): its four digits, each of 1 to 4 once, are the rotors at outputs 1
     /// to 4; 1243 where the wires of 3 and 4 are swapped.
-    motor_map: MotorMap = MotorMap::M1234, "1";
+    motor_map: MotorMap = MotorMap::STRAIGHT, "1";
     /// Receiver: 0 for CRSF at 420 kbaud, 1 for SBUS. Read by the board at start-up.
     rc_protocol: RcProtocol = RcProtocol::Crsf, "1";
     /// Module of optical flow and range: 0 for none, 1 for one that speaks MSP version 2. Read by the board at start-up.
@@ -182,7 +182,7 @@ params! {
 
     /// How the inertial sensor sits beyond what the board's file says: where its axes have the vehicle's nose and belly
     /// (`calibrate mounting`).
-    imu_mounting: ImuMounting = ImuMounting::ForwardDown, "1";
+    imu_mounting: ImuMounting = ImuMounting::FORWARD_DOWN, "1";
     /// Accelerometer bias along x of the board's axes, before the mounting: what it reads beyond gravity.
     accel_bias_x = 0.0, "m/s2", -0.6 ..= 0.6;
     /// Accelerometer bias along y.

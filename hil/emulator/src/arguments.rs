@@ -10,11 +10,27 @@ use sophie_sim::scenario::{Overrides, Scenario};
 
 use crate::{SPEEDS, flyable};
 
+/// Runs `program` with its arguments. Exit status: 0 where `run` gives true, 1 where false, 2 after a complaint.
+pub fn serve<A: Parser>(program: &str, run: impl FnOnce(&A) -> Result<bool, String>) -> ExitCode {
+    let args = match parse(program) {
+        Ok(args) => args,
+        Err(status) => return status,
+    };
+    match run(&args) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(1),
+        Err(line) => {
+            complain(program, &line);
+            ExitCode::from(2)
+        }
+    }
+}
+
 /// The arguments of `program`.
 ///
 /// # Errors
 /// The exit status after help, the version or a complaint.
-pub fn parse<A: Parser>(program: &str) -> Result<A, ExitCode> {
+fn parse<A: Parser>(program: &str) -> Result<A, ExitCode> {
     A::try_parse().map_err(|error| {
         if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) {
             let _ = error.print();

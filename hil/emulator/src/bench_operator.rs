@@ -74,7 +74,7 @@ impl Default for BenchOperator {
             bent: [0.0; 4],
             height: 0.0,
             sticks: None,
-            wiring: MotorMap::M1234,
+            wiring: MotorMap::STRAIGHT,
         };
         let seen = Observation::default();
         Self {

@@ -91,18 +91,7 @@ struct Args {
 }
 
 fn main() -> ExitCode {
-    let args = match arguments::parse(PROGRAM) {
-        Ok(args) => args,
-        Err(status) => return status,
-    };
-    match run(&args) {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::from(1),
-        Err(line) => {
-            complain(PROGRAM, &line);
-            ExitCode::from(2)
-        }
-    }
+    arguments::serve(PROGRAM, run)
 }
 
 fn run(args: &Args) -> Result<bool, String> {

@@ -381,7 +381,7 @@ fn an_output_is_tried_by_its_number_whatever_the_map() {
     let mut table = Table::with(
         UNLOADED,
         Params {
-            motor_map: MotorMap::M2314,
+            motor_map: MotorMap::of([1, 2, 0, 3]).unwrap(),
             ..Params::DEFAULT
         },
     );

@@ -90,7 +90,7 @@ fn a_grip_is_kept_without_what_met_the_rotors_and_with_the_faults_that_last() {
 #[test]
 fn the_gyros_bias_is_kept_as_the_part_has_it() {
     let params = Params {
-        imu_mounting: ImuMounting::RightDown,
+        imu_mounting: ImuMounting::ALL[8],
         ..Params::DEFAULT
     };
     let (rig, memory) = (Rig::with(params), FakeMemory::default());

@@ -8,7 +8,6 @@ use std::process::Stdio;
 
 use super::instruction::Instruction;
 use super::{CORES, Core, qemu};
-use crate::build::Recipe;
 use crate::image::Image;
 use crate::{Error, build};
 
@@ -41,13 +40,7 @@ struct Sum {
 /// No toolchain or QEMU, or an image did not reach the counted steps.
 pub fn cycles() -> Result<(), Error> {
     for core in &CORES {
-        let elf = build::image(&Recipe {
-            package: "sophie-cost",
-            arguments: &[],
-            variables: &[],
-            core: core.cpu,
-            kept: core.cpu,
-        })?;
+        let elf = core.image()?;
         let sum = execute(core, &elf)?;
         println!("{STEPS} steps on an {}: a step, and an instruction", core.name);
         let row = |what: &str, n: u64| {

@@ -7,6 +7,8 @@ mod qemu;
 mod stages;
 mod table;
 
+use std::path::PathBuf;
+
 use serde::Serialize;
 
 use crate::build::Recipe;
@@ -32,6 +34,19 @@ pub struct Core {
     pub cpu: &'static str,
     /// QEMU machine with this core.
     pub machine: &'static str,
+}
+
+impl Core {
+    /// Builds the counting image for it; its path.
+    fn image(&self) -> Result<PathBuf, Error> {
+        build::image(&Recipe {
+            package: "sophie-cost",
+            arguments: &[],
+            variables: &[],
+            core: self.cpu,
+            kept: self.cpu,
+        })
+    }
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -68,13 +83,7 @@ pub fn cost(then: Then) -> Result<(), Error> {
     let mut counts = Vec::new();
     let mut commands = Vec::new();
     for core in &CORES {
-        let elf = build::image(&Recipe {
-            package: "sophie-cost",
-            arguments: &[],
-            variables: &[],
-            core: core.cpu,
-            kept: core.cpu,
-        })?;
+        let elf = core.image()?;
         let run = qemu::run(core, &elf)?;
         counts.extend(run.counts);
         commands.extend(run.commands);

@@ -14,7 +14,6 @@ use sophie_emulator::flight::{self, Flight};
 use sophie_emulator::plan::Plan;
 use sophie_emulator::terminal::Sockets;
 use sophie_emulator::{arguments, board_kind, compare};
-use sophie_report::terminal::complain;
 use sophie_sim::parallel;
 use sophie_sim::record::{FlightRecord, Silent};
 use sophie_sim::scenario::Scenario;
@@ -54,18 +53,7 @@ fn seeds(text: &str) -> Result<RangeInclusive<u64>, String> {
 }
 
 fn main() -> ExitCode {
-    let args = match arguments::parse(PROGRAM) {
-        Ok(args) => args,
-        Err(status) => return status,
-    };
-    match run(&args) {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::from(1),
-        Err(line) => {
-            complain(PROGRAM, &line);
-            ExitCode::from(2)
-        }
-    }
+    arguments::serve(PROGRAM, run)
 }
 
 fn run(args: &Args) -> Result<bool, String> {

@@ -60,7 +60,7 @@ struct Walked {
 fn walk(folder: &Folder, builder: impl FnOnce(BenchOperator) -> Builder) -> Walked {
     let hands = BenchOperator::default();
     // The motors of 2 and 3 hang at each other's output.
-    hands.change(|held| held.wiring = MotorMap::M1324);
+    hands.change(|held| held.wiring = MotorMap::of([0, 2, 1, 3]).unwrap());
     let mut builder = builder(hands.clone());
     let (port, console) = terminal("--console");
     let protocol = folder.protocol();
