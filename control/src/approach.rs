@@ -1,5 +1,5 @@
 //! The way onto the pipe by itself, 100 Hz: finds the crown by the steps of the range, looks for the pipe's ends, and
-//! comes down over it. It asks for velocities, as the sticks do in a hold, and docs/hold.md describes it.
+//! comes down over it. It asks for velocities, as the sticks do in a hold, and docs/design/approach.md describes it.
 //!
 //! Lengths are from where a try began: forward and right along its heading, down.
 

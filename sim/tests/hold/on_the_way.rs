@@ -65,7 +65,7 @@ const FAULTS: [Fault; 20] = [
 
 impl Fault {
     /// What the pilot reads, and within which time if the vehicle still approaches then, s; `None` where a wrong scale is
-    /// found only once it has climbed or sunk over one surface (docs/hold.md).
+    /// found only once it has climbed or sunk over one surface (docs/lab/2026-11-25-source-faults.md).
     fn named(self) -> Option<(&'static str, f64)> {
         let stale = Reason::PositionStale.text();
         let named = match self {
@@ -163,7 +163,7 @@ fn what_fails_at_any_moment_is_named_and_harms_nothing() {
 }
 
 #[test]
-#[ignore = "two hundred missions: .ci/campaign flies them, docs/hold.md has what has come of them"]
+#[ignore = "two hundred missions: .ci/campaign flies them, docs/lab/2026-11-25-source-faults.md has what has come of them"]
 fn what_fails_at_any_moment_is_named_and_harms_nothing_with_many_seeds() {
     let wrong = Draw::of(2, &[1, 2, 3, 4, 5, 6, 7, 8], 200).judge();
     println!("{} of 200: {wrong:#?}", wrong.len());
@@ -171,7 +171,7 @@ fn what_fails_at_any_moment_is_named_and_harms_nothing_with_many_seeds() {
 }
 
 #[test]
-#[ignore = "two hundred missions, or what the variables ask for: docs/hold.md has what has come of several draws"]
+#[ignore = "two hundred missions, or what the variables ask for: docs/lab/2026-11-25-source-faults.md has what has come of several draws"]
 fn what_is_drawn_is_named_and_harms_nothing() {
     let draw = Draw::asked();
     let wrong = draw.judge();

@@ -64,7 +64,7 @@ fn one_that_is_scaled_since_power_up_is_named_in_the_take_off_and_gives_no_hold(
 }
 
 #[test]
-#[ignore = "120 flights: .ci/campaign flies them, docs/hold.md has what has come of them"]
+#[ignore = "120 flights: .ci/campaign flies them, docs/lab/2026-11-24-position-hold.md has what has come of them"]
 fn one_that_is_scaled_is_named_where_the_vehicle_climbs_with_every_seed() {
     let seeds: Vec<u64> = (1..=20).collect();
     let flights = sophie_sim::parallel::each(&seeds, |&seed| {
