@@ -1,6 +1,6 @@
 //! The law that holds a position, 100 Hz: sticks ask for velocities, centred sticks stay.
 //!
-//! Lateral: full state feedback, with the lag from setpoint to tilt in the state (docs/hold.md). Vertical: a cascade with
+//! Lateral: full state feedback, with the lag from setpoint to tilt in the state (docs/design/position-hold.md). Vertical: a cascade with
 //! the disturbance fed forward. Without a position it keeps level against the wind that it has learnt, and the height by
 //! the inertial sensor, for as long as the estimate's age allows.
 

@@ -1,6 +1,6 @@
 //! Random touches of the pipe: counts that end perched, away, or on the ground.
 //!
-//! `cargo run --release -p sophie-paper --example touches -- [FIRST_SEED [COUNT]]` prints the table of docs/results.md.
+//! `cargo run --release -p sophie-paper --example touches -- [FIRST_SEED [COUNT]]` prints the table of docs/lab/2026-11-24-touches.md.
 
 #![allow(clippy::print_stdout, reason = "the table is what it is for")]
 

@@ -7,7 +7,7 @@ use sophie_paper::study::touch::{End, STAY, Touch, Touched, fly, fly_as};
 use sophie_sim::parallel;
 use sophie_sim::scenario::Scenario;
 
-/// docs/results.md has a longer run.
+/// docs/lab/2026-11-24-touches.md has a longer run.
 const COUNT: u64 = 1000;
 /// Deepest fall of an escape, m; 0.5 is wanted.
 const DROP_MAX: f64 = 0.3;
@@ -224,7 +224,7 @@ fn touches_headed_off_the_pipe_are_left_without_a_fall() {
 }
 
 /// Offset (m), lean (degrees, to the same side), sink and sideways speed (m/s, outward) of touches that flights of the
-/// default mission once failed with (docs/results.md): planted 5 cm beside the crown, where an arm struck the flank while
+/// default mission once failed with (docs/lab/2026-11-24-missions.md): planted 5 cm beside the crown, where an arm struck the flank while
 /// the vehicle slid (seeds 100263 and 100858), and slid off before an arm closed (seed 770011 at 8 %).
 const ONCE_FAILED: [(f64, f64, f64, f64); 6] = [
     (0.050, 2.0, 0.25, 0.00),

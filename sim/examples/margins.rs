@@ -1,4 +1,4 @@
-//! Margins (docs/results.md): of the roll loop on the pipe, and of yaw at equal margins: disk margins of each allocation over the yaw gain and over arms that are not what
+//! Margins (docs/lab/2026-11-23-allocation.md): of the roll loop on the pipe, and of yaw at equal margins: disk margins of each allocation over the yaw gain and over arms that are not what
 //! the stack takes them for, and how tightly each holds its heading at the gain that its worst arms allow
 //! (`cargo run --release -p sophie-sim --example margins`).
 

@@ -1,4 +1,4 @@
-//! Tracking of each allocation in docs/results.md: hover in gusts with matched and mismatched arms over the yaw gain,
+//! Tracking of each allocation in docs/lab/2026-11-23-allocation.md: hover in gusts with matched and mismatched arms over the yaw gain,
 //! and whole missions (`cargo run --release -p sophie-sim --example mixers`).
 
 #![allow(clippy::print_stdout, reason = "the table is what it is for")]

@@ -1,4 +1,4 @@
-//! The default mission over many seeds: number accomplished, and reasons of the others (docs/results.md).
+//! The default mission over many seeds: number accomplished, and reasons of the others (docs/lab/2026-11-24-missions.md).
 //!
 //! `cargo run --release -p sophie-sim --example seeds -- FIRST COUNT [RHO [GUST [ARMS]]]`: infill in %, gusts in N RMS,
 //! 4 arms or 2.

@@ -1,15 +1,12 @@
 //! Headings, links, file names and words of a Markdown page.
 
+mod tree;
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Component, Path, PathBuf};
 
 use pulldown_cmark::{Event, Options, Parser, Tag, TagEnd};
-
-/// Source folders: inline `code` that begins with one of them and `/` names a file.
-const SOURCES: [&str; 13] = [
-    ".ci", ".github", "boards", "control", "docs", "drivers", "hil", "paper", "sim", "src", "tasks", "tests",
-    "tools",
-];
+pub use tree::Tree;
 
 #[derive(Debug, Default)]
 pub struct Page {
@@ -21,31 +18,56 @@ pub struct Page {
     pub code: Vec<String>,
     /// Words, tables and code blocks included.
     pub words: usize,
+    /// Headings, paragraphs, list entries and cells of tables, each a line, without code.
+    pub prose: Vec<String>,
 }
 
 impl Page {
     pub fn read(text: &str) -> Self {
         let mut page = Self::default();
         let mut heading = None;
+        let mut block = false;
+        let mut prose = String::new();
         for event in Parser::new_ext(text, Options::ENABLE_TABLES) {
             let said = match event {
                 Event::Start(Tag::Heading { .. }) => {
                     heading = Some(String::new());
                     continue;
                 }
-                Event::End(TagEnd::Heading(_)) => {
-                    page.anchor(&heading.take().unwrap_or_default());
+                Event::Start(Tag::CodeBlock(_)) => {
+                    block = true;
                     continue;
                 }
                 Event::Start(Tag::Link { dest_url, .. } | Tag::Image { dest_url, .. }) => {
                     page.links.push(dest_url.into_string());
                     continue;
                 }
+                Event::End(end) => {
+                    match end {
+                        TagEnd::Heading(_) => page.anchor(&heading.take().unwrap_or_default()),
+                        TagEnd::CodeBlock => block = false,
+                        TagEnd::Paragraph | TagEnd::Item | TagEnd::TableCell => {}
+                        _ => continue,
+                    }
+                    page.prose
+                        .extend(Some(std::mem::take(&mut prose)).filter(|p| !p.is_empty()));
+                    continue;
+                }
                 Event::Code(said) => {
+                    prose.push('`');
                     page.code.push(said.to_string());
                     said
                 }
-                Event::Text(said) => said,
+                Event::Text(said) => {
+                    if !block {
+                        prose.push_str(&said);
+                    }
+                    said
+                }
+                Event::SoftBreak | Event::HardBreak => {
+                    prose.push(' ');
+                    continue;
+                }
                 _ => continue,
             };
             page.words += said
@@ -75,8 +97,8 @@ impl Page {
     }
 }
 
-/// Faulty links and file names of `pages`, a line each; `exists` takes paths from the root.
-pub fn faults(pages: &BTreeMap<PathBuf, Page>, exists: impl Fn(&Path) -> bool) -> Vec<String> {
+/// Faulty links and file names of `pages`, a line each.
+pub fn faults(pages: &BTreeMap<PathBuf, Page>, tree: &Tree) -> Vec<String> {
     let mut found = Vec::new();
     for (path, page) in pages {
         let shown = path.display();
@@ -86,14 +108,20 @@ pub fn faults(pages: &BTreeMap<PathBuf, Page>, exists: impl Fn(&Path) -> bool) -
                 "" => path.clone(),
                 _ => resolved(&path.with_file_name(file)),
             };
-            if !(pages.contains_key(&target) || exists(&target)) {
+            if !tree.has(&target) {
                 found.push(format!("{shown}: {link}: no such file"));
             } else if !anchor.is_empty() && !pages.get(&target).is_some_and(|p| p.anchors.contains(anchor)) {
                 found.push(format!("{shown}: {link}: no such heading"));
             }
         }
-        for code in &page.code {
-            if named(code).is_some_and(|file| !exists(Path::new(file))) {
+        for code in page.code.iter().filter(|code| !placeholder(code)) {
+            let sound = match code.split_once('/') {
+                Some((folder, _)) if tree.folder(folder) => tree.has(Path::new(code)),
+                // The end of a source's path is enough, whatever folder it has moved to; a whole path is not.
+                _ if code.ends_with(".rs") => tree.ends(Path::new(code)),
+                _ => true,
+            };
+            if !sound {
                 found.push(format!("{shown}: `{code}`: no such file"));
             }
         }
@@ -101,12 +129,10 @@ pub fn faults(pages: &BTreeMap<PathBuf, Page>, exists: impl Fn(&Path) -> bool) -
     found
 }
 
-/// The file that inline `code` names, if it does: no blanks, no placeholders.
-fn named(code: &str) -> Option<&str> {
-    let plain = !code.contains([' ', '*', '<', '{', '…', ':']) && !code.contains("...");
-    let folder = code.split_once('/')?.0;
-    let placeholder = code.contains("YOURS") || code.contains("BOARD");
-    (plain && !placeholder && SOURCES.contains(&folder)).then_some(code)
+/// Inline `code` that names no one file.
+fn placeholder(code: &str) -> bool {
+    code.contains([' ', '*', '<', '{', '…', ':'])
+        || ["...", "YOURS", "BOARD"].iter().any(|p| code.contains(p))
 }
 
 fn resolved(path: &Path) -> PathBuf {

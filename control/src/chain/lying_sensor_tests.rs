@@ -113,7 +113,7 @@ fn shaken(g: f32, hz: f64) -> (Rig, f32) {
 
 #[test]
 fn vibration_short_of_full_scale_leans_the_attitude_by_what_the_docs_say() {
-    // docs/sensors.md.
+    // docs/design/inertial-sensor.md.
     for (g, hz, most) in [
         (2.0, 60.0, 1.5),
         (5.0, 60.0, 8.0),

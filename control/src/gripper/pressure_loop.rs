@@ -15,7 +15,7 @@ pub(super) const LAG_MAX: f32 = 20.0;
 /// Cut-off of the fallback force after a lost touch, rad/s.
 const MEAN_FORCE_CUTOFF: f32 = 3.0;
 
-/// Force by which a newton per square metre more is pressed on a pipe, N/Pa (94 Pa/N, docs/physics.md).
+/// Force by which a newton per square metre more is pressed on a pipe, N/Pa (94 Pa/N, docs/design/physics.md).
 const FORCE_PER_PRESSURE: f32 = 0.0106;
 /// Change of the target that is one, Pa.
 const TIGHTENED: f32 = 1.0;

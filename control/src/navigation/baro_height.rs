@@ -1,7 +1,7 @@
 //! Height by the pressure of the air: the source of last resort.
 //!
 //! A pressure has no ground. What it is off is learnt while range or pose give the height, so that the height goes on
-//! without a step where they end. docs/hold.md has figures.
+//! without a step where they end. docs/design/navigation.md has figures.
 
 use crate::maths::elapsed::seconds;
 use crate::navigation::air_pressure::AirPressure;

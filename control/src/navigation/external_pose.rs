@@ -2,7 +2,7 @@
 //! feels.
 //!
 //! The two ways are compared in a band of s³ω/(s+ω)⁴, m, to which the specific force comes as sω/(s+ω)⁴: slower, an error
-//! of the attitude passes for a way; faster, the pose's noise. docs/hold.md has limits and times.
+//! of the attitude passes for a way; faster, the pose's noise. docs/design/navigation.md has limits and times.
 
 use super::fix::Fix;
 use super::fix_age::{TAINTED_AGE, UNKNOWN_AGE};

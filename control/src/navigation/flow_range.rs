@@ -12,7 +12,7 @@ use crate::maths::vector::{Quat, Vec3};
 use crate::navigation::flow_range_sample::{Flow, GroundView, Range};
 
 /// Heights between which flow is used, m: nearer its lens sees no picture (PMW3901). Up to 2.4 m a scale 10 % too large,
-/// five times what calibration leaves, does not swing the hold; one 20 % too large does from 1 m on (docs/hold.md).
+/// five times what calibration leaves, does not swing the hold; one 20 % too large does from 1 m on (docs/lab/2026-11-24-position-hold.md).
 pub const FLOW_HEIGHT: (f32, f32) = (0.08, 2.5);
 /// Least quality of a flow, of 255.
 const QUALITY_MIN: u8 = 20;

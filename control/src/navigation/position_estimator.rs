@@ -2,7 +2,7 @@
 //! from optical flow and range.
 //!
 //! The axes are those of the pose's sender: down is the vehicle's, the heading differs by a turn that is estimated
-//! (the vehicle has no compass, and a visual odometry drifts). By flow alone they begin where the first one came. docs/hold.md has derivation and figures.
+//! (the vehicle has no compass, and a visual odometry drifts). By flow alone they begin where the first one came. docs/design/navigation.md has derivation and figures.
 
 #[cfg(test)]
 mod tests;

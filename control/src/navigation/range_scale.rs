@@ -2,7 +2,7 @@
 //!
 //! Height over what is below, its rate and the bias of the felt acceleration are one Kalman filter, run twice with the same
 //! gains: one run sees the range alone, the other is moved by the inertial sensor alone. Both are linear, so that a range s
-//! times too long leaves the innovation seen - s felt, and s is their regression. docs/hold.md has limits and times.
+//! times too long leaves the innovation seen - s felt, and s is their regression. docs/design/flow-and-range.md has limits and times.
 
 #[cfg(test)]
 mod tests;

@@ -1,4 +1,4 @@
-//! Gains of the lateral feedback, from the steady solution of a Riccati equation (docs/hold.md).
+//! Gains of the lateral feedback, from the steady solution of a Riccati equation (docs/design/position-hold.md).
 
 /// On position (1/s²), velocity (1/s), acceleration of the tilt (1), its rate (s), its second derivative (s²), second and
 /// first stage of the setpoint's filter (1), disturbance (1). For the default loops at 100 Hz; the test computes them.

@@ -2,7 +2,7 @@
 //!
 //! A tip thrust bends a beam less the farther out, a tendon along it bends it alike everywhere. The shape has two
 //! terms, θ(ξ) = q1 ξ + q2 ξ², θ the slope at the share ξ of the length: both loads alone give exact tilts. A tip carries
-//! motor and propeller, which also twist about the arm ([`twist`]). Derivations and limit cases: docs/physics.md.
+//! motor and propeller, which also twist about the arm ([`twist`]). Derivations and limit cases: docs/design/physics.md.
 //!
 //! The neutral line lies at [`HINGE_Z`] at the root; the underside [`DEPTH`] below it.
 

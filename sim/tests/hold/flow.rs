@@ -11,7 +11,7 @@ use sophie_sim::sensors::flow::FlowFault;
 use super::{NEVER_HELD, harmless, held, never_held, settled};
 
 /// What the hold may be: velocity, m/s RMS, level; drift within 10 s, m RMS over all flights; height, m RMS. Wanted are 0.05
-/// m/s: these gusts alone move a vehicle held by poses by 0.08 (docs/hold.md).
+/// m/s: these gusts alone move a vehicle held by poses by 0.08 (docs/lab/2026-11-24-position-hold.md).
 pub(super) const SPEED_RMS: f64 = 0.14;
 pub(super) const DRIFT_RMS: f64 = 0.10;
 pub(super) const HEIGHT_RMS: f64 = 0.03;
@@ -127,7 +127,7 @@ fn a_module_that_fails_is_named_or_missed_and_the_vehicle_is_level_and_high() {
 /// With errors of the scale beside the calibrated one's, at heights up to the module's reach: the level speed in still
 /// air, where only the hold itself moves the vehicle.
 #[test]
-#[ignore = "forty flights: .ci/campaign flies them, docs/hold.md has the table"]
+#[ignore = "forty flights: .ci/campaign flies them, docs/lab/2026-11-24-position-hold.md has the table"]
 fn where_an_error_of_the_scale_swings_the_hold() {
     println!(
         "| height | {} |",

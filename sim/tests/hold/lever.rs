@@ -85,7 +85,7 @@ fn by_flow_with_a_lever_that_is_known_most_seeds_perch() {
 
 /// The touch goes as far to the left of the crown as the lens is farther to the right than was measured.
 #[test]
-#[ignore = "twenty missions: docs/hold.md has the figure"]
+#[ignore = "twenty missions: docs/lab/2026-11-25-autonomous-perching.md has the figure"]
 fn by_flow_a_lever_that_is_off_moves_the_touch_by_as_much() {
     let seeds: Vec<u64> = (1..=10).collect();
     let mean = |lens: [f64; 3]| {

@@ -14,7 +14,7 @@ use sophie_tasks::pilot::warning::Warning;
 fn to_do(warning: Warning) -> &'static str {
     match warning {
         Warning::AccelClips => {
-            "It reads no further than `imu_accel_range`, and its attitude is the gyro's alone. Land; look for a bent propeller, a loose motor or board ([limits](sensors.md#what-an-inertial-sensor-can-lie-about))."
+            "It reads no further than `imu_accel_range`, and its attitude is the gyro's alone. Land; look for a bent propeller, a loose motor or board ([limits](design/inertial-sensor.md))."
         }
         Warning::Stack => "Land. Do not fly this image: report what `silicon` and the log say of its stack.",
         Warning::ArmTilt => {
@@ -41,10 +41,10 @@ fn to_do(warning: Warning) -> &'static str {
             "Steer it; it holds again once the pose is sound. Land where that comes back."
         }
         Warning::Position(Fault::Pose(PoseFault::Disagrees)) => {
-            "Steer it, land; the sender's axes, heading and scale ([holding](hold.md#what-a-pose-must-be-like))."
+            "Steer it, land; the sender's axes, heading and scale ([holding](position-sources.md#external-poses))."
         }
         Warning::Position(Fault::Sight(SightFault::FlowDisagrees)) => {
-            "Steer it, land; `flow_mounting`, `flow_scale`, the module's place ([holding](hold.md#by-flow-and-range))."
+            "Steer it, land; `flow_mounting`, `flow_scale`, the module's place ([holding](position-sources.md#flow-and-range))."
         }
         Warning::Position(Fault::Sight(SightFault::FlowFrozen | SightFault::RangeFrozen)) => {
             "Steer it, land: a new module."
