@@ -7,8 +7,8 @@ use pulldown_cmark::{Event, Options, Parser, Tag, TagEnd};
 
 /// Source folders: inline `code` that begins with one of them and `/` names a file.
 const SOURCES: [&str; 13] = [
-    ".ci", ".github", "boards", "control", "docs", "drivers", "hil", "paper", "sim", "src", "tasks", "tests",
-    "tools",
+    ".ci", ".github", "boards", "control", "docs", "drivers", "hil", "research", "sim", "src", "tasks",
+    "tests", "tools",
 ];
 
 #[derive(Debug, Default)]

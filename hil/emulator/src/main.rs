@@ -23,12 +23,13 @@ use sophie_emulator::silicon;
 use sophie_emulator::terminal::{Sockets, Terminal};
 use sophie_emulator::wires::{BoardFault, Gap};
 use sophie_emulator::{arguments, boards};
-use sophie_report::terminal::console::{self, Console};
-use sophie_report::terminal::live::Lines;
-use sophie_report::terminal::output::OutDir;
-use sophie_report::terminal::{Besides, FILES, complain, finish, result};
+use sophie_flight_report::terminal::live::Lines;
+use sophie_flight_report::terminal::{Besides, FILES, finish, result};
 use sophie_sim::record::Silent;
 use sophie_sim::scenario::Scenario;
+use sophie_terminal::complain;
+use sophie_terminal::console::{self, Console};
+use sophie_terminal::output::OutDir;
 
 const PROGRAM: &str = "bench";
 /// The decoded log, and the log as written by the firmware.

@@ -34,7 +34,7 @@ struct Group {
     read: fn(&Links) -> Row,
 }
 
-const GROUPS: [Group; 11] = [
+const GROUPS: [Group; 10] = [
     Group {
         name: "sticks",
         what: "sticks -1 to 1, throttle 0 to 1, switches by their position",

@@ -14,10 +14,10 @@ use sophie_emulator::flight::{self, Flight};
 use sophie_emulator::plan::Plan;
 use sophie_emulator::terminal::Sockets;
 use sophie_emulator::{arguments, boards, compare};
-use sophie_report::terminal::complain;
 use sophie_sim::parallel;
 use sophie_sim::record::{FlightRecord, Silent};
 use sophie_sim::scenario::Scenario;
+use sophie_terminal::complain;
 
 const PROGRAM: &str = "sample";
 /// Most seeds of one call: a mission takes minutes.

@@ -1,0 +1,8 @@
+//! What pages with drawings are made of: [`svg`], [`ticks`], the common [`STYLE`], and [`units`] for people.
+
+pub mod svg;
+pub mod ticks;
+pub mod units;
+
+/// The style sheet of every page.
+pub const STYLE: &str = include_str!("style.css");
