@@ -9,6 +9,7 @@ pub mod mavlink;
 pub mod parameters;
 pub mod port;
 pub mod session;
+pub mod wire;
 
 use std::fmt;
 

@@ -19,7 +19,7 @@ use sophie_mavlink::wire::frame::{COMPONENT, Encoder, Frame, SYSTEM};
 use sophie_mavlink::wire::parser::Parser;
 use sophie_mavlink::wire::signing::{Key, Record, Signing, Stored};
 
-use crate::port::Wire;
+use crate::wire::Wire;
 
 /// The station's number among systems: beside a ground station's usual 255.
 const STATION: u8 = 254;

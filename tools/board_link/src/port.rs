@@ -2,7 +2,7 @@
 
 use std::fmt;
 use std::fs::File;
-use std::io::{self, ErrorKind, Read, Write};
+use std::io::{self, ErrorKind};
 use std::net::{TcpStream, ToSocketAddrs, UdpSocket};
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -12,6 +12,7 @@ use sophie_mavlink::wire::signing::Key;
 
 use crate::Failure;
 use crate::mavlink::{self, Ends};
+use crate::wire::Wire;
 
 /// The console's rate on serial ports.
 pub const BAUD: u32 = 115_200;
@@ -50,11 +51,6 @@ pub enum Carrier {
     /// HOST:PORT of the vehicle.
     UdpOut(String),
 }
-
-/// Both ways of a line. A read returns [`ErrorKind::TimedOut`] or [`ErrorKind::WouldBlock`] within some milliseconds
-/// where nothing comes.
-pub trait Wire: Read + Write + Send {}
-impl<T: Read + Write + Send> Wire for T {}
 
 impl FromStr for PortName {
     type Err = String;

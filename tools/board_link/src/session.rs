@@ -12,7 +12,8 @@ use sophie_mavlink::wire::signing::Key;
 use sophie_tasks::console::NOT_TEXT;
 
 use crate::Failure;
-use crate::port::{BAUD, PortName, Wire};
+use crate::port::{BAUD, PortName};
+use crate::wire::Wire;
 
 /// Longest silence while an answer is due, where nothing else is said.
 pub const PATIENCE: Duration = Duration::from_secs(10);

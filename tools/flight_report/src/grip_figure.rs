@@ -3,7 +3,7 @@
 use sophie_control::tendon::ForceLimit;
 use sophie_sim::record::FlightRecord;
 
-use super::figures::{ARM, Figure, arm_legend, arm_series};
+use super::figure::{ARM, Figure, arm_legend, arm_series};
 use super::plot::{Panel, Trace, figure};
 use super::time_axis::Span;
 use sophie_charts::units::kgcm;

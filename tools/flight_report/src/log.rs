@@ -11,6 +11,7 @@ use mcap::records::MessageHeader;
 use serde_json::{Value, json};
 use sophie_sim::record::{FlightRecord, Sample};
 
+use super::time_stamp::{nanoseconds, stamp};
 use super::{scene, schemas};
 use sophie_charts::units::deg;
 use sophie_charts::units::tidy;
@@ -95,16 +96,6 @@ impl File {
         self.writer
             .write_to_known_channel(&header, message.to_string().as_bytes())
     }
-}
-
-fn nanoseconds(t: f64) -> u64 {
-    (t.max(0.0) * 1e9).round() as u64
-}
-
-/// A time as Foxglove's schemas have it.
-pub fn stamp(t: f64) -> Value {
-    let ns = nanoseconds(t);
-    json!({ "sec": ns / 1_000_000_000, "nsec": ns % 1_000_000_000 })
 }
 
 fn log_message(t: f64, text: &str) -> Value {

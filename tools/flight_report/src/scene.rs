@@ -5,7 +5,7 @@ use sophie_sim::plant::contact::{ARM_LENGTH, ARM_X, HINGE_Z};
 use sophie_sim::plant::propeller::RADIUS;
 use sophie_sim::record::{FlightRecord, Sample};
 
-use super::log::stamp;
+use super::time_stamp::stamp;
 use sophie_charts::units::tidy;
 
 /// Rotor above the arm, m, drawn.

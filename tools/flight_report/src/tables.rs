@@ -49,7 +49,7 @@ pub fn grip(record: &FlightRecord) -> String {
     let rows = record.grip.iter().map(|g| {
         let name = usize::from(g.arm)
             .checked_sub(1)
-            .and_then(|i| super::figures::ARM_NAMES.get(i));
+            .and_then(|i| super::figure::ARM_NAMES.get(i));
         vec![
             name.map_or_else(|| g.arm.to_string(), |n| (*n).to_owned()),
             format!("{:.0}", g.pressure),
