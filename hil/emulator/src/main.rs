@@ -24,7 +24,7 @@ use sophie_emulator::terminal::{Sockets, Terminal};
 use sophie_emulator::wires::{BoardFault, Gap};
 use sophie_emulator::{arguments, boards};
 use sophie_flight_report::terminal::live::Lines;
-use sophie_flight_report::terminal::{Besides, FILES, finish, result};
+use sophie_flight_report::terminal::{Attachment, FILES, finish, result};
 use sophie_sim::record::Silent;
 use sophie_sim::scenario::Scenario;
 use sophie_terminal::complain;
@@ -204,7 +204,7 @@ fn write(
     let host = sophie_sim::flight::fly(scenario, &mut Silent);
     let mut value = summary(args, flight);
     value["host"] = compare::value(&host);
-    let besides = Besides {
+    let attachment = Attachment {
         name: "bench",
         value,
         lines: [compare::lines(&host, &flight.record), lines(flight)].concat(),
@@ -218,7 +218,7 @@ fn write(
     let logs = [text.into_bytes(), flight.board.log.clone()];
     let logs: Vec<_> = LOG_FILES.into_iter().zip(logs).collect();
     let _ = out.write(&logs)?;
-    finish(&flight.record, Some(&besides), out, console, args.json)?;
+    finish(&flight.record, Some(&attachment), out, console, args.json)?;
     Ok(())
 }
 

@@ -1,4 +1,4 @@
-//! Where the vehicle is, as others see it: cameras aboard or around it.
+//! External poses of the vehicle, by cameras aboard or a motion-capture system.
 
 use sophie_control::vector::{Quat, Vec3};
 
@@ -6,18 +6,18 @@ pub use super::clock::TimeSource;
 use super::{Refusal, bounded, rotation};
 use sophie_dialect::{ATT_POS_MOCAP_DATA, ODOMETRY_DATA, VISION_POSITION_ESTIMATE_DATA};
 
-/// Farthest from the origin along an axis, m: beyond it a float has steps of a millimetre.
+/// Largest coordinate, m: beyond it a float has steps of a millimetre.
 pub(super) const POSITION_MAX: f32 = 10_000.0;
-/// Fastest along an axis, m/s.
+/// Largest speed along an axis, m/s.
 const SPEED_MAX: f32 = 100.0;
-/// Largest angle, rad: a turn.
+/// Largest angle, rad: a full turn.
 const ANGLE_MAX: f32 = core::f32::consts::TAU;
-/// Most that a variance is, in the square of its unit: more says nothing.
+/// Largest variance, in the square of its unit.
 const VARIANCE_MAX: f32 = 1e6;
-/// ODOMETRY's quality of an estimate that has failed.
+/// ODOMETRY's quality of a failed estimate.
 const FAILED: i8 = -1;
 
-/// MAV_FRAME: what coordinates mean.
+/// MAV_FRAME, the frame of coordinates.
 pub(super) const LOCAL_NED: u8 = 1;
 const LOCAL_ENU: u8 = 4;
 const BODY_NED: u8 = 8;
@@ -25,26 +25,26 @@ const BODY_FRD: u8 = 12;
 const LOCAL_FRD: u8 = 20;
 const LOCAL_FLU: u8 = 21;
 
-/// What others see, in the vehicle's axes: the world is NED, or turned from it about down; the body is FRD.
+/// A pose in the vehicle's axes: the body is FRD; the world is NED, or NED turned about down.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pose {
-    /// m.
+    /// Position, m.
     pub position: Vec3,
-    /// From body to world.
+    /// Rotation from body to world.
     pub attitude: Option<Quat>,
-    /// In the world, m/s.
+    /// Velocity along the world's axes, m/s.
     pub velocity: Option<Vec3>,
-    /// Variances along the world's axes, m².
+    /// Variances of the position along the world's axes, m².
     pub position_variance: Option<Vec3>,
-    /// Of roll, pitch and yaw, rad².
+    /// Variances of roll, pitch and yaw, rad².
     pub attitude_variance: Option<Vec3>,
-    /// Along the world's axes, (m/s)².
+    /// Variances of the velocity along the world's axes, (m/s)².
     pub velocity_variance: Option<Vec3>,
-    /// The world's x is north; else it is where the sender's axes began.
+    /// The world's x axis is north; otherwise it is the sender's own.
     pub north: bool,
-    /// Counts the jumps of the sender's estimate.
+    /// Reset counter of the sender's estimate.
     pub resets: u8,
-    /// 1 worst to 100 best.
+    /// Quality, 1 worst to 100 best.
     pub quality: Option<u8>,
 }
 
@@ -53,15 +53,15 @@ pub struct Pose {
 pub struct ExternalPose {
     /// The pose.
     pub pose: Pose,
-    /// When it was measured, µs since the start.
+    /// Measurement time, µs since the start.
     pub measured_at: u64,
-    /// When it arrived, µs since the start.
+    /// Time of receipt, µs since the start.
     pub received_at: u64,
-    /// How the time of measurement is known.
+    /// Source of the measurement time.
     pub clock: TimeSource,
 }
 
-/// World axes of a sender.
+/// World frame of a sender.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum World {
     /// North, east, down, or forward, right, down.
@@ -109,10 +109,10 @@ impl World {
 }
 
 impl Pose {
-    /// What ODOMETRY says. Its quaternion is from body FRD to the axes of the pose.
+    /// Pose of ODOMETRY. Its quaternion is from body FRD to the axes of the pose.
     ///
     /// # Errors
-    /// Axes that are not known here, values that are no numbers or out of bounds, an estimate that has failed.
+    /// An unsupported frame, a value that is not a number or out of bounds, or a failed estimate.
     pub fn odometry(m: &ODOMETRY_DATA) -> Result<Self, Refusal> {
         if m.quality == FAILED {
             return Err(Refusal::Value);
@@ -124,7 +124,7 @@ impl Pose {
             position: world.vector(bounded([m.x, m.y, m.z], POSITION_MAX)?),
             attitude,
             position_variance: position_variance.map(|v| world.variance(v)),
-            // About axes that are turned they would be others.
+            // In another world frame, roll, pitch and yaw are about other axes.
             attitude_variance: attitude_variance.filter(|_| world == World::Down),
             north,
             resets: m.reset_counter,
@@ -139,7 +139,7 @@ impl Pose {
         Ok(pose)
     }
 
-    /// Sets a velocity in the axes of MAV_FRAME `frame`. One in the body's without an attitude is left out.
+    /// Sets a velocity in the axes of MAV_FRAME `frame`. A velocity in body axes without an attitude is left out.
     fn set_velocity(&mut self, frame: u8, velocity: Vec3, variance: Option<Vec3>) -> Result<(), Refusal> {
         if let BODY_FRD | BODY_NED = frame {
             self.velocity = self.attitude.map(|q| q.rotate(velocity));
@@ -155,10 +155,10 @@ impl Pose {
         Ok(())
     }
 
-    /// What VISION_POSITION_ESTIMATE says, in NED.
+    /// Pose of VISION_POSITION_ESTIMATE, in NED.
     ///
     /// # Errors
-    /// Values that are no numbers or out of bounds.
+    /// A value that is not a number or out of bounds.
     pub fn vision(m: &VISION_POSITION_ESTIMATE_DATA) -> Result<Self, Refusal> {
         let attitude = if m.roll.is_nan() {
             None
@@ -169,7 +169,7 @@ impl Pose {
         Self::north_east_down([m.x, m.y, m.z], attitude, &m.covariance, m.reset_counter)
     }
 
-    /// What ATT_POS_MOCAP says, in NED.
+    /// Pose of ATT_POS_MOCAP, in NED.
     ///
     /// # Errors
     /// As [`Self::vision`].
@@ -196,8 +196,8 @@ impl Pose {
     }
 }
 
-/// The variances of the first and the last three states in the upper triangle of a covariance, row by row; `None` where
-/// they are not given, which is NaN in the first place, or zeros, which older senders have there.
+/// Variances of the first and of the last three states in the upper triangle of a covariance, row by row. `None` if
+/// they are not given: NaN in the first place, or the zeros of older senders.
 fn variances(covariance: &[f32; 21]) -> Result<(Option<Vec3>, Option<Vec3>), Refusal> {
     let &[a, _, _, _, _, _, b, _, _, _, _, c, _, _, _, d, _, _, e, _, f] = covariance;
     if a.is_nan() {
@@ -211,7 +211,7 @@ fn variances(covariance: &[f32; 21]) -> Result<(Option<Vec3>, Option<Vec3>), Ref
     sound.then_some(both).ok_or(Refusal::Value)
 }
 
-/// Variances along the world's axes of what has `variance` along the body's, independent of each other.
+/// Variances along the world's axes, given independent variances along the body's axes.
 fn turned(q: Quat, variance: Vec3) -> Vec3 {
     let along = |axis: Vec3, variance: f32| {
         let axis = q.rotate(axis);

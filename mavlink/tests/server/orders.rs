@@ -8,7 +8,7 @@ use sophie_control::rc::Sticks;
 use sophie_control::remote::RemoteRequest;
 use sophie_control::setpoint::Setpoint;
 use sophie_dialect::*;
-use sophie_mavlink::{Answers, Condition, Requests};
+use sophie_mavlink::{Answers, CommanderRequests, Condition};
 
 use crate::station::{Station, frame, frame_from};
 
@@ -70,7 +70,7 @@ impl Craft {
 
     fn run(&mut self, ms: u64) {
         for _ in 0..ms / 20 {
-            let Requests { remote, bench } = {
+            let CommanderRequests { remote, bench } = {
                 let station = &mut self.station;
                 station.server.requests(station.now, &station.vehicle)
             };

@@ -74,7 +74,7 @@ impl From<[f64; 4]> for Point {
 /// Reads a file.
 ///
 /// # Errors
-/// One line: file, line, column, value and what is allowed.
+/// One line: file, line, column, value, allowed values.
 pub fn load(path: &Path) -> Result<Vec<Point>, String> {
     Ok(points(TABLE.load(path)?))
 }
@@ -82,7 +82,7 @@ pub fn load(path: &Path) -> Result<Vec<Point>, String> {
 /// Parses the text of `file`.
 ///
 /// # Errors
-/// One line: file, line, column, value and what is allowed.
+/// One line: file, line, column, value, allowed values.
 pub fn parse(text: &str, file: &str) -> Result<Vec<Point>, String> {
     Ok(points(TABLE.parse(text, file)?))
 }

@@ -33,7 +33,7 @@ impl<const N: usize> Table<N> {
     /// Reads a file: the values of each row, in the order of the columns.
     ///
     /// # Errors
-    /// One line: file, line, column, value, what is allowed, and which other lines are bad.
+    /// One line: file, line, column, value, allowed values, and the other bad lines.
     pub fn load(&self, path: &Path) -> Result<Vec<[f64; N]>, String> {
         let file = path.display();
         let complaint = |why: String| format!("{file}: {why}");

@@ -6,7 +6,7 @@ use sophie_sim::scenario::Scenario;
 use super::arm::{Fit, Fitted};
 use super::arm_data::Point;
 use super::tendon::TendonFit;
-use crate::results::model::{Axis, Cell, Chart, Look, Section, Series, Table, num};
+use crate::results::model::{Axis, Cell, Chart, Section, Series, SeriesStyle, Table, num};
 
 /// Tilts within this span may be radians: a quarter turn. Table I's stiffest arm (10 %, K = 1) bends by 2.8°.
 const RADIANS: f64 = 1.58;
@@ -27,7 +27,7 @@ fn span(points: &[Point], of: impl Fn(&Point) -> f64) -> (f64, f64) {
 /// Refuses tilts that cannot be degrees.
 ///
 /// # Errors
-/// One line: the span and what is allowed.
+/// One line: the span and the allowed one.
 pub fn check_units(points: &[Point]) -> Result<(), String> {
     let ((low, high), (from, to)) = (span(points, |p| p.tilt), span(points, |p| p.thrust));
     if high - low > RADIANS {
@@ -86,7 +86,7 @@ pub fn infill(points: &[Point]) -> f64 {
     default.clamp(low, high.max(low))
 }
 
-/// The section of the fit, with that of the tendon where there is one.
+/// The section of the fit, followed by the tendon's if one is given.
 pub fn section(points: &[Point], fit: &Fit, tendon: Option<&TendonFit>) -> Section {
     let mut s = Section::new("fit", "Eq. 1 fitted to bench data");
     s.table(coefficients(fit));
@@ -169,18 +169,18 @@ fn curves(s: &mut Section, points: &[Point], fit: &Fit) {
         fits.push(Series::new(
             format!("ρ {rho} %, fit at full power"),
             i,
-            Look::Line,
+            SeriesStyle::Line,
             line,
         ));
         let full = own()
             .filter(|p| p.power >= 0.95)
             .map(|p| (p.thrust, p.tilt))
             .collect();
-        fits.push(Series::new("", i, Look::Dots, full));
+        fits.push(Series::new("", i, SeriesStyle::Dots, full));
         let rest = own()
             .map(|p| (p.thrust, p.tilt - fit.tilt(p.infill, p.thrust, p.power)))
             .collect();
-        rests.push(Series::new(format!("ρ {rho} %"), i, Look::Dots, rest));
+        rests.push(Series::new(format!("ρ {rho} %"), i, SeriesStyle::Dots, rest));
     }
     let x = || Axis::new("thrust (N)").with(&[0.0]);
     s.figure(

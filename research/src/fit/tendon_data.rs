@@ -68,7 +68,7 @@ impl From<[f64; 5]> for Pulled {
 /// Reads a file.
 ///
 /// # Errors
-/// One line: file, line, column, value and what is allowed.
+/// One line: file, line, column, value, allowed values.
 pub fn load(path: &Path) -> Result<Vec<Pulled>, String> {
     Ok(TABLE.load(path)?.into_iter().map(Pulled::from).collect())
 }
@@ -76,7 +76,7 @@ pub fn load(path: &Path) -> Result<Vec<Pulled>, String> {
 /// Parses the text of `file`.
 ///
 /// # Errors
-/// One line: file, line, column, value and what is allowed.
+/// One line: file, line, column, value, allowed values.
 pub fn parse(text: &str, file: &str) -> Result<Vec<Pulled>, String> {
     Ok(TABLE.parse(text, file)?.into_iter().map(Pulled::from).collect())
 }

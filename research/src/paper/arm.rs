@@ -4,7 +4,7 @@ use sophie_control::deflection::ArmModel;
 use sophie_control::params::Params;
 
 use super::printed::{Printed, Roll, Table1};
-use crate::results::model::{Axis, Chart, Class, Comparison, Look, Section, Series, Table, num};
+use crate::results::model::{Axis, Chart, Class, Comparison, Section, Series, SeriesStyle, Table, num};
 
 /// %.
 pub const INFILLS: [f64; 6] = [4.0, 5.0, 6.0, 6.9, 8.0, 10.0];
@@ -96,7 +96,7 @@ impl<'a> Flown<'a> {
     }
 
     /// `f` (degrees) over the thrusts.
-    fn curve(&self, name: String, colour: usize, look: Look, f: impl Fn(f64) -> f64) -> Series {
+    fn curve(&self, name: String, colour: usize, look: SeriesStyle, f: impl Fn(f64) -> f64) -> Series {
         Series::new(name, colour, look, self.thrusts().map(|t| (t, f(t))).collect())
     }
 
@@ -216,7 +216,7 @@ fn literal_rows(flown: &Flown<'_>) -> Vec<Comparison> {
 fn over_infill(flown: &Flown<'_>) -> Chart {
     let k = flown.k;
     let line = |(i, infill): (usize, f64)| {
-        flown.curve(format!("ρ {infill} %"), i, Look::Line, |t| {
+        flown.curve(format!("ρ {infill} %"), i, SeriesStyle::Line, |t| {
             flown.tilt(infill, k, t)
         })
     };
@@ -237,7 +237,12 @@ fn over_battery(flown: &Flown<'_>) -> Chart {
     let arm = flown.model(infill, k);
     let mut series = vec![];
     for (colour, ratio) in [1.0, 0.9, 0.8].into_iter().enumerate() {
-        for (c_p, look) in p.eq_1.power_exponent.iter().zip([Look::Line, Look::Dashed]) {
+        for (c_p, look) in p
+            .eq_1
+            .power_exponent
+            .iter()
+            .zip([SeriesStyle::Line, SeriesStyle::Dashed])
+        {
             let factor = f64::powf(ratio, *c_p);
             let name = format!("P/P0 {ratio}, C_P {c_p}");
             series.push(flown.curve(name, colour, look, |t| {
@@ -251,13 +256,18 @@ fn over_battery(flown: &Flown<'_>) -> Chart {
 fn over_gain(flown: &Flown<'_>) -> Chart {
     let infill = flown.printed.text.infill_percent;
     let (k_least, k_most) = flown.allowed();
-    let line =
-        |(i, k): (usize, f64)| flown.curve(format!("K {k:.2}"), i, Look::Line, |t| flown.tilt(infill, k, t));
+    let line = |(i, k): (usize, f64)| {
+        flown.curve(format!("K {k:.2}"), i, SeriesStyle::Line, |t| {
+            flown.tilt(infill, k, t)
+        })
+    };
     let gains = [k_least, 6.7, flown.k, k_most];
     let mut series: Vec<Series> = gains.into_iter().enumerate().map(line).collect();
-    series.push(flown.curve("K 1 (literal)".to_owned(), 7, Look::Dashed, |t| {
-        flown.tilt(infill, 1.0, t)
-    }));
+    series.push(
+        flown.curve("K 1 (literal)".to_owned(), 7, SeriesStyle::Dashed, |t| {
+            flown.tilt(infill, 1.0, t)
+        }),
+    );
     Flown::chart(format!("The family of K at ρ {infill} %"), series)
 }
 
@@ -271,13 +281,13 @@ fn what_table_3_identifies(flown: &Flown<'_>) -> Chart {
         series.push(Series::new(
             format!("ρ {} %", row.infill_percent),
             i,
-            Look::Line,
+            SeriesStyle::Line,
             products.iter().map(|x| (*x, x * per_product)).collect(),
         ));
         series.push(Series::new(
             if i == 0 { "Table III" } else { "" },
             i,
-            Look::Printed,
+            SeriesStyle::Printed,
             vec![(id.product, row.delta_alpha_max_deg)],
         ));
     }

@@ -5,7 +5,7 @@ mod grid;
 mod sensors;
 mod soft;
 
-use crate::study::rig::Wish;
+use crate::study::rig::Demand;
 use glam::DVec3;
 use sophie_control::params::Params;
 use sophie_control::wrench::Configuration;
@@ -26,16 +26,16 @@ fn mismatch(s: &mut Scenario) {
 }
 
 /// In 20 s: hover in gusts, a roll of 15° to either side, a turn of 30°, a push of 1.5 N.
-fn programme(t: f64) -> Wish {
-    let mut wish = Wish::default();
+fn programme(t: f64) -> Demand {
+    let mut demand = Demand::default();
     match t {
-        t if (4.0..5.5).contains(&t) => wish.roll = 15f64.to_radians(),
-        t if (5.5..7.0).contains(&t) => wish.roll = -15f64.to_radians(),
-        t if (10.0..11.05).contains(&t) => wish.yaw_rate = 0.5,
-        t if (14.0..16.0).contains(&t) => wish.push = DVec3::new(0.0, 1.5, 0.0),
+        t if (4.0..5.5).contains(&t) => demand.roll = 15f64.to_radians(),
+        t if (5.5..7.0).contains(&t) => demand.roll = -15f64.to_radians(),
+        t if (10.0..11.05).contains(&t) => demand.yaw_rate = 0.5,
+        t if (14.0..16.0).contains(&t) => demand.push = DVec3::new(0.0, 1.5, 0.0),
         _ => {}
     }
-    wish
+    demand
 }
 
 /// Beyond the paper.

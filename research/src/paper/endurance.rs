@@ -9,7 +9,7 @@ use sophie_sim::plant::servo_power::MG996R;
 use super::inspection::{Inspection, current};
 use super::printed::{Endurance, Printed};
 use super::statics::root;
-use crate::results::model::{Axis, Chart, Class, Comparison, Look, Section, Series, Table, num};
+use crate::results::model::{Axis, Chart, Class, Comparison, Section, Series, SeriesStyle, Table, num};
 
 /// Air density, kg/m³, and radius of a 10-inch propeller, m.
 const AIR: f64 = 1.225;
@@ -205,7 +205,7 @@ fn predicted(flight: &Flight<'_>) -> Vec<Comparison> {
 
 fn flight_chart(flight: &Flight<'_>) -> Chart {
     let infills: Vec<f64> = (40..=100).map(|i| 0.1 * f64::from(i)).collect();
-    let line = |name: &str, colour: usize, look: Look, f: &dyn Fn(f64) -> f64| {
+    let line = |name: &str, colour: usize, look: SeriesStyle, f: &dyn Fn(f64) -> f64| {
         Series::new(name, colour, look, infills.iter().map(|i| (*i, f(*i))).collect())
     };
     let table_5 = flight.printed.table_5.iter();
@@ -215,13 +215,13 @@ fn flight_chart(flight: &Flight<'_>) -> Chart {
         x: Axis::new("infill ρ (%)"),
         y: Axis::new("hover time (min)").with(&[0.0]),
         series: vec![
-            Series::new("Table V", 0, Look::Printed, printed),
-            line("fudged (calibrated)", 2, Look::Line, &|i| flight.fitted(i)),
-            line("no loss at all", 7, Look::Dashed, &|i| flight.ideal(i)),
-            line("honest, to the last drop", 0, Look::Dashed, &|i| {
+            Series::new("Table V", 0, SeriesStyle::Printed, printed),
+            line("fudged (calibrated)", 2, SeriesStyle::Line, &|i| flight.fitted(i)),
+            line("no loss at all", 7, SeriesStyle::Dashed, &|i| flight.ideal(i)),
+            line("honest, to the last drop", 0, SeriesStyle::Dashed, &|i| {
                 flight.honest(i, 1.0)
             }),
-            line("honest, landing with a fifth left", 0, Look::Line, &|i| {
+            line("honest, landing with a fifth left", 0, SeriesStyle::Line, &|i| {
                 flight.honest(i, USABLE)
             }),
         ],

@@ -1,13 +1,13 @@
 //! Section V-C: an arm loses stiffness, in flight and as measured on board.
 
-use crate::study::rig::{Flown, Moment, Wish, fly};
+use crate::study::rig::{Demand, Flown, Moment, fly};
 use sophie_control::params::Params;
 use sophie_control::wrench::Configuration;
 use sophie_sim::mixers::Variant;
 
 use super::flights::{error, in_gusts, lost_when, or_lost, vehicle};
 use super::printed::Printed;
-use crate::results::model::{Axis, Chart, Look, Section, Series, Table, num};
+use crate::results::model::{Axis, Chart, Section, Series, SeriesStyle, Table, num};
 use sophie_sim::parallel;
 
 /// Compliance of arm 1 over a new arm's.
@@ -32,7 +32,7 @@ fn hover(job: Job) -> Flown {
     if !job.sensors {
         s.params.tilt_bias_gain = 0.0;
     }
-    fly(&s, None, SECONDS, |_| Wish::default())
+    fly(&s, None, SECONDS, |_| Demand::default())
 }
 
 fn mean(moments: &[Moment], f: impl Fn(&Moment) -> f64) -> f64 {
@@ -207,7 +207,7 @@ fn figure(s: &mut Section, flights: &Flights, seen: &[OnBoard], level: f64) {
                 title: "Flight with a worn arm".to_owned(),
                 x: Axis::new("compliance of arm 1 over new"),
                 y: Axis::new("yaw error RMS (°)").with(&[0.0]),
-                series: kinds.map(|(i, k)| Series::new(k.name, i, Look::Line, yaw(i))).collect(),
+                series: kinds.map(|(i, k)| Series::new(k.name, i, SeriesStyle::Line, yaw(i))).collect(),
                 ..Chart::default()
             },
             Chart {
@@ -215,8 +215,8 @@ fn figure(s: &mut Section, flights: &Flights, seen: &[OnBoard], level: f64) {
                 x: Axis::new("compliance of arm 1 over new"),
                 y: Axis::new("α1 above the model (°)").with(&[0.0]),
                 series: vec![
-                    Series::new("true", 7, Look::Dashed, seen.iter().map(|s| (s.worn, s.truth)).collect()),
-                    Series::new("learnt by the mixer", 0, Look::Dots, seen.iter().map(|s| (s.worn, s.learnt)).collect()),
+                    Series::new("true", 7, SeriesStyle::Dashed, seen.iter().map(|s| (s.worn, s.truth)).collect()),
+                    Series::new("learnt by the mixer", 0, SeriesStyle::Dots, seen.iter().map(|s| (s.worn, s.learnt)).collect()),
                 ],
                 levels: vec![(level, "three spreads above the new arm".to_owned())],
                 ..Chart::default()

@@ -8,7 +8,7 @@ use sophie_sim::scenario::ServoProfile;
 
 use super::clamp::{closing_thrust, mean_closing};
 use super::printed::{Endurance, Printed};
-use crate::results::model::{Axis, Chart, Class, Comparison, Look, Series, Table, num};
+use crate::results::model::{Axis, Chart, Class, Comparison, Series, SeriesStyle, Table, num};
 
 /// m.
 const PIPE: f64 = 0.30;
@@ -126,7 +126,7 @@ impl<'a> Inspection<'a> {
 
     /// Time over infill.
     pub fn chart(&self) -> Chart {
-        let line = |name: &str, colour: usize, look: Look, f: &dyn Fn(&Held<'_>) -> f64| {
+        let line = |name: &str, colour: usize, look: SeriesStyle, f: &dyn Fn(&Held<'_>) -> f64| {
             let points = self.rows.iter().map(|held| (held.row.infill_percent, f(held)));
             Series::new(name, colour, look, points.collect())
         };
@@ -135,9 +135,11 @@ impl<'a> Inspection<'a> {
             x: Axis::new("infill ρ (%)"),
             y: Axis::new("time (min)").with(&[0.0]),
             series: vec![
-                line("Table V", 0, Look::Printed, &|held| held.row.inspection_min),
-                line("four arms", 0, Look::Line, &|held| self.minutes(held, 4.0)),
-                line("two arms", 1, Look::Line, &|held| self.minutes(held, 2.0)),
+                line("Table V", 0, SeriesStyle::Printed, &|held| {
+                    held.row.inspection_min
+                }),
+                line("four arms", 0, SeriesStyle::Line, &|held| self.minutes(held, 4.0)),
+                line("two arms", 1, SeriesStyle::Line, &|held| self.minutes(held, 2.0)),
             ],
             ..Chart::default()
         }

@@ -2,7 +2,7 @@
 
 use crate::study::allocation::Studied;
 use crate::study::perturbation::Trial;
-use crate::study::rig::{Flown, Wish, fly};
+use crate::study::rig::{Demand, Flown, fly};
 use glam::DVec3;
 use sophie_control::params::Params;
 use sophie_control::wrench::{Configuration, FORE, SIDE, YAW};
@@ -12,7 +12,7 @@ use sophie_sim::plant::GRAVITY;
 use super::flights::{BOTH, curve, named, vehicle};
 use super::printed::Printed;
 use super::statics::{AtThrust, root};
-use crate::results::model::{Axis, Chart, Look, Section, Series, Table, Tile, num};
+use crate::results::model::{Axis, Chart, Section, Series, SeriesStyle, Table, Tile, num};
 use sophie_sim::parallel;
 
 /// Perturbation, N.
@@ -155,10 +155,10 @@ fn over_thrust(c: Configuration, k: f64, hover: f64) -> Chart {
             .iter()
             .map(|t| (*t, AtThrust::new(infill, k, *t).yaw_derivative(chi)))
             .collect();
-        series.push(Series::new(format!("ρ {infill} %"), i, Look::Line, line));
+        series.push(Series::new(format!("ρ {infill} %"), i, SeriesStyle::Line, line));
         let dots = parallel::each(&probes, |t| (*t, of_the_plant(infill, k, chi, *t)[2]));
         let name = if i == 0 { "plant, perturbed" } else { "" };
-        series.push(Series::new(name, i, Look::Dots, dots));
+        series.push(Series::new(name, i, SeriesStyle::Dots, dots));
     }
     let level = match c {
         Configuration::A => "above 1 a yaw command turns round",
@@ -208,7 +208,7 @@ fn authority(c: Configuration, hover: f64, k: f64) -> Chart {
             });
         }
     }
-    let line = |name: &str, colour: usize, look: Look, f: &dyn Fn(AtThrust) -> f64| {
+    let line = |name: &str, colour: usize, look: SeriesStyle, f: &dyn Fn(AtThrust) -> f64| {
         let zero = |rho: f64| root(0.1, 7.9, |t| f(AtThrust::new(rho, k, t))).unwrap_or(f64::NAN);
         let points = rhos.iter().map(|rho| (*rho, zero(*rho)));
         Series::new(name, colour, look, points.collect())
@@ -218,10 +218,10 @@ fn authority(c: Configuration, hover: f64, k: f64) -> Chart {
         x: Axis::between("infill ρ (%)", 3.75, 10.25),
         y: Axis::between("thrust of each rotor (N)", 0.0, 8.0),
         series: vec![
-            line("frozen authority turns round", 1, Look::Dashed, &|a| {
+            line("frozen authority turns round", 1, SeriesStyle::Dashed, &|a| {
                 a.frozen(chi)
             }),
-            line("quasi-static authority turns round", 0, Look::Line, &|a| {
+            line("quasi-static authority turns round", 0, SeriesStyle::Line, &|a| {
                 a.quasi_static(chi)
             }),
         ],
@@ -268,13 +268,13 @@ fn perturbed(k: f64) -> [Perturbed; 7] {
 }
 
 fn responses(s: &mut Section, k: f64, infill: f64) {
-    let kick = |t: f64| Wish {
+    let kick = |t: f64| Demand {
         moment: if t < KICK.1 {
             DVec3::new(0.0, 0.0, KICK.0)
         } else {
             DVec3::ZERO
         },
-        ..Wish::default()
+        ..Demand::default()
     };
     let cases = perturbed(k);
     let flights: Vec<Flown> = parallel::each(&cases, |c| {
@@ -291,7 +291,7 @@ fn responses(s: &mut Section, k: f64, infill: f64) {
                 Some(Series::new(
                     named(case.name, flown),
                     i,
-                    Look::Line,
+                    SeriesStyle::Line,
                     curve(flown, 10, |m| m.attitude[2].to_degrees()),
                 ))
             })

@@ -2,7 +2,7 @@
 
 use std::f32::consts::TAU;
 
-use crate::study::rig::{Flown, Moment, Wish, fly};
+use crate::study::rig::{Demand, Flown, Moment, fly};
 use glam::DVec3;
 use sophie_control::wrench::Configuration;
 use sophie_sim::mixers::Variant;
@@ -11,7 +11,7 @@ use sophie_sim::plant::GRAVITY;
 use super::flights::{delta_alpha, delta_thrust, vehicle};
 use super::printed::Printed;
 use super::roll::sideways;
-use crate::results::model::{Axis, Chart, Look, Section, Series, Table, num};
+use crate::results::model::{Axis, Chart, Section, Series, SeriesStyle, Table, num};
 use sophie_sim::parallel;
 use sophie_sim::plant::DRAG;
 
@@ -77,7 +77,7 @@ fn manoeuvre(coupled: bool, heading: f64, angle: f64) -> Flown {
     s.vehicle.coupled_arms = coupled;
     s.params.setpoint_lpf_hz = 30.0 / TAU;
     let turn = heading / 0.5;
-    let mut flown = fly(&s, None, turn + 5.0, |t| Wish {
+    let mut flown = fly(&s, None, turn + 5.0, |t| Demand {
         yaw_rate: if t < turn { 0.5 } else { 0.0 },
         roll: match t - turn - 2.0 {
             x if x < 0.0 => 0.0,
@@ -85,7 +85,7 @@ fn manoeuvre(coupled: bool, heading: f64, angle: f64) -> Flown {
             x if x < 2.0 => -angle,
             _ => 0.0,
         },
-        ..Wish::default()
+        ..Demand::default()
     });
     flown.moments.retain(|m| m.t > turn + 1.8);
     flown
@@ -200,12 +200,12 @@ fn forces(title: &str, flight: &Rolled, axis: usize, mass: f64) -> Chart {
             Series::new(
                 "flown: mass times acceleration",
                 7,
-                Look::Line,
+                SeriesStyle::Line,
                 flight.curve(|_, f| f[axis]),
             ),
-            Series::new("derived", 0, Look::Dashed, by(&|m| derived(m, mass))),
-            Series::new("printed", 1, Look::Line, by(&printed)),
-            Series::new("rigid", 2, Look::Dashed, by(&|m| rigid(m, mass))),
+            Series::new("derived", 0, SeriesStyle::Dashed, by(&|m| derived(m, mass))),
+            Series::new("printed", 1, SeriesStyle::Line, by(&printed)),
+            Series::new("rigid", 2, SeriesStyle::Dashed, by(&|m| rigid(m, mass))),
         ],
         ..Chart::default()
     }
@@ -218,17 +218,17 @@ fn flexible_term(flight: &Rolled) -> Chart {
         x: Axis::new("time (s)"),
         y: Axis::new("sideways force (N)"),
         series: vec![
-            Series::new("true: Σ ± T sin α", 0, Look::Line, of(&sideways)),
+            Series::new("true: Σ ± T sin α", 0, SeriesStyle::Line, of(&sideways)),
             Series::new(
                 "Eq. 8: Δα ΔT, two pairs",
                 1,
-                Look::Line,
+                SeriesStyle::Line,
                 of(&|m| 2.0 * delta_alpha(m) * delta_thrust(m)),
             ),
             Series::new(
                 "first order: (T1+T3) Δα",
                 2,
-                Look::Dashed,
+                SeriesStyle::Dashed,
                 of(&|m| 0.5 * m.thrust.iter().sum::<f64>() * delta_alpha(m)),
             ),
         ],

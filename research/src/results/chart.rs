@@ -1,6 +1,6 @@
 //! A chart as SVG: axes with ticks and units, curves, points, levels, maps.
 
-use super::model::{Axis, Chart, Look, Series};
+use super::model::{Axis, Chart, Series, SeriesStyle};
 use sophie_charts::svg::{Rect, escape, line, path, rect, short, text};
 use sophie_charts::ticks::ticks;
 
@@ -114,7 +114,7 @@ pub fn draw(chart: &Chart) -> String {
     svg += &grid(&f, chart);
     svg += &guides(&f, chart);
     // The paper's values on top.
-    let printed = |s: &&Series| s.look == Look::Printed;
+    let printed = |s: &&Series| s.look == SeriesStyle::Printed;
     for series in chart
         .series
         .iter()
@@ -202,7 +202,7 @@ fn tile_svg(f: &Frame, tile: &super::model::Tile) -> String {
 
 fn curve(f: &Frame, series: &Series) -> String {
     let colour = series.colour % 8;
-    if matches!(series.look, Look::Dots | Look::Printed) {
+    if matches!(series.look, SeriesStyle::Dots | SeriesStyle::Printed) {
         let shown = series.points.iter().filter(|p| f.holds(**p));
         return shown
             .map(|(x, y)| mark(series.look, colour, f.px(*x), f.py(*y)))
@@ -216,12 +216,16 @@ fn curve(f: &Frame, series: &Series) -> String {
             (f64::NAN, f64::NAN)
         }
     });
-    let dash = if series.look == Look::Dashed { " dash" } else { "" };
+    let dash = if series.look == SeriesStyle::Dashed {
+        " dash"
+    } else {
+        ""
+    };
     format!("<path class=\"curve c{colour}{dash}\" d=\"{}\"/>", path(thinned))
 }
 
-fn mark(look: Look, colour: usize, x: f64, y: f64) -> String {
-    if look == Look::Printed {
+fn mark(look: SeriesStyle, colour: usize, x: f64, y: f64) -> String {
+    if look == SeriesStyle::Printed {
         let (x, y) = (short(x, 1), short(y, 1));
         return format!("<path class=\"printed\" d=\"M{x} {y}m-6 0l6 -6l6 6l-6 6z\"/>");
     }
@@ -237,9 +241,9 @@ fn legend(chart: &Chart) -> String {
     for s in chart.series.iter().filter(|s| !s.name.is_empty()) {
         let colour = s.colour % 8;
         let sample = match s.look {
-            Look::Dots | Look::Printed => mark(s.look, colour, 15.0, 7.0),
-            Look::Line => format!("<path class=\"curve c{colour}\" d=\"M0 7L30 7\"/>"),
-            Look::Dashed => format!("<path class=\"curve c{colour} dash\" d=\"M0 7L30 7\"/>"),
+            SeriesStyle::Dots | SeriesStyle::Printed => mark(s.look, colour, 15.0, 7.0),
+            SeriesStyle::Line => format!("<path class=\"curve c{colour}\" d=\"M0 7L30 7\"/>"),
+            SeriesStyle::Dashed => format!("<path class=\"curve c{colour} dash\" d=\"M0 7L30 7\"/>"),
         };
         out += &format!(
             "<li><svg viewBox=\"0 0 30 14\">{sample}</svg>{}</li>",
@@ -260,8 +264,13 @@ mod tests {
             x: Axis::new("thrust (N)"),
             y: Axis::new("α (°)"),
             series: vec![
-                Series::new("a", 0, Look::Line, vec![(0.0, 0.0), (1.0, f64::NAN), (2.0, 1.0)]),
-                Series::new("printed", 0, Look::Printed, vec![(1.0, 0.5)]),
+                Series::new(
+                    "a",
+                    0,
+                    SeriesStyle::Line,
+                    vec![(0.0, 0.0), (1.0, f64::NAN), (2.0, 1.0)],
+                ),
+                Series::new("printed", 0, SeriesStyle::Printed, vec![(1.0, 0.5)]),
             ],
             ..Chart::default()
         };

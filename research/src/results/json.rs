@@ -79,7 +79,7 @@ fn chart(c: &Chart) -> Value {
                 .step_by(step)
                 .map(|p| [tidy(p.0), tidy(p.1)])
                 .collect();
-            json!({ "name": s.name, "printed": s.look == super::model::Look::Printed, "points": points })
+            json!({ "name": s.name, "printed": s.look == super::model::SeriesStyle::Printed, "points": points })
         })
         .collect();
     let tiles: Vec<Value> = c

@@ -98,7 +98,7 @@ pub const fn num(value: f64, digits: usize) -> Cell {
 /// A table.
 #[derive(Clone, Debug)]
 pub struct Table {
-    /// What it shows.
+    /// Its caption.
     pub caption: String,
     /// Column titles with units.
     pub columns: Vec<String>,
@@ -124,7 +124,7 @@ impl Table {
 
 /// Line style of a series.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Look {
+pub enum SeriesStyle {
     /// A line.
     Line,
     /// A dashed line.
@@ -143,14 +143,14 @@ pub struct Series {
     /// Colour, 0 to 7.
     pub colour: usize,
     /// Style.
-    pub look: Look,
+    pub look: SeriesStyle,
     /// Points; a non-finite one breaks the line.
     pub points: Vec<(f64, f64)>,
 }
 
 impl Series {
     /// A series.
-    pub fn new(name: impl Into<String>, colour: usize, look: Look, points: Vec<(f64, f64)>) -> Self {
+    pub fn new(name: impl Into<String>, colour: usize, look: SeriesStyle, points: Vec<(f64, f64)>) -> Self {
         Self {
             name: name.into(),
             colour,
@@ -241,7 +241,7 @@ pub struct Chart {
 /// Charts side by side.
 #[derive(Clone, Debug)]
 pub struct Figure {
-    /// What is shown, and which part is printed.
+    /// The caption, which names the printed part.
     pub caption: String,
     /// The drawings.
     pub charts: Vec<Chart>,

@@ -21,7 +21,7 @@ pub use self::sampling::{GAUGES, Gauge, Planned, plan};
 /// What became of a touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// The grip was proven, and on the pilot's wish the vehicle let go and flew away.
+    /// The grip was proven, and on the pilot's demand the vehicle let go and flew away.
     Released,
     /// The grip was proven; letting go was refused or not done in time.
     Held,
@@ -77,9 +77,9 @@ impl Outcome {
 /// A touch that was flown.
 #[derive(Clone, Copy, Debug)]
 pub struct Flown {
-    /// What was meant.
+    /// The planned touch.
     pub planned: Planned,
-    /// What was seen.
+    /// The flown touch.
     pub touched: Touched,
     /// What became of it.
     pub outcome: Outcome,
@@ -124,7 +124,7 @@ pub fn fly(request: &Request) -> Result<Vec<Flown>, String> {
     let flown = parallel::each(&seeds, |&(i, seed)| {
         let planned = plan(i, seed, request.heading);
         let vehicle = if request.uncertain {
-            vehicle::draw(seed)?
+            vehicle::sample(seed)?
         } else {
             Scenario::default_mission()
         };

@@ -1,4 +1,4 @@
-//! Experiments on the flight level alone: take-off, `wish`, the truth every millisecond.
+//! Experiments on the flight level alone: take-off, `demand`, the truth every millisecond.
 
 use glam::DVec3;
 use sophie_control::wrench::PerArm;
@@ -28,7 +28,7 @@ const SPIN: f64 = 4.0;
 
 /// Demand and disturbance at a time of the experiment.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Wish {
+pub struct Demand {
     /// Roll, rad.
     pub roll: f64,
     /// Yaw rate, rad/s.
@@ -115,9 +115,14 @@ fn aimed_heading(rig: &Rig) -> f64 {
     rig.plant.euler()[2] + target.map_or(0.0, |v| f64::from(v.value.ahead))
 }
 
-/// Hovers `scenario`'s vehicle at 3 m, then follows `wish` for `seconds` instead of its steps; `studied` replaces the
+/// Hovers `scenario`'s vehicle at 3 m, then follows `demand` for `seconds` instead of its steps; `studied` replaces the
 /// mixer. Deterministic to the bit.
-pub fn fly(scenario: &Scenario, studied: Option<Studied>, seconds: f64, wish: impl Fn(f64) -> Wish) -> Flown {
+pub fn fly(
+    scenario: &Scenario,
+    studied: Option<Studied>,
+    seconds: f64,
+    demand: impl Fn(f64) -> Demand,
+) -> Flown {
     let mut rig = rig(scenario, studied);
     for _ in 0..(REST * 1e3) as usize {
         rig.step(Setpoint::Idle);
@@ -132,17 +137,17 @@ pub fn fly(scenario: &Scenario, studied: Option<Studied>, seconds: f64, wish: im
         let since_take_off = i as f64 * 1e-3;
         let t = since_take_off - SETTLE;
         let thrust = hold.thrust(rig.plant.pose(), since_take_off);
-        let wish = if t >= 0.0 { wish(t) } else { Wish::default() };
-        (rig.plant.moment, rig.plant.push) = (wish.moment, wish.push);
+        let demand = if t >= 0.0 { demand(t) } else { Demand::default() };
+        (rig.plant.moment, rig.plant.push) = (demand.moment, demand.push);
         rig.step(Setpoint::Angle {
-            roll: wish.roll as f32,
+            roll: demand.roll as f32,
             pitch: 0.0,
-            yaw_rate: wish.yaw_rate as f32,
+            yaw_rate: demand.yaw_rate as f32,
             thrust,
         });
         if t >= 0.0 {
             let wanted = heading.get_or_insert_with(|| aimed_heading(&rig));
-            *wanted += wish.yaw_rate * 1e-3;
+            *wanted += demand.yaw_rate * 1e-3;
             flown.moments.push(moment(&rig, t, *wanted));
         }
         if since_take_off > SPOOL_UP && lost(&rig, heading) {

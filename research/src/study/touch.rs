@@ -129,7 +129,7 @@ pub struct Touched {
     pub pressure: f64,
     /// The same before the arms close, and after they let go, Pa: bumps of open arms.
     pub bump: f64,
-    /// The vehicle left the pipe by itself.
+    /// The vehicle escaped from the pipe.
     pub escaped: bool,
     /// The arms began to close.
     pub closed: bool,

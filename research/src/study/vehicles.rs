@@ -10,13 +10,13 @@ use sophie_sim::check::Check;
 use sophie_sim::parallel;
 use sophie_sim::record::{Outcome, Silent};
 
-pub use self::sampling::{Drawn, draw};
+pub use self::sampling::{SampledVehicle, sample};
 
 /// A vehicle, what the design check says of it, and how it flew.
 #[derive(Clone, Debug)]
 pub struct Flown {
     /// The vehicle.
-    pub drawn: Drawn,
+    pub drawn: SampledVehicle,
     /// Rows of the check that it fails, each with value and limit; none: it can fly.
     pub check: Vec<String>,
     /// Of its flight.
@@ -40,10 +40,10 @@ impl Flown {
 /// Checks and flies `count` vehicles with the seeds `seed`, `seed` + 1, …
 ///
 /// # Errors
-/// One line: a vehicle that is no scenario.
+/// One line: a vehicle that does not make a valid scenario.
 pub fn fly(count: u64, seed: u64, spread: f64) -> Result<Vec<Flown>, String> {
     let drawn = (0..count)
-        .map(|i| draw(seed.saturating_add(i), spread))
+        .map(|i| sample(seed.saturating_add(i), spread))
         .collect::<Result<Vec<_>, _>>()?;
     Ok(parallel::each(&drawn, |drawn| Flown {
         drawn: drawn.clone(),

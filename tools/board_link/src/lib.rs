@@ -1,8 +1,8 @@
-//! The builder's side of the console: a [`session`] over a serial port, TCP or [`mavlink`], parameter files
-//! ([`parameters`]) and the guided [bring-up](bringup) of a vehicle.
+//! A builder's line to a board: a console [`session`] over a serial port, TCP or [`mavlink`], and parameter files
+//! ([`parameters`]).
 //!
-//! Whatever is typed is a command of docs/console.md. The line may be in any state and lose bytes; the board may restart
-//! or fall silent. Every failure is one line that names the port and what was expected.
+//! Every typed line is a command of docs/console.md. The line may begin in any state and lose bytes; the board may
+//! restart or fall silent. Every failure is one line that names the port and the expected answer.
 
 pub mod file;
 pub mod mavlink;
@@ -13,14 +13,14 @@ pub mod wire;
 
 use std::fmt;
 
-/// Why something was not done.
+/// Reason of a failure.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Failure {
     /// A file, an option or a port that cannot be used: exit status 2.
     Input(String),
-    /// The board refused, fell silent or has something else in force: exit status 1.
+    /// The board refused, fell silent or has other values in force: exit status 1.
     Board(String),
-    /// Ctrl-C, before it was done: exit status 1.
+    /// Interrupted by Ctrl-C: exit status 1.
     Stopped(String),
 }
 

@@ -1,7 +1,7 @@
-//! A console over MAVLink: `SERIAL_CONTROL`'s shell as a [`Wire`], from a station of its own.
+//! A console over MAVLink: `SERIAL_CONTROL`'s shell as a [`Wire`], with a station ID of its own.
 //!
-//! A thread reads what the vehicle sends and says each second that someone is there, whatever the builder does meanwhile:
-//! the vehicle ends the console of a station that falls silent.
+//! A thread reads the vehicle's frames and sends a heartbeat each second, also while the builder does nothing: the
+//! vehicle ends the console session of a silent station.
 
 use std::collections::VecDeque;
 use std::io::{self, ErrorKind, Read, Write};
@@ -21,30 +21,30 @@ use sophie_mavlink::wire::signing::{Key, Record, Signing, Stored};
 
 use crate::wire::Wire;
 
-/// The station's number among systems: beside a ground station's usual 255.
+/// System ID of the station, beside a ground station's usual 255.
 const STATION: u8 = 254;
-/// Its number among components (MAV_COMP_ID_MISSIONPLANNER: a ground station).
+/// Component ID of the station (MAV_COMP_ID_MISSIONPLANNER: a ground station).
 const STATION_COMPONENT: u8 = 190;
 /// Time from one heartbeat to the next.
 const BEAT: Duration = Duration::from_secs(1);
-/// Longest wait of a read, after which there is nothing.
+/// Longest wait of a read.
 const SLICE: Duration = Duration::from_millis(20);
-/// Bytes that are kept for a reader at most: more than the longest list.
+/// Largest number of bytes kept for a reader: more than the longest list.
 const KEPT: usize = 1 << 18;
-/// The start of signatures' time, 2015-01-01, after Unix's.
+/// Start of the signatures' time, 2015-01-01, after Unix's.
 const EPOCH: Duration = Duration::from_secs(1_420_070_400);
-/// Stands for bytes that were lost; no line with it is taken for a sound one.
+/// Stands for lost bytes: a line with it counts as damaged.
 const LOST: u8 = 0x80;
 
-/// Both ends of what carries MAVLink. A read returns within some milliseconds where nothing comes.
+/// Both ends of the line that carries MAVLink. A read of a silent line returns within some milliseconds.
 pub struct Ends {
-    /// Where frames come from.
+    /// Source of received bytes.
     pub input: Box<dyn Read + Send>,
-    /// Where each write is a frame.
+    /// Sink of sent bytes; each write is one frame.
     pub output: Box<dyn Write + Send>,
 }
 
-/// Datagrams from and to a vehicle, whose address is the latest that was heard of where none is given.
+/// Datagrams from and to a vehicle. Without a given address they go to the latest sender.
 ///
 /// # Errors
 /// The socket cannot be shared.
@@ -64,14 +64,14 @@ pub fn udp(socket: UdpSocket, to: Option<SocketAddr>) -> io::Result<Ends> {
 struct Datagrams {
     socket: UdpSocket,
     peer: Arc<Mutex<Option<SocketAddr>>>,
-    /// The address was given.
+    /// The address was given and does not change.
     fixed: bool,
 }
 
 impl Read for Datagrams {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let (count, from) = match self.socket.recv_from(buffer) {
-            // Without a listener there so far.
+            // No socket listens there yet.
             Err(error) if error.kind() == ErrorKind::ConnectionRefused => {
                 return Err(ErrorKind::WouldBlock.into());
             }
@@ -93,7 +93,7 @@ impl Write for Datagrams {
         {
             return Err(error);
         }
-        // To a vehicle that was not heard yet it is lost, as on any datagram's way.
+        // Without an address of the vehicle the datagram is dropped.
         Ok(bytes.len())
     }
 
@@ -102,10 +102,10 @@ impl Write for Datagrams {
     }
 }
 
-/// The console over `ends`, signed by `key` where there is one.
+/// The console over `ends`, signed if `key` is given.
 ///
 /// # Errors
-/// No thread can be had.
+/// The thread cannot be started.
 pub fn open(ends: Ends, key: Option<Key>) -> io::Result<Box<dyn Wire>> {
     let begun = Instant::now();
     let date = SystemTime::now().duration_since(UNIX_EPOCH + EPOCH);
@@ -137,7 +137,7 @@ pub fn open(ends: Ends, key: Option<Key>) -> io::Result<Box<dyn Wire>> {
 
 struct Shared {
     station: Mutex<Station>,
-    /// The console has said something, or the line has ended.
+    /// Signals new output or the end of the line.
     came: Condvar,
 }
 
@@ -146,11 +146,11 @@ struct Station {
     encoder: Encoder,
     signing: Signing,
     begun: Instant,
-    /// What the console has said.
+    /// Output of the console.
     heard: VecDeque<u8>,
     /// Number of its latest message.
     count: Option<u16>,
-    /// Why nothing more comes.
+    /// Error that ended the line.
     ended: Option<ErrorKind>,
     /// The session is over.
     closed: bool,
@@ -178,7 +178,7 @@ impl Station {
         })
     }
 
-    /// Types `bytes`, [`CHUNK`] at most; nothing at all ends the console.
+    /// Types `bytes`, at most [`CHUNK`]; no bytes end the console session.
     fn type_in(&mut self, bytes: &[u8]) -> io::Result<()> {
         let mut data = [0; CHUNK];
         data.iter_mut().zip(bytes).for_each(|(to, from)| *to = *from);
@@ -270,7 +270,7 @@ fn serve(shared: &Shared, input: &mut dyn Read) {
 }
 
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    // What is shared is whole at each step.
+    // The shared state is consistent after each step.
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
@@ -315,7 +315,7 @@ impl Drop for Shell {
     fn drop(&mut self) {
         {
             let mut station = locked(&self.shared.station);
-            // Who has gone is noticed by his silence as well.
+            // If this frame is lost, the vehicle notices the silence.
             let _ = station.type_in(&[]);
             station.closed = true;
         }

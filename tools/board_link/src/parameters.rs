@@ -1,7 +1,7 @@
-//! Parameters of a board as a file, against a file, and from a file.
+//! Parameters of a board: written to a file, compared with a file, and set from a file.
 //!
-//! The file is the `[params]` of a scenario. The console shows and takes numbers with up to nine digits: their last may be
-//! off, which is no difference.
+//! The file is the `[params]` of a scenario. The console shows and takes numbers with up to nine digits: a difference
+//! in the last digit does not count.
 
 use std::fmt::Write;
 
@@ -12,30 +12,30 @@ use sophie_sim::scenario::settings::Setting;
 use crate::Failure;
 use crate::session::{Session, restarts};
 
-/// Part of a number by which its way over the console may change it: twice the last bit of 24.
+/// Relative rounding error of a number on its way over the console: twice the last bit of 24.
 const LAST_DIGIT: f32 = 2.0 * f32::EPSILON;
-/// Times that a list is asked for whose rows are damaged or missing.
+/// Number of attempts at a list with damaged or missing rows.
 const TRIES: u32 = 3;
 
-/// A parameter as the board has it in its working copy.
+/// A parameter in the board's working copy.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Listed {
     /// Its name.
     pub name: String,
     /// The number, as the console shows it.
     pub value: String,
-    /// What it takes, with the unit.
+    /// The allowed values, with the unit.
     pub allowed: String,
-    /// It is not the board's default.
+    /// The value differs from the board's default.
     pub changed: bool,
 }
 
-/// A parameter that the file has otherwise than the board.
+/// A parameter whose value in the file differs from the board's.
 #[derive(Clone, Debug)]
 pub struct Difference {
-    /// What the file has.
+    /// Value in the file.
     pub setting: Setting,
-    /// What the board has; `None` where its firmware has no such parameter.
+    /// Value on the board; `None` if its firmware lacks the parameter.
     pub board: Option<String>,
 }
 
@@ -66,7 +66,7 @@ fn shown(setting: &Setting) -> String {
     Decimal(setting.value).to_string()
 }
 
-/// What runs on the board.
+/// Firmware of the board.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Version {
     /// Version and board.
@@ -75,8 +75,8 @@ pub struct Version {
     pub build: String,
 }
 
-/// What runs on the board, as it says it. Lines that are lost on the way are asked for again; a firmware that has none of them
-/// is an earlier one.
+/// Firmware of the board, by its own answer. Lost lines are asked for again; a firmware without these lines is an
+/// earlier one.
 ///
 /// # Errors
 /// The line is lost.
@@ -95,13 +95,13 @@ pub fn version(session: &mut Session) -> Result<Version, Failure> {
     })
 }
 
-/// What the board has, in its order. Rows that are lost on the way are asked for again, one by one.
+/// The parameters of the board, in its order. Rows that are lost on the way are asked for again, one by one.
 ///
 /// # Errors
-/// One line: the line is lost, or what the board lists is no list.
+/// One line: the line is lost, or the board's answer is not a list.
 pub fn listed(session: &mut Session) -> Result<Vec<Listed>, Failure> {
     let mut rows = Vec::new();
-    // A parameter that this program does not know is missed by nothing else.
+    // A row that this program does not know could be lost unnoticed: rows are counted.
     let damaged = take_rows(&session.ask("list")?, &mut rows) > 0;
     if damaged {
         take_rows(&session.ask("list")?, &mut rows);
@@ -129,7 +129,7 @@ pub fn listed(session: &mut Session) -> Result<Vec<Listed>, Failure> {
     Ok(rows)
 }
 
-/// Takes the rows that are not there yet out of a list; how many were damaged.
+/// Takes the missing rows out of a list; returns the number of damaged ones.
 fn take_rows(lines: &[String], rows: &mut Vec<Listed>) -> usize {
     let read: Vec<Listed> = lines.iter().filter_map(|line| row(line)).collect();
     let damaged = lines.len() - read.len();
@@ -141,9 +141,9 @@ fn take_rows(lines: &[String], rows: &mut Vec<Listed>) -> usize {
     damaged
 }
 
-/// One row of `list`: mark, name, number, what is allowed.
+/// One row of `list`: mark, name, number, allowed values.
 fn row(line: &str) -> Option<Listed> {
-    // Stands for bytes that were lost or damaged.
+    // Stands for lost or damaged bytes.
     if line.contains('?') {
         return None;
     }
@@ -163,13 +163,13 @@ fn row(line: &str) -> Option<Listed> {
     })
 }
 
-/// The changes that the board has not saved, as it says them.
+/// The board's unsaved changes, in its words.
 ///
 /// # Errors
 /// The line is lost.
 pub fn unsaved(session: &mut Session) -> Result<Vec<String>, Failure> {
     let mut lines = session.ask("changes")?;
-    // The last line counts them.
+    // The last line has their number.
     let last = lines.pop().unwrap_or_default();
     let fits = match last.split_once(" change") {
         Some(("no", "s")) => lines.is_empty(),
@@ -185,7 +185,7 @@ pub fn unsaved(session: &mut Session) -> Result<Vec<String>, Failure> {
     Ok(lines)
 }
 
-/// A parameter file with all that the board has; `board` is said in its first lines.
+/// A parameter file with all values of the board; `board` goes into its first lines.
 pub fn text(board: &Version, rows: &[Listed]) -> String {
     let Version { firmware, build } = board;
     let mut text = format!(
@@ -213,7 +213,7 @@ pub fn text(board: &Version, rows: &[Listed]) -> String {
     text
 }
 
-/// Where the file differs from the board, in the file's order.
+/// The differences between file and board, in the file's order.
 pub fn differences(settings: &[Setting], rows: &[Listed]) -> Vec<Difference> {
     let board = |setting: &Setting| {
         let row = rows.iter().find(|listed| listed.name == setting.row.name);
@@ -235,10 +235,11 @@ fn same(a: f32, b: f32) -> bool {
     (a - b).abs() <= LAST_DIGIT * a.abs().max(b.abs())
 }
 
-/// Sets what differs, saves, and looks whether it is in force after the restart. `say` gets a line for each step.
+/// Sets the parameters that differ, saves, and compares those in force after the restart. `say` gets a line for each
+/// step.
 ///
 /// # Errors
-/// One line: what the board refused, in which case its working copy is put back, or what it has instead.
+/// One line: the value that the board refused (its working copy is then put back), or the value that it has instead.
 pub fn load(session: &mut Session, settings: &[Setting], say: &mut dyn FnMut(&str)) -> Result<(), Failure> {
     let before = listed(session)?;
     let waiting = unsaved(session)?;
@@ -270,7 +271,7 @@ pub fn load(session: &mut Session, settings: &[Setting], say: &mut dyn FnMut(&st
             return Err(put_back(session, &different[..=done], why));
         }
     }
-    // Stored is stored: what is in force then is still looked at.
+    // The values are stored already: those in force are still compared.
     session.see_it_through();
     if let Err(why) = save(session) {
         return Err(put_back(session, &different, why));
@@ -305,11 +306,11 @@ fn set(session: &mut Session, difference: &Difference) -> Result<(), Failure> {
     )))
 }
 
-/// Sets the old values in the working copy, as far as the line allows; `why` they are not saved.
+/// Restores the old values in the working copy, as far as the line allows; `why` is the reason for not saving.
 fn put_back(session: &mut Session, different: &[Difference], why: Failure) -> Failure {
     let why = match why {
         Failure::Stopped(line) => {
-            // Where this fails, so does what follows.
+            // If this fails, the next command fails as well.
             let _ = session.calm();
             Failure::Stopped(format!("{line}; nothing is saved"))
         }
@@ -317,7 +318,7 @@ fn put_back(session: &mut Session, different: &[Difference], why: Failure) -> Fa
     };
     for Difference { setting, board } in different {
         if let Some(old) = board {
-            // What fails here is lost with the next restart anyhow.
+            // A failure here is harmless: the working copy ends with the next restart.
             let _ = session.command(&format!("set {} {old}", setting.row.name));
         }
     }
@@ -327,7 +328,7 @@ fn put_back(session: &mut Session, different: &[Difference], why: Failure) -> Fa
 /// Stores the working copy and waits for the restarted board.
 ///
 /// # Errors
-/// One line: what the board says of it, or the line is lost.
+/// One line: the board's refusal, or the line is lost.
 pub fn save(session: &mut Session) -> Result<(), Failure> {
     let said = session.restart("save")?;
     if restarts(&said) {

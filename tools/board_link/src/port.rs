@@ -1,4 +1,4 @@
-//! Where the console is: at a serial port, at a TCP socket as the emulated board has it, or behind MAVLink.
+//! The port of a console: a serial port, a TCP socket (of an emulated board), or MAVLink.
 
 use std::fmt;
 use std::fs::File;
@@ -16,19 +16,19 @@ use crate::wire::Wire;
 
 /// The console's rate on serial ports.
 pub const BAUD: u32 = 115_200;
-/// Longest wait of one read or write: how finely a session counts silence.
+/// Longest wait of one read or write: the resolution of a session's time-outs.
 const SLICE: Duration = Duration::from_millis(20);
-/// Longest wait of a write, after which the line counts as lost.
+/// Longest wait of a write; then the line counts as lost.
 const WRITE: Duration = Duration::from_secs(2);
 /// Longest wait for a TCP connection.
 const CONNECT: Duration = Duration::from_secs(5);
-/// MAVLink's rate on serial ports where none is named: that of the boards.
+/// MAVLink's default rate on serial ports, baud: that of the boards.
 const MAVLINK_BAUD: u32 = 57_600;
-/// What is allowed.
+/// The allowed names.
 const ALLOWED: &str = "allowed /dev/..., COM3, tcp:HOST:PORT, or over MAVLink mavlink:/dev/...[,BAUD], \
                        mavlink:tcp:HOST:PORT, udpin:HOST:PORT, udpout:HOST:PORT";
 
-/// Name of a port: `/dev/ttyUSB0`, `COM3`, `tcp:127.0.0.1:5000`; over MAVLink in the words of its other clients.
+/// Name of a port: `/dev/ttyUSB0`, `COM3`, `tcp:127.0.0.1:5000`; for MAVLink in the notation of its other clients.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PortName {
     /// A serial port.
@@ -39,14 +39,14 @@ pub enum PortName {
     Mavlink(Carrier),
 }
 
-/// What carries MAVLink.
+/// The carrier of MAVLink.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Carrier {
     /// A serial port and its rate.
     Serial(PathBuf, u32),
     /// HOST:PORT.
     Tcp(String),
-    /// HOST:PORT here, which the vehicle sends to.
+    /// HOST:PORT of this computer, which the vehicle sends to.
     UdpIn(String),
     /// HOST:PORT of the vehicle.
     UdpOut(String),
@@ -71,7 +71,7 @@ impl FromStr for PortName {
 }
 
 fn carrier(text: &str) -> Result<Carrier, String> {
-    // As pymavlink has it, udp: alone listens.
+    // As in pymavlink, udp: without in or out listens.
     for listens in ["udpin:", "udp:"] {
         if let Some(at) = text.strip_prefix(listens) {
             return Ok(Carrier::UdpIn(address(at, listens)?));
@@ -117,7 +117,7 @@ impl fmt::Display for PortName {
 }
 
 impl PortName {
-    /// Opens the port; MAVLink is signed by `key`, where there is one.
+    /// Opens the port. `key` signs MAVLink.
     ///
     /// # Errors
     /// One line: the port, and why it cannot be used.
@@ -189,7 +189,7 @@ fn serial(path: &PathBuf, baud: u32) -> io::Result<serial2::SerialPort> {
     Ok(port)
 }
 
-/// Takes the port for this process alone, as terminal programs do. It is given back with the port's last handle.
+/// Locks the port for this process, as terminal programs do. The lock ends with the port's last handle.
 #[cfg(unix)]
 fn lock(port: &serial2::SerialPort) -> io::Result<()> {
     use std::os::fd::AsFd;

@@ -1,7 +1,7 @@
-//! A session at the console: commands typed, answers heard.
+//! A session at the console: it types commands and reads answers.
 //!
-//! A command is typed without its Enter first and sent off only when its echo is what was typed: a line that loses bytes
-//! never makes another command of it. Its answer ends with the console's prompt.
+//! A command is first typed without its Enter, which follows only if the echo equals the typed text: a line that loses
+//! bytes never makes another command of it. The answer ends with the console's prompt.
 
 use std::io::{self, ErrorKind, Read, Write};
 use std::sync::Arc;
@@ -15,68 +15,68 @@ use crate::Failure;
 use crate::port::{BAUD, PortName};
 use crate::wire::Wire;
 
-/// Longest silence while an answer is due, where nothing else is said.
+/// Default of the longest silence while an answer is due.
 pub const PATIENCE: Duration = Duration::from_secs(10);
-/// Time that a restarted board has to answer: erasing flash, self-tests, and an emulated one at half its speed.
+/// Longest restart of a board: erasing flash, self-tests, and an emulated board at half the speed.
 const RESTART: Duration = Duration::from_secs(30);
-/// Time between two attempts to open a port that is gone.
+/// Time between two attempts to reopen a lost port.
 const REOPEN: Duration = Duration::from_millis(100);
-/// Time that the first attempt has to be answered; each further one has twice that of the last.
+/// Longest wait for the answer to the first attempt; each further attempt waits twice as long.
 const ATTEMPT: Duration = Duration::from_secs(1);
-/// Times that a line which was damaged on its way is typed.
+/// Number of attempts at typing a line that is damaged on its way.
 const TRIES: u32 = 4;
-/// Silences after which an answer that never ends, as of a line full of noise, counts as none.
+/// Length limit of an answer, in silences: an endless answer, as of a noisy line, counts as none.
 const SILENCES: u32 = 6;
-/// What asks for a command, at the start of a line.
+/// The console's prompt.
 const PROMPT: &str = "\n> ";
-/// Ends a command that lasts or asks; typed into a line it is nothing.
+/// Ctrl-C: aborts a running command or prompt; ignored inside a line.
 const CANCEL: u8 = 0x03;
-/// What is sent before the first command, whatever the line is at: an end to what runs, one to a cursor key's bytes, a
-/// byte for which the console rejects what is typed so far, and Enter.
+/// Sent before the first command, whatever state the line is in: it ends a running command, then a cursor key's bytes,
+/// makes the console reject the unfinished line, and enters it.
 const CLEAN: [u8; 4] = [CANCEL, b'z', 0x80, b'\r'];
-/// Most bytes that are kept of an answer.
+/// Largest kept answer, bytes.
 const HEARD_MAX: usize = 1 << 20;
-/// What the console says of a line that lost bytes.
+/// The console's answer to a line that lost bytes.
 const DAMAGED: &str = "the line was damaged on its way";
 
-/// A line to a console that has answered.
+/// A session at a console that has answered.
 pub struct Session {
     wire: Box<dyn Wire>,
     name: PortName,
-    /// What MAVLink is signed with.
+    /// Key of MAVLink's signatures.
     key: Option<Key>,
-    /// Its text, for messages.
+    /// Name of the port, for messages.
     port: String,
-    /// What answers there, for messages.
+    /// The answering device, for messages.
     expected: String,
     patience: Duration,
-    /// What was said since the last Enter or key, printable characters and line ends alone.
+    /// Output since the last Enter or key: printable characters and line ends only.
     heard: String,
-    /// Key whose echo comes first.
+    /// Pressed key, whose echo comes first.
     pressed: Option<u8>,
-    /// Attempts to be answered so far.
+    /// Number of probes so far.
     attempts: u32,
     /// Restarts since the session began.
     restarts: u32,
-    /// Raised from outside, as by Ctrl-C; heeded once, so that what is left can be put in order.
+    /// Raised from outside, as by Ctrl-C. It is obeyed once, so that the caller can still tidy up.
     stop: Arc<AtomicBool>,
     heeds: bool,
-    /// The port is gone, as one on USB is while its board restarts.
+    /// The port is gone, as on USB while the board restarts.
     lost: bool,
 }
 
-/// What the console said up to where it waits.
+/// The console's output up to its prompt or question.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Turn {
-    /// Whole lines, without the echo of what was typed.
+    /// Whole lines, without the echo of the typed text.
     pub lines: Vec<String>,
-    /// The question that it waits at; `None` at the prompt.
+    /// The question that the console asks; `None` at the prompt.
     pub question: Option<&'static str>,
 }
 
 impl Session {
-    /// Opens `port` and waits for its console, over MAVLink signed by `key` where there is one. `patience` is the longest
-    /// silence while an answer is due; what waits ends once when `stop` is raised.
+    /// Opens `port` and waits for its console; `key` signs MAVLink. `patience` is the longest silence while an answer
+    /// is due. When `stop` is raised, the current wait ends once.
     ///
     /// # Errors
     /// One line: the port cannot be opened, or no console answers there.
@@ -122,12 +122,12 @@ impl Session {
         self.restarts
     }
 
-    /// Types `text` and gives the answer.
+    /// Types `text` and returns the answer.
     ///
     /// # Errors
     /// One line: the line is lost, or the board does not answer.
     pub fn command(&mut self, text: &str) -> Result<Vec<String>, Failure> {
-        // The console's own rule, kept here: what it refuses or takes for a blank does not come back as it was typed.
+        // The console's own rule, kept here: refused bytes and replaced blanks do not come back as they were typed.
         let text = &text.replace('\t', " ");
         if !text.bytes().all(|byte| matches!(byte, b' '..=b'~')) {
             return Ok(vec![NOT_TEXT.to_owned()]);
@@ -142,7 +142,7 @@ impl Session {
         Err(self.failed(&format!("'{text}' is damaged on its way each time")))
     }
 
-    /// The same for a command that changes nothing: where its answer ends nowhere, it is typed again.
+    /// As [`Self::command`], for a command that changes nothing: it is repeated if its answer does not end.
     ///
     /// # Errors
     /// As [`Self::command`].
@@ -159,7 +159,7 @@ impl Session {
         self.command(text)
     }
 
-    /// Types `text` with its Enter; [`Self::turn`] gives what follows.
+    /// Types `text` with its Enter; [`Self::turn`] returns the answer.
     ///
     /// # Errors
     /// As [`Self::command`].
@@ -171,7 +171,7 @@ impl Session {
                 self.heard.clear();
                 return self.send(b"\r");
             }
-            // What came of it is rejected, not obeyed.
+            // The console rejects the damaged line.
             self.synchronise(self.patience)?;
         }
         Err(self.failed(&format!("'{text}' does not come back as it was typed")))
@@ -187,18 +187,18 @@ impl Session {
         self.send(&[key])
     }
 
-    /// Ends the command that runs, and waits for the prompt.
+    /// Ends the running command and waits for the prompt.
     ///
     /// # Errors
     /// As [`Self::command`].
     pub fn cancel(&mut self) -> Result<Vec<String>, Failure> {
         self.key(CANCEL)?;
-        // The end of the line before may have been heard already.
+        // The end of the line before may have been read already.
         self.heard.push('\n');
         Ok(self.turn("what runs was ended", &[])?.lines)
     }
 
-    /// Ends whatever runs at the console after Ctrl-C, which is heeded no more.
+    /// Ends the running command after Ctrl-C; further Ctrl-C is ignored.
     ///
     /// # Errors
     /// As [`Self::command`].
@@ -208,12 +208,13 @@ impl Session {
         self.synchronise(self.patience)
     }
 
-    /// From here on Ctrl-C is not heeded: what is begun must not be left half done.
+    /// From here on Ctrl-C is ignored: a command that has begun must not be left half done.
     pub fn see_it_through(&mut self) {
         self.heeds = false;
     }
 
-    /// What is said until the console asks one of `questions` or waits at its prompt; `what` was typed or pressed.
+    /// Output until the console asks one of `questions` or shows its prompt; `what` names the typed text or key in a
+    /// failure.
     ///
     /// # Errors
     /// As [`Self::command`].
@@ -246,7 +247,7 @@ impl Session {
         Ok(Turn { lines, question })
     }
 
-    /// The next whole line of `command`, which lasts.
+    /// The next whole line of the running `command`.
     ///
     /// # Errors
     /// As [`Self::command`].
@@ -263,7 +264,7 @@ impl Session {
         Ok(line)
     }
 
-    /// Presses `key` where the console waits for one; false where it has ended by itself meanwhile.
+    /// Presses `key` if the console waits for a key; false if its command has ended meanwhile.
     ///
     /// # Errors
     /// The line is lost.
@@ -276,26 +277,26 @@ impl Session {
         Ok(true)
     }
 
-    /// Time that a start may take from the restart to `DISARMED`.
+    /// Longest start, from the restart to `DISARMED`.
     pub fn longest_start(&self) -> Duration {
         RESTART.max(self.patience)
     }
 
-    /// Types `text`, after which the board restarts, and waits until it answers again; what it said before. It has not
-    /// restarted where the last line does not say so.
+    /// Types `text`, which restarts the board, and waits until it answers again; returns its last output. If the last
+    /// line does not announce a restart, there was none.
     ///
     /// # Errors
     /// As [`Self::command`].
     pub fn restart(&mut self, text: &str) -> Result<Vec<String>, Failure> {
         self.begin(text)?;
-        // Now it is stored or not, whatever happens here: only the answer says which.
+        // The board may have stored already: only its answer decides.
         let heeds = std::mem::replace(&mut self.heeds, false);
         let said = self.restarted(text);
         self.heeds = heeds;
         said
     }
 
-    /// What was said to `text`; where the board restarts, once it answers again.
+    /// Output of `text`; if the board restarts, once it answers again.
     fn restarted(&mut self, text: &str) -> Result<Vec<String>, Failure> {
         let ends = |heard: &str| heard.ends_with("restarting\n") || heard.ends_with(PROMPT);
         if !self.wait(self.patience, ends)? {
@@ -309,7 +310,7 @@ impl Session {
         Ok(lines)
     }
 
-    /// Waits until the restarted board answers, for at most `time`. A port on USB goes with its board and comes back.
+    /// Waits until the restarted board answers, for at most `time`. A port on USB disappears during the restart.
     fn come_back(&mut self, time: Duration) -> Result<(), Failure> {
         let begun = Instant::now();
         loop {
@@ -318,7 +319,7 @@ impl Session {
                 Err(_) if self.lost && !left.is_zero() => (),
                 done => return done,
             }
-            // Given up first: the system gives the port its name again only when no one has the old one.
+            // Closed first: the system reuses the port's name only when no process has the old port open.
             self.wire = Box::new(Gone);
             std::thread::sleep(REOPEN);
             if let Ok(wire) = self.name.open(self.key) {
@@ -327,14 +328,14 @@ impl Session {
         }
     }
 
-    /// Waits until the console answers a line of its own with a clean prompt, for at most `time`.
+    /// Waits until the console answers a probe with a clean prompt, for at most `time`.
     fn synchronise(&mut self, time: Duration) -> Result<(), Failure> {
         let begun = Instant::now();
         let mut attempt = ATTEMPT;
         let mut bytes = 0;
         while begun.elapsed() < time {
             self.attempts += 1;
-            // A word that no other text has: what is said to it can be told from all that was said before.
+            // A word that no other text has: its answer is distinguishable from all earlier output.
             let word = format!("sync-{}", self.attempts);
             let answer = format!("no command '{word}'");
             let answered = |heard: &str| {
@@ -361,7 +362,7 @@ impl Session {
         )))
     }
 
-    /// Reads until `done` of what was heard; false where nothing has come for `silence`.
+    /// Reads until `done` accepts the output; false after a pause of `silence`.
     fn wait(&mut self, silence: Duration, done: impl Fn(&str) -> bool) -> Result<bool, Failure> {
         let begun = Instant::now();
         let mut last = begun;
@@ -425,7 +426,7 @@ impl Session {
     }
 }
 
-/// In place of a port that is gone.
+/// Stands for a lost port.
 struct Gone;
 
 impl Read for Gone {
@@ -450,7 +451,7 @@ fn whole_lines(text: &str) -> impl Iterator<Item = String> {
     lines.filter(|line| !line.is_empty()).map(str::to_owned)
 }
 
-/// The board says that it restarts.
+/// True if the board announces its restart.
 pub fn restarts(said: &[String]) -> bool {
     said.last().is_some_and(|line| line.ends_with("restarting"))
 }

@@ -2,7 +2,7 @@
 
 use std::io::{Read, Write};
 
-/// Both ways of a line. A read returns [`TimedOut`](std::io::ErrorKind::TimedOut) or [`WouldBlock`](std::io::ErrorKind::WouldBlock) within some milliseconds
-/// where nothing comes.
+/// Both directions of a line. A read of a silent line returns [`TimedOut`](std::io::ErrorKind::TimedOut) or
+/// [`WouldBlock`](std::io::ErrorKind::WouldBlock) within some milliseconds.
 pub trait Wire: Read + Write + Send {}
 impl<T: Read + Write + Send> Wire for T {}

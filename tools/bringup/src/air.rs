@@ -6,20 +6,22 @@ use super::walk::{Stop, Verdict, Walk};
 use super::{Judged, Step};
 use sophie_board_link::parameters::{self, Version};
 
-/// Boards that carry one (`BarometerPort` of each board): where none answers, it is broken. Others fly without.
+/// Boards that carry a barometer (`BarometerPort` of each board): a silent one is broken. Other boards fly without.
 const CARRY: [&str; 2] = ["matek-h743", "cuav-v5"];
 const WATCH: &str = "watch air";
-/// Rows of `watch`, five a second: at rest, then up and down again, each after rows in which hands still move.
+/// Rows of `watch`, five a second: at rest, lifted, and put down, the last two after rows in which the vehicle still
+/// moves.
 const REST: usize = 20;
 const MOVED: usize = 10;
 const SETTLING: usize = 3;
-/// Pressures that air has where people are, hPa.
+/// Plausible air pressure, hPa.
 const PLAUSIBLE: RangeInclusive<f64> = 300.0..=1200.0;
-/// Most noise at rest, Pa RMS: a part has 1.2 at most (MS5611), a draught adds to it.
+/// Largest noise at rest, Pa RMS: a part has 1.2 at most (MS5611), a draught adds to it.
 const NOISE_MAX: f64 = 3.0;
-/// What 1 m takes off, Pa: 12 at sea level, 9 at 2,500 m, by hand between half a metre and two.
+/// Accepted drop of pressure for a lift of about 1 m, Pa: 12 at sea level, 9 at 2,500 m; a lift by hand is half a metre
+/// to two.
 const METRE: RangeInclusive<f64> = 5.0..=25.0;
-/// Most that the pressure may be off where it was, Pa: weather and a door that opens.
+/// Largest change of pressure at one place during the step, Pa: weather and an opened door.
 const RETURN_MAX: f64 = 5.0;
 
 pub(super) fn air(walk: &mut Walk<'_>, _: &Step) -> Judged {
@@ -38,7 +40,7 @@ pub(super) fn air(walk: &mut Walk<'_>, _: &Step) -> Judged {
     Ok(judged(&rest, &up, &down))
 }
 
-/// Pressures of so many rows, Pa; `None` where the last one has none.
+/// Pressures of so many rows, Pa; `None` if the last row has none.
 fn pressures(walk: &mut Walk<'_>, rows: usize) -> Result<Option<Vec<f64>>, Stop> {
     walk.session.begin(WATCH)?;
     let (mut found, mut last) = (Vec::new(), None);
@@ -57,7 +59,7 @@ fn pressures(walk: &mut Walk<'_>, rows: usize) -> Result<Option<Vec<f64>>, Stop>
     Ok(last.map(|_| found))
 }
 
-/// The pressure of a row, Pa, with `None` where it is stale; `None` of a line that is no row.
+/// The pressure of a row, Pa: `Some(None)` if it is stale, `None` if the line is not a row.
 fn pressure(line: &str) -> Option<Option<f64>> {
     let mut words = line.split_whitespace();
     let (pressure, _, None) = (words.next()?, words.next()?, words.next()) else {
@@ -86,13 +88,13 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len().max(1) as f64
 }
 
-/// Of pressures at rest, lifted and put down again, Pa.
+/// The verdict on pressures at rest, lifted and put down again, Pa.
 fn judged(rest: &[f64], up: &[f64], down: &[f64]) -> Verdict {
     let ground = mean(rest);
     let squares: Vec<f64> = rest.iter().map(|p| (p - ground).powi(2)).collect();
     let noise = mean(&squares).sqrt();
     let [up, down] = [up, down].map(|rows| mean(rows.get(SETTLING..).unwrap_or_default()));
-    // Half of what has drifted was there when it was up.
+    // Half of the drift had happened when the vehicle was up.
     let (moved, returned) = (up - 0.5 * (ground + down), down - ground);
     let checks = [
         (

@@ -1,4 +1,4 @@
-//! Steps that the console's `calibrate` and `rotors` lead through.
+//! Steps that run the console's dialogues `calibrate` and `rotors`.
 
 use sophie_control::decimal;
 
@@ -6,15 +6,15 @@ use super::checks::takes_pulses;
 use super::walk::{Stop, Verdict, Walk};
 use super::{Judged, Step};
 
-/// What the last line of a calibration has that was taken.
+/// Ends of the last line of a successful calibration.
 const TAKEN: [&str; 3] = [", in force after save", ", as in force", "nothing to store"];
 
-/// Leads through `command`, stores what it gives, and judges by its last line.
+/// Runs the dialogue of `command`, stores its result, and judges by its last line.
 fn calibrated(walk: &mut Walk<'_>, command: &str) -> Judged {
     calibrated_then(walk, command, None)
 }
 
-/// The same; before the board restarts with what was taken, hands do what `first` asks for.
+/// As [`calibrated`]; asks `first` of the builder before the board restarts with the new values.
 fn calibrated_then(walk: &mut Walk<'_>, command: &str, first: Option<&str>) -> Judged {
     let said = walk.dialogue(command)?;
     let last = said.last().map_or("", String::as_str);
@@ -32,7 +32,7 @@ fn calibrated_then(walk: &mut Walk<'_>, command: &str, first: Option<&str>) -> J
     Ok(verdict)
 }
 
-/// What was found, without what was to be done.
+/// The results, without the instructions.
 fn figures(said: &[String]) -> Vec<String> {
     let found = |line: &&String| {
         let line = line.as_str();
@@ -99,7 +99,7 @@ pub(super) fn servo(walk: &mut Walk<'_>, step: &Step) -> Judged {
     calibrated(walk, &format!("calibrate servo {}", step.number))
 }
 
-/// A vehicle without a module has nothing to calibrate.
+/// A vehicle without a module needs no calibration of it.
 pub(super) fn flow(walk: &mut Walk<'_>, _: &Step) -> Judged {
     let said = walk.session.command("get flow_port")?;
     if said.first().is_some_and(|line| line.contains(" none")) {
@@ -135,7 +135,7 @@ pub(super) fn esc(walk: &mut Walk<'_>, _: &Step) -> Judged {
     if let Some(refused) = walk.propellers_off()? {
         return Ok(Verdict::of(false, vec![refused]));
     }
-    // What turns the motors first: it is in force, after a restart, when the protocol is tried.
+    // The motor outputs are set first: they are in force, after a restart, before the motors turn.
     let idle = if takes_pulses(walk.session)? {
         let idle = calibrated(walk, "calibrate esc idle")?;
         if !idle.passed {
@@ -168,7 +168,7 @@ pub(super) fn rotors(walk: &mut Walk<'_>, _: &Step) -> Judged {
         shown: true,
         ..Verdict::of(right(&said), figures(&said))
     };
-    // The order is stored; what turns by it is looked at once more.
+    // The motor order is stored; the turning rotors are compared with it once more.
     verdict.parameters = walk.keep(&said)?;
     if !verdict.passed && !verdict.parameters.is_empty() {
         walk.say("  The order of the wires is stored. Once more, to see it right:");

@@ -1,4 +1,4 @@
-//! Chip, setup, self-tests, and the look at everything.
+//! Chip, setup, self-tests, and the final check.
 
 use super::protocol::Identity;
 use super::walk::{Stop, Verdict, Walk};
@@ -7,7 +7,7 @@ use sophie_board_link::Failure;
 use sophie_board_link::parameters::{self, Version};
 use sophie_board_link::session::{Session, restarts};
 
-/// What a builder says about the parts; the rest has sound defaults or is measured.
+/// Parameters of the parts, which the builder enters; the rest have good defaults or are measured.
 const SETUP: [&str; 7] = [
     "motor_protocol",
     "rc_protocol",
@@ -18,18 +18,18 @@ const SETUP: [&str; 7] = [
     // Before any servo moves: its angles follow from it.
     "servo_range",
 ];
-/// The ends of controllers that take pulses.
+/// Pulse ends of motor controllers that take pulses.
 const PULSES: [&str; 3] = ["motor_pulse_min", "motor_pulse_idle", "motor_pulse_max"];
-/// What `status` says of a storage that only a save makes sound.
+/// Text of `status` for a storage that a save repairs.
 const UNSOUND: [&str; 3] = [
     "stored parameters unreadable",
     "storage holds another firmware's data",
     "parameter storage full",
 ];
-/// Row of `silicon` that such a storage marks; the setup clears it.
+/// Row of `silicon` that fails with such a storage; the setup clears it.
 const STORED: &str = "stored data of";
 const BROWN_OUT: &str = "brown-out level";
-/// Rows of the self-test that may fail while those parts are still off.
+/// Rows of the self-test that may fail while their parts are unpowered.
 const STILL_OFF: [&str; 2] = ["receiver", "battery"];
 
 /// A row of `silicon`.
@@ -39,7 +39,7 @@ struct Look {
     marked: bool,
 }
 
-/// The rows of `silicon`: mark, name, what was read, what is expected.
+/// The rows of `silicon`: mark, name, value, expected value.
 fn looks(session: &mut Session) -> Result<Vec<Look>, Failure> {
     let said = session.command("silicon")?;
     let looks = said.iter().filter_map(|line| {
@@ -52,7 +52,7 @@ fn looks(session: &mut Session) -> Result<Vec<Look>, Failure> {
     Ok(looks.collect())
 }
 
-/// What runs, and on which chip.
+/// Firmware and chip of the board.
 pub(super) fn identity(session: &mut Session) -> Result<Identity, Failure> {
     let Version { firmware, build } = parameters::version(session)?;
     let looks = looks(session)?;
@@ -125,14 +125,14 @@ pub(super) fn setup(walk: &mut Walk<'_>, _: &Step) -> Judged {
     Ok(verdict)
 }
 
-/// The motor controllers take pulses, by what is set.
+/// True if the motor controllers take pulses, by the parameters.
 pub(super) fn takes_pulses(session: &mut Session) -> Result<bool, Failure> {
     let rows = parameters::listed(session)?;
     let protocol = rows.iter().find(|listed| listed.name == "motor_protocol");
     Ok(protocol.is_some_and(|listed| matches!(&*listed.value, "400" | "125")))
 }
 
-/// Shows a parameter and takes another value for it; the console's line of a change, empty without.
+/// Shows a parameter and takes another value for it; returns the console's line of the change, empty without one.
 fn set_up(walk: &mut Walk<'_>, name: &str) -> Result<String, Stop> {
     for line in walk.session.command(&format!("get {name}"))? {
         walk.say(&format!("  | {}", line.trim()));

@@ -1,4 +1,4 @@
-//! The date for people, UTC.
+//! Date and time as text, UTC.
 
 use std::time::{SystemTime, UNIX_EPOCH};
 

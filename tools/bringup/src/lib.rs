@@ -1,8 +1,8 @@
-//! The guided bring-up: each step says what hands do, types the console's own commands, judges the answer, and is written
-//! into the [`protocol`] before the next one begins.
+//! The guided bring-up. Each step asks the builder for an action, types the console's own commands, judges the answer,
+//! and is written into the [`protocol`] before the next one begins.
 //!
-//! A step that measures also stores: it has passed when the board has restarted with its values in force. What was done
-//! when a run ends, however it ends, is neither lost nor asked for again.
+//! A step that measures also stores: it has passed when the board has restarted with its values in force. However a run
+//! ends, the finished steps are kept and not repeated.
 
 mod air;
 mod calibrate;
@@ -27,11 +27,11 @@ use sophie_board_link::session::Session;
 pub struct Step {
     /// Its name in the protocol and behind `--again`.
     pub id: &'static str,
-    /// What it is.
+    /// Its title.
     pub title: &'static str,
-    /// What the builder does with hands.
+    /// The builder's action.
     hands: &'static str,
-    /// Arm, sensor or servo, where it has one.
+    /// Number of the arm, sensor or servo, for a step of one.
     number: usize,
     run: fn(&mut Walk<'_>, &Step) -> Judged,
 }
@@ -186,13 +186,13 @@ pub const STEPS: [Step; 28] = [
 /// The parameter that each servo's step adds its digit to.
 const MARKS: &str = "servo_marks";
 
-/// The last step, which looks at the others' work.
+/// The last step, which checks the results of the others.
 const LAST: &str = "final";
 
 /// Walks through the steps that have not passed, and those of `again`; true when all have passed.
 ///
 /// # Errors
-/// One line: a file that cannot be written or is another board's, a step that is none, or the line is lost.
+/// One line: a file that cannot be written or belongs to another board, an unknown step, or a lost line.
 pub fn run(
     session: &mut Session,
     user: &mut dyn User,
@@ -217,7 +217,7 @@ pub fn run(
     }
     reopen(session, user, &mut protocol)?;
     again.iter().for_each(|id| protocol.drop_entry(id));
-    // Before anything is done: a file that cannot be written is no protocol.
+    // Written before the first step: a run needs a writable file.
     protocol.write()?;
     user.say(&format!(
         "Protocol {}: {}",
@@ -241,7 +241,7 @@ pub fn run(
     Ok(protocol.open_steps().is_empty())
 }
 
-/// Leaves the board with nothing running, and says what it has not stored.
+/// Leaves the board with no command running, and names the parameters that it has not stored.
 fn leave(session: &mut Session, user: &mut dyn User) -> Result<(), Failure> {
     session.calm()?;
     for line in parameters::unsaved(session)? {
@@ -252,7 +252,7 @@ fn leave(session: &mut Session, user: &mut dyn User) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Opens the steps again whose values the board no longer has.
+/// Reopens the steps whose values the board no longer has.
 fn reopen(session: &mut Session, user: &mut dyn User, protocol: &mut Protocol) -> Result<(), Failure> {
     if STEPS.iter().all(|step| protocol.entry(step.id).is_none()) {
         return Ok(());
@@ -267,8 +267,8 @@ fn reopen(session: &mut Session, user: &mut dyn User, protocol: &mut Protocol) -
     Ok(())
 }
 
-/// The first parameter that the step at `index` has stored and that the board has otherwise. The last step that has stored
-/// a parameter answers for its value.
+/// The first parameter that the step at `index` has stored and whose value on the board differs. The last step that
+/// stored a parameter is responsible for its value.
 fn lost(index: usize, protocol: &Protocol, rows: &[parameters::Listed]) -> Option<String> {
     let (step, later) = STEPS.get(index..)?.split_first()?;
     let stored = |step: &Step| {
@@ -318,7 +318,7 @@ fn steps(walk: &mut Walk<'_>, protocol: &mut Protocol) -> Result<(), Stop> {
     Ok(())
 }
 
-/// One attempt at a step, written into the protocol; false where the builder wants another.
+/// One attempt at a step, written into the protocol; false if the builder wants to repeat it.
 fn one(walk: &mut Walk<'_>, protocol: &mut Protocol, step: &Step) -> Result<bool, Stop> {
     let begun = walk.ask("Enter begins, s skips, q stops:");
     let judged = begun.and_then(|_| (step.run)(walk, step));

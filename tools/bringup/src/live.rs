@@ -1,4 +1,4 @@
-//! Steps that watch numbers while hands move what they measure.
+//! Steps that watch measured values while the builder moves the measured part.
 
 use std::time::{Duration, Instant};
 
@@ -6,33 +6,33 @@ use super::walk::{Stop, Verdict, Walk, understood};
 use super::{Judged, Step};
 use sophie_board_link::Failure;
 
-/// Rows before a reply counts: a second of numbers.
+/// Rows before a reply counts: one second.
 const ROWS: usize = 5;
-/// Time that the board has to notice the transmitter going or coming.
+/// Time for the board to notice that the transmitter was switched off or on.
 const NOTICED: Duration = Duration::from_secs(10);
 
-/// A column of `watch` with what hands must make of it.
+/// A column of `watch`, and the range that the builder must move it through.
 struct Moved {
     name: &'static str,
-    /// What it must reach from above and from below.
+    /// The span or the two ends that it must reach.
     reach: Reach,
 }
 
 #[derive(Clone, Copy)]
 enum Reach {
-    /// So far apart.
+    /// Least distance between the extremes.
     Span(f32),
-    /// From at most to at least.
+    /// Largest minimum and least maximum.
     Ends(f32, f32),
 }
 
-/// What a column has shown.
+/// The extremes of a column.
 #[derive(Clone, Debug)]
 struct Seen {
     name: String,
     least: f32,
     most: f32,
-    /// The last row has a number.
+    /// The newest row has a number.
     fresh: bool,
 }
 
@@ -140,7 +140,7 @@ impl Seen {
         }
     }
 
-    /// The figure, with what is missing; true where nothing is.
+    /// The figure, with the missing part of `reach`; true if it was reached.
     fn judged(&self, reach: Option<Reach>) -> (bool, String) {
         let Self {
             name,
@@ -206,7 +206,7 @@ fn watch(walk: &mut Walk<'_>, group: &str) -> Result<Vec<Seen>, Stop> {
                 .for_each(|(seen, word)| seen.see(word));
             walk.user.live(&line);
         } else if rows == 0 && !words.is_empty() {
-            // What the numbers are, then their names.
+            // First the line of units, then the names.
             walk.say(&line);
             seen = words.iter().map(|word| Seen::new(word)).collect();
         }
@@ -245,7 +245,10 @@ pub(super) fn radio(walk: &mut Walk<'_>, _: &Step) -> Judged {
     Ok(verdict)
 }
 
-/// The receiver's line of `status` once it is `wanted`; an error with the last one where it never is.
+/// The receiver's line of `status` once it is `wanted`.
+///
+/// # Errors
+/// The last line, if it never is.
 fn receiver(walk: &mut Walk<'_>, wanted: impl Fn(&str) -> bool) -> Result<Result<String, String>, Stop> {
     let begun = Instant::now();
     loop {

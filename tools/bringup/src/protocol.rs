@@ -1,4 +1,4 @@
-//! The protocol of a bring-up: a TOML file that people read and the next run continues.
+//! The record of a bring-up: a TOML file, readable by people, which the next run continues.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -11,21 +11,21 @@ use super::STEPS;
 use super::date::now;
 use sophie_board_link::{Failure, file};
 
-/// What a file begins with.
+/// First lines of the file.
 const HEAD: &str = "# Protocol of a bring-up, written after each step by `sophie bringup`. The next run with this file\n\
                     # continues with the first step that has not passed; --again STEP repeats one.\n";
 /// Largest file that is read, bytes.
 const LARGEST: u64 = sophie_input::MIB;
 
-/// How a step has ended.
+/// Result of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Result {
-    /// As it should.
+    /// Passed.
     Passed,
-    /// Not as it should.
+    /// Failed.
     Failed,
-    /// By the builder's wish.
+    /// Skipped by the builder.
     Skipped,
 }
 
@@ -35,23 +35,23 @@ pub enum Result {
 pub struct Entry {
     /// Its name.
     pub id: String,
-    /// What it is.
+    /// Its title.
     pub title: String,
     /// How it has ended.
     pub result: Result,
-    /// When, UTC.
+    /// Time of its end, UTC.
     pub at: String,
-    /// What was found, line by line.
+    /// The results, line by line.
     pub figures: Vec<String>,
-    /// What the board ran; empty where it is not known.
+    /// The firmware of the board; empty if unknown.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub build: String,
-    /// Parameters that it has stored.
+    /// Parameters that the step has stored.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub parameters: BTreeMap<String, f64>,
 }
 
-/// Which board, and what runs on it.
+/// Identity of the board and its firmware.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Identity {
     /// Firmware and board.
@@ -62,11 +62,11 @@ pub struct Identity {
     pub chip: String,
 }
 
-/// All of a bring-up.
+/// The content of the file.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Content {
-    /// What is open, in words.
+    /// The open steps, in words.
     state: String,
     /// Firmware and board.
     firmware: String,
@@ -75,7 +75,7 @@ struct Content {
     build: String,
     /// The chip's revision.
     chip: String,
-    /// When it began and when it was last written, UTC.
+    /// Times of its begin and of its last write, UTC.
     begun: String,
     written: String,
     #[serde(default, rename = "step")]
@@ -90,10 +90,10 @@ pub struct Protocol {
 }
 
 impl Protocol {
-    /// Reads the file at `path`, or begins a protocol where there is none.
+    /// Reads the file at `path`; begins a new protocol if the file is missing.
     ///
     /// # Errors
-    /// One line: the file cannot be read, or is no protocol.
+    /// One line: the file cannot be read, or is not a protocol.
     pub fn open(path: &Path) -> std::result::Result<Self, Failure> {
         let refused = |why: &str| Failure::Input(format!("{}: {why}", path.display()));
         let fresh = Content {
@@ -133,15 +133,15 @@ impl Protocol {
         })
     }
 
-    /// Where it is written.
+    /// Its path.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Notes firmware and chip; a line to be said where the steps so far were done with another image.
+    /// Notes firmware and chip; returns a warning if earlier steps were done with another image.
     ///
     /// # Errors
-    /// One line: the file is another board's.
+    /// One line: the file belongs to another board.
     pub fn identify(&mut self, board: Identity) -> std::result::Result<Option<String>, Failure> {
         let Identity {
             firmware,
@@ -178,7 +178,7 @@ impl Protocol {
         Ok(changed)
     }
 
-    /// What the board runs.
+    /// Firmware of the board.
     pub fn build(&self) -> &str {
         &self.content.build
     }
@@ -199,7 +199,7 @@ impl Protocol {
         open.map(|step| step.id).collect()
     }
 
-    /// Puts an entry in its place and writes the file.
+    /// Inserts an entry and writes the file.
     ///
     /// # Errors
     /// One line: the file cannot be written.
@@ -208,7 +208,7 @@ impl Protocol {
         self.write()
     }
 
-    /// Puts an entry in its place, in memory alone.
+    /// Inserts an entry, in memory only.
     pub(super) fn note(&mut self, entry: Entry) {
         self.drop_entry(&entry.id);
         self.content.steps.push(entry);
@@ -216,12 +216,12 @@ impl Protocol {
         self.content.steps.sort_by_key(place);
     }
 
-    /// Takes the entry of the step `id` out, in memory alone.
+    /// Removes the entry of the step `id`, in memory only.
     pub fn drop_entry(&mut self, id: &str) {
         self.content.steps.retain(|entry| entry.id != id);
     }
 
-    /// What is open, as the file says it.
+    /// The open steps, as the file lists them.
     pub fn state(&self) -> String {
         let named = |result: Option<Result>| {
             let ids = STEPS.iter().map(|step| step.id);

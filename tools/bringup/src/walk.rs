@@ -1,4 +1,4 @@
-//! What every step has at hand: the builder, the session, and the ways to ask both.
+//! The context of every step: the builder, the session, and dialogues with both.
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -7,7 +7,7 @@ use sophie_board_link::Failure;
 use sophie_board_link::parameters;
 use sophie_board_link::session::{Session, Turn};
 
-/// What the console asks, and what it waits with.
+/// Questions and waiting texts of the console.
 const READY: &str = "Enter when it is so, any other key ends: ";
 const TURNED_EVENLY: &str = "did it turn, evenly, and beep no more? y or n: ";
 const WHICH_ROTOR: &str = "which rotor turned, 1 to 4, or 0 for none? ";
@@ -15,12 +15,12 @@ const WHICH_WAY: &str = "from above, clockwise (c) or anticlockwise (a)? ";
 const MARK: &str = " us\n";
 const QUESTIONS: [&str; 5] = [READY, TURNED_EVENLY, WHICH_ROTOR, WHICH_WAY, MARK];
 
-/// What the builder says.
+/// The builder's reply.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Reply {
     /// A line.
     Line(String),
-    /// There is no more input.
+    /// The input has ended.
     End,
 }
 
@@ -28,20 +28,20 @@ pub enum Reply {
 pub trait User {
     /// Shows a line.
     fn say(&mut self, line: &str);
-    /// Shows a line that the next one of its kind replaces.
+    /// Shows a line that the next such line replaces.
     fn live(&mut self, line: &str);
     /// Asks, and waits for the reply.
     fn ask(&mut self, question: &str) -> Reply;
-    /// A reply that is there already.
+    /// A reply that has been typed already; does not wait.
     fn answered(&mut self) -> Option<Reply>;
 }
 
-/// Why a step ends without a verdict.
+/// Reason for ending a step without a verdict.
 #[derive(Debug)]
 pub(super) enum Stop {
     /// The builder skips it.
     Skip,
-    /// The builder stops here, or there is no more input.
+    /// The builder stops here, or the input has ended.
     Quit,
     /// The line or the file is lost.
     Failed(Failure),
@@ -53,12 +53,12 @@ impl From<Failure> for Stop {
     }
 }
 
-/// What a step has found.
+/// The result of a step.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Verdict {
     pub passed: bool,
     pub figures: Vec<String>,
-    /// The builder has seen the figures as they came.
+    /// The figures were shown already.
     pub shown: bool,
     /// Parameters that are stored and in force.
     pub parameters: BTreeMap<String, f64>,
@@ -74,11 +74,11 @@ impl Verdict {
     }
 }
 
-/// Builder and board.
+/// The context of a run.
 pub(super) struct Walk<'a> {
     pub session: &'a mut Session,
     pub user: &'a mut dyn User,
-    /// Restarts of the board when the builder last said that the propellers are off.
+    /// Count of the board's restarts when the builder last confirmed that the propellers are off.
     off_since: Option<u32>,
     /// Weight of the last pressure sensor, N.
     pub weight: String,
@@ -104,7 +104,7 @@ impl<'a> Walk<'a> {
         understood(reply)
     }
 
-    /// Waits until the vehicle stands disarmed and calibrated; what `status` says.
+    /// Waits until the vehicle is disarmed and calibrated; returns the lines of `status`.
     pub(super) fn ready(&mut self) -> Result<Vec<String>, Stop> {
         let begun = Instant::now();
         let mut said = false;
@@ -129,8 +129,8 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// The builder says that the propellers are off, once for each start of the board; the console's complaint where it
-    /// does not take that.
+    /// Confirms to the console that the propellers are off, once for each start of the board; the console's complaint
+    /// if it refuses.
     pub(super) fn propellers_off(&mut self) -> Result<Option<String>, Stop> {
         if self.off_since == Some(self.session.restarts()) {
             return Ok(None);
@@ -144,7 +144,7 @@ impl<'a> Walk<'a> {
         Ok(Some(said.join("; ")))
     }
 
-    /// Types `command` and leads through its questions; all that it said.
+    /// Types `command` and answers its questions with the builder's replies; returns all output.
     pub(super) fn dialogue(&mut self, command: &str) -> Result<Vec<String>, Stop> {
         self.session.begin(command)?;
         let mut all = Vec::new();
@@ -214,14 +214,14 @@ impl<'a> Walk<'a> {
                     self.user.live(&format!("  | {line}"));
                 }
                 if question.is_none() {
-                    // It has ended; the next turn finds the prompt.
+                    // The command has ended; the next turn finds the prompt.
                     return Ok(self.session.press(b'\r').map(|_| ())?);
                 }
             }
         }
     }
 
-    /// Presses the keys, unless the console has ended by itself meanwhile.
+    /// Presses the keys, unless the command has ended meanwhile.
     fn press(&mut self, keys: &str) -> Result<(), Stop> {
         for key in keys.bytes() {
             if !self.session.press(key)? {
@@ -231,7 +231,7 @@ impl<'a> Walk<'a> {
         Ok(())
     }
 
-    /// Stores what is set and not saved; the parameters of `said`, in force after the restart.
+    /// Stores the parameters that are set and not saved; returns those of `said`, in force after the restart.
     pub(super) fn keep(&mut self, said: &[String]) -> Result<BTreeMap<String, f64>, Stop> {
         let set: BTreeMap<String, f64> = said.iter().filter_map(|line| changed(line)).collect();
         if parameters::unsaved(self.session)?.is_empty() {
@@ -256,7 +256,10 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// What the reply is, where it is none of those that end a step.
+/// The text of a reply.
+///
+/// # Errors
+/// A reply that ends the step.
 pub(super) fn understood(reply: Reply) -> Result<String, Stop> {
     match reply {
         Reply::End => Err(Stop::Quit),

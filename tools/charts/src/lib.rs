@@ -1,4 +1,4 @@
-//! What pages with drawings are made of: [`svg`], [`ticks`], the common [`STYLE`], and [`units`] for people.
+//! Parts of pages with drawings: [`svg`], [`ticks`], the common [`STYLE`], and [`units`] for readers.
 
 pub mod svg;
 pub mod ticks;

@@ -1,4 +1,4 @@
-//! The way onto the pipe by itself, from above and along the pipe.
+//! The path of an autonomous approach, from above and along the pipe.
 
 use sophie_control::mode::Mode;
 use sophie_sim::record::{FlightRecord, Sample};
@@ -14,7 +14,7 @@ const BOTTOM: f64 = 46.0;
 const LEFT: f64 = 62.0;
 const GAP: f64 = 76.0;
 const VIEW: (f64, f64) = (424.0, 340.0);
-/// Margin around what is shown, and least way to both sides of the crown, m.
+/// Margin around the path, and least width to both sides of the crown, m.
 const MARGIN: f64 = 0.08;
 const BESIDE: f64 = 0.3;
 /// Samples between two points of a line, and between two ranges.
@@ -23,14 +23,14 @@ const THIN: usize = 5;
 /// A touch of the pipe.
 struct Touch {
     t: f64,
-    /// From the crown, to the right of who looks along the pipe to the north, m.
+    /// Offset from the crown, positive right when looking along the pipe to the north, m.
     off: f64,
     at: [f64; 3],
 }
 
-/// What is shown: the samples from the beginning to the grip or the end, and the touches.
+/// The drawn part: the samples from the beginning to the grip or the end, and the touches.
 struct Way<'a> {
-    /// Where the stack takes the range to look from, m, body.
+    /// Assumed place of the range sensor, m, body.
     lens: [f64; 3],
     samples: &'a [Sample],
     touches: Vec<Touch>,
@@ -105,7 +105,7 @@ fn caption(way: &Way<'_>) -> String {
     }
 }
 
-/// From above and from behind, in one scale over the same way to the east.
+/// The views from above and from behind, to one scale.
 fn views(record: &FlightRecord, way: &Way<'_>) -> [View; 2] {
     let world = &record.scenario.world;
     let crown = world.pipe_position[1];
@@ -151,7 +151,7 @@ impl View {
         )
     }
 
-    /// Shown from and to, east and up, m.
+    /// Limits of the view, east and up, m.
     fn shown(&self) -> [(f64, f64); 2] {
         let (east, up) = (0.5 * VIEW.0 / self.scale, 0.5 * VIEW.1 / self.scale);
         [
@@ -254,7 +254,7 @@ impl View {
         out
     }
 
-    /// Where the beam of the range fell, by the estimate, those in view.
+    /// Points that the range beam hit, by the estimate, within the view.
     fn feet(&self, way: &Way<'_>) -> String {
         let [east, up] = self.shown();
         let mut out = String::new();
@@ -283,7 +283,7 @@ pub(super) mod tests {
     use super::super::synthetic;
     use super::*;
 
-    /// The synthetic flight, with the way from 5 to 3 cm over its pipe in two tries, flown by itself.
+    /// The synthetic flight as an autonomous approach, from 5 to 3 cm over its pipe in two tries.
     pub fn flown() -> FlightRecord {
         let mut record = synthetic::record();
         let crown = record.scenario.world.pipe_position[1];

@@ -18,7 +18,7 @@ const SCALE: f64 = 380.0;
 /// Pixels.
 const GROUND: f64 = 16.0;
 
-/// What the plant has no need of, m, drawn.
+/// Drawn sizes that the plant does not have, m.
 const ARM_THICKNESS: f64 = 0.026;
 const MOTOR_HEIGHT: f64 = 0.035;
 /// Scale of thrust arrows, m/N.

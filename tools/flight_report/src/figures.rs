@@ -1,4 +1,4 @@
-//! Which curves are shown.
+//! The figures of the page.
 
 use sophie_sim::record::{FlightRecord, Sample};
 
@@ -105,7 +105,7 @@ fn height(record: &FlightRecord, span: Span) -> Figure {
     }
 }
 
-/// Position by the poses and by the estimate, where there was any.
+/// Position by the poses and by the estimate, if the flight had one.
 fn position(record: &FlightRecord, span: Span) -> Option<Figure> {
     record.samples.iter().find(|s| s.position_estimate.is_some())?;
     let axis = |i: usize, name: &str| {
@@ -145,7 +145,7 @@ fn position(record: &FlightRecord, span: Span) -> Option<Figure> {
     })
 }
 
-/// Range and flow of the module below the vehicle, where there was one.
+/// Range and flow of the module below the vehicle, if the vehicle has one.
 fn below(record: &FlightRecord, span: Span) -> Option<Figure> {
     let seen = |s: &Sample| s.range_measured.is_some() || s.flow.is_some();
     record.samples.iter().find(|s| seen(s))?;
@@ -197,7 +197,7 @@ fn below(record: &FlightRecord, span: Span) -> Option<Figure> {
     })
 }
 
-/// Nearest distance of a flow that is shown, m: at none it has no bound.
+/// Least distance of a drawn flow, m: at zero distance it is unbounded.
 const NEAREST: f64 = 0.08;
 
 /// Flow of the point that the body's down axis meets, rad/s about the forward and the right axis.

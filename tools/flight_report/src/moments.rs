@@ -6,7 +6,7 @@ use sophie_sim::scenario::Step;
 /// One moment.
 #[derive(Clone, Debug)]
 pub struct KeyMoment<'a> {
-    /// What is shown.
+    /// Its title.
     pub title: String,
     /// The vehicle then.
     pub sample: &'a Sample,

@@ -140,7 +140,7 @@ fn scenes(record: &FlightRecord) -> String {
     section("Key moments", note, &(out + "</div>"))
 }
 
-/// What the approach's dots are.
+/// Caption of the approach's dots.
 const RANGE_FELL: &str = "<li><svg viewBox=\"0 0 30 12\"><circle class=\"foot\" cx=\"9\" cy=\"6\" r=\"2\"/>\
     <circle class=\"foot\" cx=\"20\" cy=\"6\" r=\"2\"/></svg>where the range fell</li>";
 

@@ -31,7 +31,7 @@ pub struct Summary {
     overruns: u32,
     /// Digest of every sample, 16 hexadecimal digits; equal digests mean equal flights to the bit.
     digest: String,
-    /// What was flown.
+    /// Vehicle, surroundings and pilot.
     settings: Settings,
     /// Steps that were begun, in order.
     phases: Vec<PhaseSummary>,

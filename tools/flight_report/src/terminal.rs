@@ -1,4 +1,4 @@
-//! What the commands that fly say, and the files that they leave behind.
+//! Terminal output of commands that fly, and their files.
 
 pub mod check;
 pub mod live;
@@ -14,24 +14,23 @@ use crate::{log, page};
 /// The files of a report.
 pub const FILES: [&str; 3] = ["report.html", "flight.mcap", "summary.json"];
 
-/// What a command knows of a flight besides its record: one more file, which also stands under its name in the JSON
-/// that is printed.
-pub struct Besides {
+/// A value of the command beside the flight's record: a further file, and a field of the same name in the printed JSON.
+pub struct Attachment {
     /// Name of the file without its ending, and of the field.
     pub name: &'static str,
-    /// What it holds.
+    /// Its content.
     pub value: serde_json::Value,
     /// Lines for the terminal.
     pub lines: Vec<String>,
 }
 
-/// Writes the report of `record` into `out` and shows it; `json`: prints the summary on stdout.
+/// Writes the report of `record` into `out` and shows it; `json` prints the summary on stdout.
 ///
 /// # Errors
-/// One line: what could not be written, and why.
+/// One line: the file that cannot be written, and the reason.
 pub fn finish(
     record: &FlightRecord,
-    besides: Option<&Besides>,
+    attachment: Option<&Attachment>,
     out: &OutDir,
     console: &Console,
     json: bool,
@@ -46,33 +45,33 @@ pub fn finish(
             summary.clone().into_bytes(),
         ])
         .collect();
-    if let Some(besides) = besides {
-        let text = serde_json::to_string_pretty(&besides.value).unwrap_or_default() + "\n";
-        files.push((format!("{}.json", besides.name), text.into_bytes()));
+    if let Some(attachment) = attachment {
+        let text = serde_json::to_string_pretty(&attachment.value).unwrap_or_default() + "\n";
+        files.push((format!("{}.json", attachment.name), text.into_bytes()));
     }
     let written = out.write(&files)?;
     for line in result::tables(record) {
         console.say(&line);
     }
     console.say("");
-    for line in besides.iter().flat_map(|b| &b.lines) {
+    for line in attachment.iter().flat_map(|b| &b.lines) {
         console.say(line);
     }
     console.say(&result::verdict(console, record));
     console.say(&format!("written: {}", written.join("  ")));
     if json {
-        console::print(&printed(summary, besides))?;
+        console::print(&printed(summary, attachment))?;
     }
     console.end()
 }
 
-/// The JSON on stdout: the summary, with what is known besides in a field of its own.
-fn printed(summary: String, besides: Option<&Besides>) -> String {
-    let Some(besides) = besides else {
+/// The JSON on stdout: the summary, and the additional value in a field of its own.
+fn printed(summary: String, attachment: Option<&Attachment>) -> String {
+    let Some(attachment) = attachment else {
         return summary.trim_end().to_owned();
     };
     let mut all: serde_json::Map<String, serde_json::Value> =
         serde_json::from_str(&summary).unwrap_or_default();
-    all.insert(besides.name.to_owned(), besides.value.clone());
+    all.insert(attachment.name.to_owned(), attachment.value.clone());
     serde_json::to_string_pretty(&all).unwrap_or_default()
 }

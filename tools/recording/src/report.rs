@@ -1,4 +1,4 @@
-//! What came out, in words and as JSON.
+//! The results in words and as JSON.
 
 use serde_json::{Value, json};
 
@@ -61,7 +61,7 @@ pub fn lines(name: &str, o: &Outcome) -> Vec<String> {
     lines
 }
 
-/// What a reader should know of the recording itself.
+/// Remarks on the recording.
 pub fn warning(o: &Outcome) -> Option<String> {
     (o.gaps > 0).then(|| {
         format!(
@@ -110,7 +110,7 @@ pub fn bytes_object(d: &Decoded) -> Value {
     })
 }
 
-/// To a millionth: what is finer is the arithmetic's.
+/// Rounded to a millionth: finer digits depend on the arithmetic.
 fn rounded(x: f64) -> f64 {
     (x * 1e6).round() / 1e6
 }

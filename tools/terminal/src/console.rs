@@ -54,17 +54,17 @@ impl Console {
         self.failure.borrow_mut().take().map_or(Ok(()), Err)
     }
 
-    /// True where running text goes to stderr.
+    /// True if running text goes to stderr.
     pub fn to_stderr(&self) -> bool {
         self.to_stderr
     }
 
-    /// True where running text goes to a terminal and not to a file or a pipe.
+    /// True if running text goes to a terminal, not to a file or a pipe.
     pub fn is_terminal(&self) -> bool {
         self.terminal
     }
 
-    /// `word` in green if `good`, else in red; plain where colour is not wanted.
+    /// `word` in green if `good`, else in red; plain if colour is not wanted.
     pub fn paint(&self, word: &str, good: bool) -> String {
         if !self.terminal || !colour_wanted() {
             return word.to_owned();
@@ -89,7 +89,7 @@ pub fn print(line: &str) -> Result<(), String> {
     written(writeln!(out, "{line}").and_then(|()| out.flush()))
 }
 
-/// Result of writing to stdout; a closed pipe is no failure.
+/// Result of writing to stdout; a closed pipe is not a failure.
 ///
 /// # Errors
 /// One line with any other reason.

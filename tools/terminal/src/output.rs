@@ -12,11 +12,11 @@ pub struct OutDir {
 }
 
 impl OutDir {
-    /// Tries whether files `names` can be made in the directory and leaves it as it was: an interrupted run leaves
-    /// nothing behind.
+    /// Tests whether files `names` can be made in the directory and leaves it unchanged: an interrupted run leaves no
+    /// file.
     ///
     /// # Errors
-    /// One line: directory, reason, what is allowed.
+    /// One line: directory, reason, allowed values.
     pub fn prepare(path: &Path, names: &[&str]) -> Result<Self, String> {
         let out = Self {
             path: path.to_owned(),

@@ -11,7 +11,7 @@ use super::super::flights::{curve, in_gusts, named, vehicle};
 use super::super::printed::Printed;
 use super::super::statics::AtThrust;
 use super::programme;
-use crate::results::model::{Axis, Chart, Look, Section, Series};
+use crate::results::model::{Axis, Chart, Section, Series, SeriesStyle};
 
 struct Job {
     name: &'static str,
@@ -48,7 +48,7 @@ fn headings(s: &mut Section, jobs: &[Job], flights: &[Flown], k: f64) {
         .iter()
         .zip(flights)
         .enumerate()
-        .map(|(i, (job, f))| Series::new(named(job.name, f), i, Look::Line, heading(f)))
+        .map(|(i, (job, f))| Series::new(named(job.name, f), i, SeriesStyle::Line, heading(f)))
         .collect();
     s.figure(
         "Configuration A through the programme (turn of 30° at 10 s). The flexible mixer, whose yaw works the wrong way round \

@@ -6,7 +6,7 @@ use sophie_sim::arm_bench::BenchSample;
 use super::super::printed::Printed;
 use super::bench::{INFILLS, OnBench};
 use super::table_4::{as_printed, paired};
-use crate::results::model::{Axis, Chart, Look, Section, Series};
+use crate::results::model::{Axis, Chart, Section, Series, SeriesStyle};
 
 /// Infill (%) and diameter (m), nearest to Table IV's forces.
 const SHOWN: [(f64, f64); 4] = [(6.0, 0.35), (6.9, 0.35), (6.9, 0.25), (6.0, 0.20)];
@@ -28,7 +28,7 @@ fn curves(all: &[OnBench], value: impl Fn(&BenchSample) -> f64) -> Vec<Series> {
             .find(|c| c.infill == infill && c.diameter == diameter)?;
         let points = c.closed.samples.iter().step_by(2).map(|x| (x.t, value(x)));
         let name = format!("ρ {infill} %, D {:.0} mm", 1e3 * diameter);
-        Some(Series::new(name, i, Look::Line, points.collect()))
+        Some(Series::new(name, i, SeriesStyle::Line, points.collect()))
     };
     SHOWN.into_iter().enumerate().filter_map(curve).collect()
 }
@@ -71,7 +71,7 @@ fn force(p: &Printed, all: &[OnBench]) -> Chart {
     }
 }
 
-fn by_infill(look: Look, points: impl Fn(f64) -> Vec<(f64, f64)>) -> Vec<Series> {
+fn by_infill(look: SeriesStyle, points: impl Fn(f64) -> Vec<(f64, f64)>) -> Vec<Series> {
     let infills = INFILLS.into_iter().enumerate();
     infills
         .map(|(i, infill)| Series::new(format!("ρ {infill} %"), i, look, points(infill)))
@@ -79,7 +79,7 @@ fn by_infill(look: Look, points: impl Fn(f64) -> Vec<(f64, f64)>) -> Vec<Series>
 }
 
 fn pairs(p: &Printed, all: &[OnBench]) -> Chart {
-    let mut series = by_infill(Look::Dots, |infill| {
+    let mut series = by_infill(SeriesStyle::Dots, |infill| {
         all.iter()
             .filter(|c| c.infill == infill && c.holds())
             .map(|c| (c.closed.closure.unwrap_or(f64::NAN), kgcm(c.closed.steady)))
@@ -88,10 +88,15 @@ fn pairs(p: &Printed, all: &[OnBench]) -> Chart {
     series.push(Series::new(
         "Table IV, U row reversed",
         0,
-        Look::Printed,
+        SeriesStyle::Printed,
         paired(p),
     ));
-    series.push(Series::new("Table IV as printed", 7, Look::Dashed, as_printed(p)));
+    series.push(Series::new(
+        "Table IV as printed",
+        7,
+        SeriesStyle::Dashed,
+        as_printed(p),
+    ));
     Chart {
         title: "Closure time and steady force".to_owned(),
         x: Axis::new("closure time (s)"),
@@ -107,7 +112,7 @@ fn over_pipes(p: &Printed, all: &[OnBench]) -> Chart {
         title: "Steady force over the pipe".to_owned(),
         x: Axis::new("pipe diameter D (mm)"),
         y: Axis::new("U(∞) (kgcm)").with(&[0.0]),
-        series: by_infill(Look::Line, |infill| {
+        series: by_infill(SeriesStyle::Line, |infill| {
             let of = all.iter().filter(|c| c.infill == infill);
             of.map(|c| (1e3 * c.diameter, c.held_force())).collect()
         }),

@@ -1,13 +1,13 @@
 //! The mixers flown in gusts.
 
 use crate::study::allocation::Studied;
-use crate::study::rig::{Flown, Moment, Wish, fly};
+use crate::study::rig::{Demand, Flown, Moment, fly};
 use sophie_control::wrench::Configuration;
 use sophie_sim::mixers::Variant;
 use sophie_sim::parallel;
 
 use super::super::flights::{curve, error, in_gusts, lost_when, named, or_lost, swing, vehicle};
-use crate::results::model::{Axis, Chart, Look, Section, Series, Table, num};
+use crate::results::model::{Axis, Chart, Section, Series, SeriesStyle, Table, num};
 
 /// Shown time, s.
 const WINDOW: f64 = 3.0;
@@ -78,7 +78,7 @@ impl Hovers {
             Hover {
                 mixer: *mixer,
                 gain_k: *gain_k,
-                flown: fly(&scenario, studied, 20.0, |_| Wish::default()),
+                flown: fly(&scenario, studied, 20.0, |_| Demand::default()),
             }
         });
         Self { all, gain_k }
@@ -147,7 +147,7 @@ impl Hovers {
     fn traces(&self, value: impl Fn(&Moment) -> f64) -> Vec<Series> {
         let trace = |h: &Hover| {
             let points = curve(&h.flown, 10, &value);
-            Series::new(named(h.name(), &h.flown), h.mixer, Look::Line, points)
+            Series::new(named(h.name(), &h.flown), h.mixer, SeriesStyle::Line, points)
         };
         self.shown().map(trace).collect()
     }

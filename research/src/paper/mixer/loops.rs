@@ -13,7 +13,7 @@ use sophie_sim::plant::GRAVITY;
 
 use super::super::printed::Printed;
 use super::super::statics::{AtThrust, frozen_bound, root};
-use crate::results::model::{Axis, Chart, Look, Section, Series};
+use crate::results::model::{Axis, Chart, Section, Series, SeriesStyle};
 
 const ZETA: f64 = 0.15;
 /// Yaw pattern, N.
@@ -166,9 +166,9 @@ impl Multipliers {
                 worst = worst.max((m / closed(*k) - 1.0).abs());
             }
             let name = format!("ρ {infill} %, closed form");
-            series.push(Series::new(name, i, Look::Line, line));
+            series.push(Series::new(name, i, SeriesStyle::Line, line));
             let name = if i == 0 { "the loop itself" } else { "" };
-            series.push(Series::new(name, i, Look::Dots, run));
+            series.push(Series::new(name, i, SeriesStyle::Dots, run));
         }
         Self { series, worst }
     }
@@ -178,7 +178,7 @@ fn patterns(hover: &Hover) -> Chart {
     let of_gain = |(k, colour): (f64, usize)| {
         let run = one_step_loop(hover.infill, k, START, 30);
         let points = run.iter().enumerate().map(|(i, t)| (i as f64, *t)).collect();
-        Series::new(format!("K {k}"), colour, Look::Line, points)
+        Series::new(format!("K {k}"), colour, SeriesStyle::Line, points)
     };
     Chart {
         title: format!("Yaw pattern over the steps, ρ {} %", hover.infill),
@@ -195,7 +195,7 @@ fn patterns(hover: &Hover) -> Chart {
 fn swings(gains: &[f64], infill: f64, k_cycles: f64) -> Chart {
     let swing = |name: &str, colour: usize, variant: Variant| {
         let points = parallel::each(gains, |k| (*k, mixer_swing(variant, *k)));
-        Series::new(name, colour, Look::Dots, points)
+        Series::new(name, colour, SeriesStyle::Dots, points)
     };
     Chart {
         title: format!("Swing of rotor 1, mixer alone, ρ {infill} %"),

@@ -6,7 +6,7 @@ use super::super::flights::{curve, delta_alpha};
 use super::super::printed::{Printed, Roll};
 use super::manoeuvre::{Arms, SECONDS};
 use super::{FLEXIBLE_HARD, FLEXIBLE_SOFT, Flights, RIGID_HARD};
-use crate::results::model::{Axis, Chart, Look, Section, Series};
+use crate::results::model::{Axis, Chart, Section, Series, SeriesStyle};
 
 /// Table III's columns over infill, printed and flown.
 pub fn columns(s: &mut Section, p: &Printed, flights: &Flights) {
@@ -37,7 +37,7 @@ type Flown<'a> = dyn Fn(f64, Arms) -> Option<f64> + 'a;
 
 fn column_series(p: &Printed, fitted: Arms, printed: &dyn Fn(&Roll) -> f64, here: &Flown<'_>) -> Vec<Series> {
     let points = p.table_3.iter().map(|r| (r.infill_percent, printed(r))).collect();
-    let mut series = vec![Series::new("Table III", 0, Look::Printed, points)];
+    let mut series = vec![Series::new("Table III", 0, SeriesStyle::Printed, points)];
     let kinds = [
         ("massless, ζ 0.7", Arms::Static),
         ("massless, fitted ζ", fitted),
@@ -49,8 +49,8 @@ fn column_series(p: &Printed, fitted: Arms, printed: &dyn Fn(&Roll) -> f64, here
             (r.infill_percent, value.unwrap_or(f64::NAN))
         };
         let points: Vec<(f64, f64)> = p.table_3.iter().map(flown).collect();
-        series.push(Series::new(name, i, Look::Line, points.clone()));
-        series.push(Series::new("", i, Look::Dots, points));
+        series.push(Series::new(name, i, SeriesStyle::Line, points.clone()));
+        series.push(Series::new("", i, SeriesStyle::Dots, points));
     }
     series
 }
@@ -122,7 +122,12 @@ impl Drawn<'_> {
         let cases = self.flights.cases.iter().enumerate();
         let curves = cases.filter_map(|(i, case)| {
             let flown = self.flights.of(i, self.infill, self.arms)?;
-            Some(Series::new(case.name, i, Look::Line, curve(flown, 5, &value)))
+            Some(Series::new(
+                case.name,
+                i,
+                SeriesStyle::Line,
+                curve(flown, 5, &value),
+            ))
         });
         curves.collect()
     }
@@ -130,8 +135,8 @@ impl Drawn<'_> {
     fn tilts(&self) -> Vec<Series> {
         let mut series = vec![];
         for (case, look, word) in [
-            (FLEXIBLE_HARD, Look::Line, "hard"),
-            (FLEXIBLE_SOFT, Look::Dashed, "prefiltered"),
+            (FLEXIBLE_HARD, SeriesStyle::Line, "hard"),
+            (FLEXIBLE_SOFT, SeriesStyle::Dashed, "prefiltered"),
         ] {
             let Some(flown) = self.flights.of(case, self.infill, self.arms) else {
                 continue;

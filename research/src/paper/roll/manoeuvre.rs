@@ -2,7 +2,7 @@
 
 use std::f32::consts::TAU;
 
-use crate::study::rig::{Flown, Moment, Wish, fly};
+use crate::study::rig::{Demand, Flown, Moment, fly};
 use sophie_control::wrench::Configuration;
 use sophie_sim::mixers::Variant;
 use sophie_sim::scenario::Scenario;
@@ -82,9 +82,9 @@ fn scenario(job: Job) -> Scenario {
 }
 
 pub fn manoeuvre(job: Job, angle: f64) -> Flown {
-    fly(&scenario(job), None, SECONDS, |t| Wish {
+    fly(&scenario(job), None, SECONDS, |t| Demand {
         roll: if t < HELD { angle } else { 0.0 },
-        ..Wish::default()
+        ..Demand::default()
     })
 }
 

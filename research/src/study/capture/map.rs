@@ -30,7 +30,7 @@ pub fn half_width<'a>(flown: impl Iterator<Item = &'a Flown>, succeeded: impl Fn
     half_width
 }
 
-/// What was measured on one pipe.
+/// The results on one pipe.
 #[derive(Clone, Copy, Debug)]
 pub struct Measured {
     /// The pipe.

@@ -7,7 +7,7 @@ use sophie_control::mode::Reason;
 
 use super::map::{count, extremes, measure};
 use super::{Flown, Outcome, Request};
-use crate::results::model::{Axis, Chart, Look, Section, Series, Table, num};
+use crate::results::model::{Axis, Chart, Section, Series, SeriesStyle, Table, num};
 
 /// Width of a bar of the shares, m.
 const BIN: f64 = 0.01;
@@ -251,11 +251,11 @@ fn shares(flown: &[Flown], gauge: usize) -> Chart {
         x: Axis::new("beside the crown, mm"),
         y: Axis::between("share, %", 0.0, 105.0),
         series: vec![
-            Series::new("held", 0, Look::Line, share(Outcome::is_held)),
+            Series::new("held", 0, SeriesStyle::Line, share(Outcome::is_held)),
             Series::new(
                 "held and let go",
                 2,
-                Look::Dashed,
+                SeriesStyle::Dashed,
                 share(|o| o == Outcome::Released),
             ),
         ],
@@ -271,7 +271,7 @@ fn anywhere(flown: &[Flown], title: &str, value: impl Fn(&Flown) -> f64) -> Char
             .filter(|f| f.planned.gauge.is_none() && f.outcome == outcome)
             .map(|f| (1e3 * f.planned.touch.offset, value(f)))
             .collect();
-        Series::new(outcome.name(), colour, Look::Dots, points)
+        Series::new(outcome.name(), colour, SeriesStyle::Dots, points)
     });
     Chart {
         title: title.to_owned(),

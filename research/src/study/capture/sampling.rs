@@ -47,7 +47,7 @@ const TURNS: [Option<usize>; 10] = [
 
 /// Largest offset that is tried, m.
 const OFFSET_MAX: f64 = 0.15;
-/// On a gauge, where nothing is held further out, m.
+/// Largest offset on a gauge pipe, m: no grip succeeds farther out.
 pub(super) const GAUGE_OFFSET_MAX: f64 = 0.08;
 /// No touch begins further beside the crown than this share of the diameter.
 const ON_THE_PIPE: f64 = 0.48;

@@ -15,7 +15,7 @@ const RESPONSE: f64 = 2.0;
 ///
 /// # Errors
 /// One line: a value outside what a scenario takes, which no draw gives.
-pub fn draw(seed: u64) -> Result<Scenario, String> {
+pub fn sample(seed: u64) -> Result<Scenario, String> {
     let streams = Streams::new(seed);
     let within = |name: &str, (from, to): (f64, f64)| streams.within(&format!("vehicle.{name}"), from, to);
     let arms = [1, 2, 3, 4].map(|arm| {
@@ -47,7 +47,7 @@ mod tests {
         // Of tendon_bend and tendon_relief: least and largest factor.
         let mut spread = [(f32::MAX, 0.0_f32); 2];
         for seed in 0..200 {
-            let Scenario { vehicle, params, .. } = draw(seed).unwrap();
+            let Scenario { vehicle, params, .. } = sample(seed).unwrap();
             assert!(
                 (INFILL.0..=INFILL.1).contains(&vehicle.infill),
                 "{}",

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde_json::json;
 
 use super::Flown;
-use crate::results::model::{Axis, Chart, Look, Section, Series, Table, num};
+use crate::results::model::{Axis, Chart, Section, Series, SeriesStyle, Table, num};
 
 /// Counts of a family.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -36,13 +36,13 @@ impl Counts {
         }
     }
 
-    /// Share of those that pass the check which accomplish the mission; not a number where none passes.
+    /// Share of the vehicles that pass the check which accomplish the mission; NaN if none passes.
     #[must_use]
     pub fn reliable(&self) -> f64 {
         self.passed_accomplished as f64 / self.passed as f64
     }
 
-    /// Share of those that accomplish the mission which the check refuses; not a number where none does.
+    /// Share of the vehicles that accomplish the mission which the check refuses; NaN if none does.
     #[must_use]
     pub fn wronged(&self) -> f64 {
         self.refused_accomplished as f64 / self.accomplished as f64
@@ -177,7 +177,7 @@ fn scatter(flown: &[Flown], x: &str, y: &str, at: impl Fn(&Flown) -> (f64, f64))
         let these = flown
             .iter()
             .filter(|f| f.passes() == passes && f.outcome.accomplished == accomplished);
-        Series::new(name, colour, Look::Dots, these.map(&at).collect())
+        Series::new(name, colour, SeriesStyle::Dots, these.map(&at).collect())
     });
     Chart {
         title: format!("{y} over {x}"),

@@ -5,8 +5,8 @@ use sophie_sim::streams::Streams;
 
 /// A vehicle with its pilot and its world.
 #[derive(Clone, Debug)]
-pub struct Drawn {
-    /// What it was drawn from; the seed of its flight too.
+pub struct SampledVehicle {
+    /// The seed of the vehicle and of its flight.
     pub seed: u64,
     /// As a scenario file.
     pub text: String,
@@ -22,11 +22,11 @@ const GUST_LEVER: f64 = 0.04;
 ///
 /// # Errors
 /// One line: a value outside what a scenario takes, which no spread up to 1 gives.
-pub fn draw(seed: u64, spread: f64) -> Result<Drawn, String> {
+pub fn sample(seed: u64, spread: f64) -> Result<SampledVehicle, String> {
     let text = text(seed, spread);
     let scenario = Scenario::parse(&text, &format!("vehicle {seed}"), &Overrides::default())
         .map_err(|e| e.to_string())?;
-    Ok(Drawn { seed, text, scenario })
+    Ok(SampledVehicle { seed, text, scenario })
 }
 
 fn text(seed: u64, spread: f64) -> String {
@@ -95,7 +95,7 @@ mod tests {
     fn every_vehicle_is_a_scenario_and_the_stack_knows_all_of_it_but_the_arms() {
         let nominal = Scenario::default_mission();
         for seed in 0..200 {
-            let drawn = draw(seed, 1.0).unwrap();
+            let drawn = sample(seed, 1.0).unwrap();
             let Scenario { vehicle, params, .. } = &drawn.scenario;
             assert_eq!(drawn.scenario.seed, seed);
             assert!((vehicle.body.mass - f64::from(params.mass)).abs() < 1e-6);
@@ -110,7 +110,7 @@ mod tests {
     #[test]
     fn without_spread_the_vehicles_differ_by_what_is_known_of_them_alone() {
         let nominal = Scenario::default_mission().vehicle;
-        let vehicle = draw(7, 0.0).unwrap().scenario.vehicle;
+        let vehicle = sample(7, 0.0).unwrap().scenario.vehicle;
         assert!((vehicle.body.mass - nominal.body.mass).abs() < 1e-4);
         assert_eq!(vehicle.arm_gain, nominal.arm_gain);
         assert_eq!(vehicle.arm_offset, nominal.arm_offset);
@@ -120,7 +120,7 @@ mod tests {
     #[test]
     fn the_draws_cover_their_ranges_evenly() {
         let masses: Vec<f64> = (0..400)
-            .map(|seed| draw(seed, 1.0).unwrap().scenario.vehicle.body.mass)
+            .map(|seed| sample(seed, 1.0).unwrap().scenario.vehicle.body.mass)
             .collect();
         let nominal = Scenario::default_mission().vehicle.body.mass;
         let below = masses.iter().filter(|mass| **mass < nominal).count();

@@ -50,7 +50,7 @@ struct Whole<'a> {
 #[derive(Serialize)]
 struct RowFields<'a> {
     name: &'a str,
-    /// `null` where there is no such value.
+    /// `null` if the vehicle has no such value.
     value: f64,
     unit: &'a str,
     limit: f64,
