@@ -1,8 +1,8 @@
-//! What others measure and wish: an external pose, flow and range, the place of the pipe, and an offboard attitude, checked, in
-//! the vehicle's axes, with the time of measurement. The position hold flies by the poses; nothing flies by the attitudes yet.
+//! Measurements of other computers: external poses, flow and range, and the place of the pipe. Each is checked, turned
+//! into the vehicle's axes, and dated with its time of measurement. The position estimate uses them.
 //!
-//! Each input has one source at a time: two that alternate would have two origins, mountings or pipes. What is refused changes
-//! nothing.
+//! Each input has one source at a time: two alternating sources would mix two origins, mountings or pipes. A refused
+//! input changes nothing.
 
 pub mod clock;
 pub mod ground;
@@ -19,50 +19,50 @@ use sophie_control::params::{FlowPort, Params};
 use sophie_dialect::{DISTANCE_SENSOR_DATA, LANDING_TARGET_DATA, OPTICAL_FLOW_RAD_DATA};
 use sophie_ports::external_pose::{ExternalPose, Pose};
 
-/// Squared length of a quaternion may be off by this much: senders round, and do not always normalise.
+/// Largest error of a quaternion's squared length: senders round, and do not always normalise.
 const QUATERNION_TOLERANCE: f32 = 0.02;
-/// Silence of a source after which another may be it, µs: four periods of the slowest input, `LANDING_TARGET`. Not less than
-/// the oldest that is taken, so that no other source's time lies before the last one's.
+/// Silence of a source after which another one may replace it, µs: four periods of the slowest input, `LANDING_TARGET`.
+/// Not less than `AGE_MAX`, so that no time of the new source lies before the last one of the old.
 const SILENCE: u64 = 2_000_000;
 const _: () = assert!(SILENCE >= AGE_MAX);
 
-/// Why an input was refused.
+/// Reason for refusing an input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
-    /// Its sender belongs to a system whose inputs are not wanted.
+    /// The sender belongs to another system, whose inputs are not enabled.
     System,
-    /// It has another source already.
+    /// The input has another source.
     Source,
-    /// Its axes are not known here.
+    /// Its frame is not supported.
     Frame,
-    /// A value is no number, out of bounds, or said by its sender to be bad.
+    /// A value is not a number or out of bounds, or its sender marks it as bad.
     Value,
     /// Measured too long ago, or not after the one before.
     Late,
 }
 
-/// Inputs since the start.
+/// Accepted and refused inputs since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Poses taken.
+    /// Accepted poses.
     pub poses: u32,
-    /// Flows and ranges taken.
+    /// Accepted flows and ranges.
     pub views: u32,
-    /// Places of the pipe taken.
+    /// Accepted places of the pipe.
     pub targets: u32,
-    /// Refused for their senders' system.
+    /// Refused: sender of another system.
     pub system: u32,
-    /// Refused beside another source.
+    /// Refused: another source is active.
     pub source: u32,
-    /// Refused for their axes.
+    /// Refused: unsupported frame.
     pub frame: u32,
-    /// Refused for their values.
+    /// Refused: bad value.
     pub value: u32,
-    /// Refused for their time.
+    /// Refused: too old or out of order.
     pub late: u32,
 }
 
-/// What has a source of its own.
+/// An input with a source of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Input {
     Pose,
@@ -71,17 +71,17 @@ enum Input {
     Target,
 }
 
-/// How many these are.
+/// Number of inputs.
 const INPUTS: usize = 4;
 
-/// Where an input comes from: its sender, and which of that sender's sensors or messages.
+/// Source of an input: its sender, and the sensor or message of that sender.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Source {
     peer: Peer,
     sensor: u8,
 }
 
-/// A message that arrived.
+/// A received message.
 #[derive(Clone, Copy, Debug)]
 struct Arrival {
     input: Input,
@@ -95,9 +95,9 @@ struct Arrival {
 #[derive(Clone, Copy, Debug, Default)]
 struct Stream {
     of: Option<Source>,
-    /// When the last that was taken was measured, µs since the start; 0 before the first.
+    /// Measurement time of the last accepted message, µs since the start; 0 before the first.
     measured_at: u64,
-    /// When it arrived, µs.
+    /// Its time of receipt, µs since the start.
     taken_at: u64,
 }
 
@@ -112,24 +112,24 @@ impl Stream {
 pub struct Inputs {
     /// The senders' clocks.
     pub(crate) clocks: Clocks,
-    /// The system whose inputs are taken beside the vehicle's own; 0 for none.
+    /// Another system whose inputs are accepted beside the vehicle's own; 0 for no other.
     other_system: u8,
-    /// Flow and range come from the vehicle's own port.
+    /// Flow and range come from a module at the vehicle's own port, and those over MAVLink are refused.
     own_module: bool,
     streams: [Stream; INPUTS],
     pose: Option<ExternalPose>,
-    /// Resets of the newest pose, and what they are more than its source's: another source is a reset as well.
+    /// Reset counter of the newest pose, and its offset to its source's counter: a change of source counts as a reset.
     resets: u8,
     more_resets: u8,
     target: Option<PipeTarget>,
     ground: GroundView,
-    /// Something of it has come since it was taken.
+    /// `ground` has changed since [`Self::take_ground`].
     seen: bool,
     counts: Counts,
 }
 
 impl Inputs {
-    /// Before the first.
+    /// Before the first input.
     pub fn new(params: &Params) -> Self {
         Self {
             clocks: Clocks::default(),
@@ -146,7 +146,7 @@ impl Inputs {
         }
     }
 
-    /// Inputs since the start.
+    /// Accepted and refused inputs since the start.
     pub const fn counts(&self) -> Counts {
         self.counts
     }
@@ -155,7 +155,7 @@ impl Inputs {
         self.streams.get(input as usize).copied().unwrap_or_default()
     }
 
-    /// The time of measurement of what arrived, whose content is `sound` or is refused for it. Changes nothing.
+    /// The measurement time of `arrival`, if it is accepted. `sound` is the check of its content. Changes nothing.
     fn judge(&self, arrival: &Arrival, sound: Result<(), Refusal>) -> Result<Time, Refusal> {
         let &Arrival {
             input,
@@ -178,7 +178,8 @@ impl Inputs {
         in_order.then_some(time).ok_or(Refusal::Late)
     }
 
-    /// The time of measurement where the arrival is taken, and whether its sender is to be asked for its time.
+    /// Accepts or refuses `arrival`: its measurement time if accepted, and true if its sender must be asked for its
+    /// time.
     fn take(&mut self, arrival: &Arrival, sound: Result<(), Refusal>) -> (Option<Time>, bool) {
         let &Arrival {
             input, source, now, ..
@@ -200,13 +201,13 @@ impl Inputs {
         if let Err(refusal) = taken {
             self.refuse(refusal);
         }
-        // One whose clock is kept and that is late may have a new clock: it started again.
+        // A known sender that is late may have restarted with a new clock.
         let asks = matches!(taken, Ok(_) | Err(Refusal::Late)) && self.clocks.due(source.peer, now);
         (taken.ok(), asks)
     }
 
-    /// Takes a pose that `from` sent in message `id` with the time `usec` of its clock and that arrived at `now`, µs since the
-    /// start. True where the sender is to be asked for its time.
+    /// Takes a pose of `from`: message `id`, time stamp `usec` of the sender's clock, received at `now`, µs since the
+    /// start. True if the sender must be asked for its time.
     pub(crate) fn pose(
         &mut self,
         pose: Result<Pose, Refusal>,
@@ -244,7 +245,7 @@ impl Inputs {
         asks
     }
 
-    /// Takes a flow, and the range that comes with it, as [`Self::pose`] takes a pose.
+    /// Takes a flow and its range, as [`Self::pose`] takes a pose.
     pub(crate) fn flow(&mut self, m: &OPTICAL_FLOW_RAD_DATA, from: Peer, now: u64) -> bool {
         let seen = ground::flow(m);
         let arrival = Arrival {
@@ -262,7 +263,7 @@ impl Inputs {
                 until_us: time.at,
                 ..flow
             });
-            // A sensor's own message says its reach as well: beside it a flow's range is left.
+            // A range sensor's own message has priority, since it also has the sensor's reach.
             if let Some((range, age_us)) = range
                 && let Some(ranges) = self.streams.get_mut(Input::Range as usize)
                 && ranges.silent(now)
@@ -329,17 +330,17 @@ impl Inputs {
         self.seen = true;
     }
 
-    /// The pose that has come since the last call.
+    /// The newest pose since the last call.
     pub const fn take_pose(&mut self) -> Option<ExternalPose> {
         self.pose.take()
     }
 
-    /// Flow and range, where something of them has come since the last call.
+    /// Flow and range, if one of them has changed since the last call.
     pub fn take_ground(&mut self) -> Option<GroundView> {
         core::mem::take(&mut self.seen).then_some(self.ground)
     }
 
-    /// The place of the pipe that has come since the last call.
+    /// The newest place of the pipe since the last call.
     pub const fn take_target(&mut self) -> Option<PipeTarget> {
         self.target.take()
     }
@@ -359,13 +360,13 @@ const fn count(counter: &mut u32) {
     *counter = counter.saturating_add(1);
 }
 
-/// A vector whose components are numbers within ±`most`.
+/// A vector whose components are numbers within ±`most`; refused otherwise.
 fn bounded([x, y, z]: [f32; 3], most: f32) -> Result<Vec3, Refusal> {
     let within = [x, y, z].iter().all(|value| value.abs() <= most);
     within.then_some(Vec3::new(x, y, z)).ok_or(Refusal::Value)
 }
 
-/// A rotation; `None` where the first component is NaN: not given.
+/// A rotation; `None` if the first component is NaN, which means "not given".
 fn rotation([w, x, y, z]: [f32; 4]) -> Result<Option<Quat>, Refusal> {
     if w.is_nan() {
         return Ok(None);

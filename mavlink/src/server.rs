@@ -1,4 +1,4 @@
-//! The server of one link: what arrives becomes answers and orders, what is due becomes frames.
+//! The server of one line: it turns received frames into answers and orders, and sends the frames that are due.
 
 mod send;
 
@@ -9,8 +9,8 @@ use sophie_control::params::Params;
 use crate::inputs::{Inputs, pose};
 use crate::services::Services;
 use crate::services::answer::Answer;
-use crate::services::commands::orders::Requests;
-use crate::services::parameters::{Place, Refused};
+use crate::services::commands::orders::CommanderRequests;
+use crate::services::parameters::{Place, SetError};
 use crate::services::shell::Shell;
 use crate::vehicle::Vehicle;
 use crate::wire::budget::Budget;
@@ -20,19 +20,19 @@ use crate::wire::requests::{Peer, Request, request};
 use crate::wire::signing::Signing;
 use sophie_dialect::*;
 
-/// Silence of all others after which the next heartbeat is someone new's, µs.
+/// Silence of all stations after which the next heartbeat counts as a new station's, µs.
 const FORGOTTEN: u64 = 5_000_000;
 
-/// What the server wants done.
+/// An order to the board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Order {
-    /// To store [`Server::params`]; [`Server::stored`] takes what became of it.
+    /// Store [`Server::params`], then report the result to [`Server::stored`].
     Store,
-    /// To restart the board.
+    /// Restart the board.
     Restart,
 }
 
-/// The server of one link.
+/// The server of one line.
 pub struct Server {
     /// Number of the line in signatures.
     line: u8,
@@ -41,12 +41,12 @@ pub struct Server {
     budget: Budget,
     services: Services,
     mode: Option<Mode>,
-    /// When another's heartbeat came last, µs.
+    /// Time of the newest heartbeat of a station, µs.
     heard_at: Option<u64>,
 }
 
 impl Server {
-    /// Before the first byte of a line that may take `bytes_per_second`, with `params` in force.
+    /// A server before the first byte: the line takes `bytes_per_second`, and `params` are in force.
     pub const fn new(params: Params, bytes_per_second: u32) -> Self {
         Self {
             line: 0,
@@ -59,20 +59,20 @@ impl Server {
         }
     }
 
-    /// The same as number `line` of the vehicle's lines, each of which signs under its own.
+    /// This server as number `line` of the vehicle's lines; each line signs under its own number.
     #[must_use]
     pub const fn numbered(mut self, line: u8) -> Self {
         self.line = line;
         self
     }
 
-    /// Takes over `params`, which were set or stored on another line.
+    /// Takes over `params` that another line has set or stored.
     pub const fn follow(&mut self, params: &Params) {
         self.services.parameters.follow(params);
     }
 
-    /// Takes `bytes` that arrived at `now`, µs since the start, as far as `signing` lets it. What others measured goes into the
-    /// `inputs` of all lines.
+    /// Takes `bytes` that arrived at `now`, µs since the start. `signing` decides which frames are obeyed. Measurements
+    /// go into `inputs`, which all lines share.
     pub fn receive(
         &mut self,
         bytes: &[u8],
@@ -85,7 +85,7 @@ impl Server {
             let Some(frame) = self.parser.push(byte, now) else {
                 continue;
             };
-            // What is for others is not judged: their keys are theirs.
+            // Frames for other vehicles are not checked: their keys are not known here.
             if let Some(asked) = request(&frame)
                 && signing.takes(&frame, now)
             {
@@ -95,7 +95,7 @@ impl Server {
         }
     }
 
-    /// What is to be done at `now`, µs since the start.
+    /// The order to the board that is due at `now`, µs since the start.
     pub fn order(&mut self, now: u64, vehicle: &Vehicle) -> Option<Order> {
         self.services.continue_calibration(now, vehicle);
         self.services.shell.expire(now);
@@ -108,17 +108,18 @@ impl Server {
         store.then_some(Order::Store)
     }
 
-    /// What is to be sent to the commander at `now`, µs since the start, given what it has answered.
-    pub fn requests(&mut self, now: u64, vehicle: &Vehicle) -> Requests {
+    /// The requests to the commander at `now`, µs since the start. Each is repeated until the commander answers it in
+    /// `vehicle`.
+    pub fn requests(&mut self, now: u64, vehicle: &Vehicle) -> CommanderRequests {
         self.services.requests(now, vehicle)
     }
 
-    /// The parameters as they are to be stored.
+    /// The parameters to store.
     pub const fn params(&self) -> &Params {
         self.services.parameters.copy()
     }
 
-    /// Takes what became of [`Order::Store`].
+    /// Takes the result of [`Order::Store`] and reports it as a text.
     pub fn stored(&mut self, result: Result<(), &'static str>) {
         match result {
             Ok(()) => self.services.texts.say(
@@ -132,7 +133,7 @@ impl Server {
         }
     }
 
-    /// The console's far end.
+    /// The station's end of the console.
     pub const fn shell(&mut self) -> &mut Shell {
         &mut self.services.shell
     }
@@ -151,7 +152,7 @@ impl Server {
                 }
             }
             Request::Ping(ping) => {
-                // An answer to another's is left alone.
+                // A ping with a target is an answer.
                 if ping.target_system == 0 && ping.target_component == 0 {
                     self.services.answer(Answer::Ping(PING_DATA {
                         target_system: from.system,
@@ -213,27 +214,27 @@ impl Server {
         }
     }
 
-    /// Says the value of a parameter, and why it was not set.
-    fn parameter(&mut self, found: Result<Place, Refused>, result: Result<(), Refused>) {
+    /// Sends the value of a parameter, and a text if it was not set.
+    fn parameter(&mut self, found: Result<Place, SetError>, result: Result<(), SetError>) {
         if let Ok(place) = found {
             self.services.answer(Answer::Parameter(place));
         }
         let severity = MavSeverity::MAV_SEVERITY_WARNING;
         match found.and(result) {
             Ok(()) => (),
-            Err(Refused::Unknown) => self
+            Err(SetError::Unknown) => self
                 .services
                 .texts
                 .say(severity, format_args!("no such parameter")),
-            Err(Refused::Armed) => self
+            Err(SetError::Armed) => self
                 .services
                 .texts
                 .say(severity, format_args!("parameters: disarm first")),
-            Err(Refused::Type) => self
+            Err(SetError::Type) => self
                 .services
                 .texts
                 .say(severity, format_args!("parameters are of type REAL32")),
-            Err(Refused::NotAllowed(name)) => self
+            Err(SetError::NotAllowed(name)) => self
                 .services
                 .texts
                 .say(severity, format_args!("{name}: not an allowed value")),
@@ -241,7 +242,7 @@ impl Server {
     }
 }
 
-/// Takes what `from` has measured or wished; true where it is to be asked for its time.
+/// Hands a measurement of `from` to the inputs; true if its sender must be asked for its time.
 fn measured(inputs: &mut Inputs, said: &Request, from: Peer, now: u64) -> bool {
     match said {
         Request::Odometry(m) => inputs.pose(pose::odometry(m), ODOMETRY_DATA::ID, m.time_usec, from, now),

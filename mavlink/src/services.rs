@@ -1,4 +1,4 @@
-//! What a ground station can use over one line: parameters, files, streams, texts, console and commands.
+//! Services to a ground station over one line: parameters, files, streams, texts, console and commands.
 
 pub(crate) mod answer;
 pub mod commands;
@@ -45,7 +45,7 @@ pub(crate) struct Services {
 }
 
 impl Services {
-    /// Before the first byte, with `params` in force.
+    /// Services before the first byte, with `params` in force.
     pub(crate) const fn new(params: Params) -> Self {
         Self {
             schedule: Schedule::new(),

@@ -1,4 +1,4 @@
-//! What the server says of the vehicle: one picture of it, in the units and axes of the flight stack.
+//! The vehicle's state for the server, in the units and frames of the flight stack.
 
 use sophie_control::allocation::motor_pulses::MotorPulses;
 use sophie_control::allocation::wrench::PerArm;
@@ -13,70 +13,70 @@ use sophie_control::pilot::bench_orders::BenchView;
 use sophie_control::pilot::rc::Sticks;
 use sophie_control::pilot::remote::RemoteAnswer;
 
-/// The commander's view.
+/// State of the commander.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Condition {
-    /// What the vehicle is doing.
+    /// Flight mode.
     pub mode: Mode,
-    /// Why arming is refused, the failsafe acts or the last mode was left.
+    /// Reason of refused arming, of the failsafe, or of the last change of mode.
     pub reason: Option<Reason>,
-    /// What does not stop the flight but must be known; empty where there is nothing.
+    /// A defect that does not stop the flight; empty if there is no defect.
     pub warning: &'static str,
-    /// Everything that forbids arming.
+    /// The failing arming checks.
     pub inhibits: ArmingInhibits,
 }
 
-/// The vehicle at one time; `None` and NaN stand for what is not known or too old.
+/// The state of the vehicle at one time; `None` and NaN stand for a value that is unknown or too old.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vehicle {
-    /// The commander's view.
+    /// State of the commander.
     pub condition: Option<Condition>,
-    /// The estimate.
+    /// Attitude estimate.
     pub attitude: Option<Attitude>,
-    /// The pilot's wishes.
+    /// The pilot's sticks and switches.
     pub sticks: Option<Sticks>,
     /// The flight battery.
     pub battery: Option<Battery>,
     /// Usable charge of a fresh battery, A·s.
     pub capacity: f32,
-    /// The servo battery, if one is measured.
+    /// The servo battery; `None` if it is not measured.
     pub servo_battery: Option<ServoBattery>,
-    /// Motor commands, shares of full drive, 0 for a stopped one.
+    /// Motor commands, share of full drive; 0 for a stopped motor.
     pub motors: Option<PerArm<f32>>,
-    /// The pulses that these are.
+    /// Pulse range of the motors, to convert the commands.
     pub motor_pulses: MotorPulses,
     /// Pulses of the tendon servos, µs.
     pub servos: Option<PerArm<f32>>,
-    /// Tilt of the arms by their own sensors, rad, tip up.
+    /// Tilt of the arms by their own sensors, rad, positive tip up.
     pub tilt: PerArm<f32>,
-    /// Angle to which the servos are sent, rad from release.
+    /// Commanded angle of the servos, rad from release.
     pub reel: PerArm<f32>,
-    /// The grip.
+    /// State of the grip.
     pub grip: Option<GripState>,
-    /// What is made of the accelerometer's readings.
+    /// The correction of the accelerometer's readings.
     pub accel_fit: AccelFit,
-    /// Longest time from data-ready to the motor frame since the start, thousandths of its period.
+    /// Longest time since the start from data-ready to the motor frame, thousandths of the period.
     pub load: u16,
-    /// What became of orders.
+    /// The commander's answers.
     pub answers: Answers,
 }
 
-/// What the commander answers to orders.
+/// The commander's answers to orders.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Answers {
-    /// The bench.
+    /// State of the bench tests.
     pub bench: BenchView,
-    /// Number of the newest order beside the pilot's, of whichever line.
+    /// Number of the newest remote order of any line.
     pub newest: u32,
-    /// That order is still renewed.
+    /// That order is still being sent.
     pub renewed: bool,
-    /// What has become of the one that was answered last.
+    /// Reply to the last remote command.
     pub remote: RemoteAnswer,
 }
 
 impl Answers {
-    /// The number of the next order beside the pilot's; `None` while another waits for its answer: two at a time would
-    /// hide each other from the commander.
+    /// Number of the next remote order; `None` while another one waits for its answer: the link to the commander holds
+    /// one.
     pub fn next(&self) -> Option<u32> {
         let waits = self.renewed && self.remote.number != self.newest;
         (!waits).then(|| self.newest.wrapping_add(1).max(1))
@@ -106,12 +106,12 @@ impl Default for Vehicle {
 }
 
 impl Vehicle {
-    /// What it is doing.
+    /// The mode; `None` while the commander is silent.
     pub fn mode(&self) -> Option<Mode> {
         self.condition.map(|condition| condition.mode)
     }
 
-    /// Rotors stand and nothing may start them: what must not happen in flight may happen.
+    /// True while the rotors stand and cannot start: parameters may change, the board may restart.
     pub fn at_rest(&self) -> bool {
         matches!(self.mode(), Some(Mode::Disarmed | Mode::Calibrating))
     }

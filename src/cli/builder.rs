@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError, channel};
 use std::time::Duration;
 
-use sophie_console::bringup::{Reply, User};
+use sophie_bringup::{Reply, User};
 
 /// Width of a row that replaces the last one.
 const WIDTH: usize = 79;

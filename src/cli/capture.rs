@@ -1,7 +1,7 @@
 //! `sophie capture`: which touches of the pipe are held.
 
-use sophie_paper::study::capture::{self, Outcome, Request, map, report};
-use sophie_report::terminal::complain;
+use sophie_research::study::capture::{self, Outcome, Request, map, report};
+use sophie_terminal::complain;
 
 use super::PROGRAM;
 use super::args::CaptureArgs;

@@ -1,9 +1,9 @@
 //! `sophie check`: whether a vehicle can fly its mission.
 
-use sophie_report::terminal::check;
-use sophie_report::terminal::console::{self, Console};
-use sophie_report::terminal::result;
+use sophie_flight_report::terminal::check;
+use sophie_flight_report::terminal::result;
 use sophie_sim::check::Check;
+use sophie_terminal::console::{self, Console};
 
 use super::args::CheckArgs;
 

@@ -3,11 +3,12 @@
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-use sophie_report::terminal::console::Console;
-use sophie_report::terminal::output::OutDir;
-use sophie_report::terminal::{FILES, complain};
+use sophie_flight_report::terminal::{FILES, live::watch};
 use sophie_sim::flight::live::LiveFlight;
 use sophie_sim::live::{Live, Pace, Udp};
+use sophie_terminal::complain;
+use sophie_terminal::console::Console;
+use sophie_terminal::output::OutDir;
 
 use super::args::{FlyArgs, LiveArgs};
 use super::interrupt::on_ctrl_c;
@@ -39,7 +40,7 @@ pub fn run(args: &FlyArgs) -> Result<bool, String> {
         let out = OutDir::prepare(&args.out, &FILES)?;
         introduce(&scenario, &console);
         console.say(&clients);
-        let record = console.watch(|observer| flight.fly(observer));
+        let record = watch(&console, |observer| flight.fly(observer));
         accomplished = report(&record, &out, &console, args.json)?;
     } else {
         console.say(&clients);

@@ -20,13 +20,14 @@ mod vehicles;
 
 use std::process::ExitCode;
 
-use sophie_report::terminal::console::{self, Console};
-use sophie_report::terminal::output::OutDir;
-use sophie_report::terminal::{FILES, complain, finish, result};
+use sophie_flight_report::terminal::{FILES, finish, live::watch, result};
 use sophie_sim::check::Check;
 use sophie_sim::flight::fly;
 use sophie_sim::record::FlightRecord;
 use sophie_sim::scenario::Scenario;
+use sophie_terminal::complain;
+use sophie_terminal::console::{self, Console};
+use sophie_terminal::output::OutDir;
 
 use self::args::{FlyArgs, Study, Task};
 
@@ -71,7 +72,7 @@ fn run(args: &FlyArgs) -> Result<bool, String> {
     let out = OutDir::prepare(&args.out, &FILES)?;
     let console = Console::new(args.json);
     introduce(&scenario, &console);
-    let record = console.watch(|observer| fly(&scenario, observer));
+    let record = watch(&console, |observer| fly(&scenario, observer));
     report(&record, &out, &console, args.json)
 }
 

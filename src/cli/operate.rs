@@ -4,11 +4,11 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
 
-use sophie_console::parameters::{self, Difference};
-use sophie_console::session::Session;
-use sophie_console::{Failure, bringup, file};
-use sophie_report::terminal::{complain, console};
+use sophie_board_link::parameters::{self, Difference};
+use sophie_board_link::session::Session;
+use sophie_board_link::{Failure, file};
 use sophie_sim::scenario::settings::{self, Setting};
+use sophie_terminal::{complain, console};
 
 use super::args::{BringupArgs, ParamsArgs, ParamsVerb};
 use super::builder::Terminal;
@@ -20,7 +20,7 @@ pub fn bringup(args: &BringupArgs) -> ExitCode {
     let walked = on_ctrl_c().map_err(Failure::Input).and_then(|stop| {
         let mut session = args.line.session(Arc::clone(&stop))?;
         let mut user = Terminal::new(stop);
-        bringup::run(&mut session, &mut user, &args.protocol, &args.again)
+        sophie_bringup::run(&mut session, &mut user, &args.protocol, &args.again)
     });
     status(walked)
 }

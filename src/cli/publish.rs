@@ -2,10 +2,10 @@
 
 use std::time::Instant;
 
-use sophie_paper::model::Section;
-use sophie_paper::{page, text};
-use sophie_report::terminal::console::{self, Console};
-use sophie_report::terminal::output::OutDir;
+use sophie_research::results::model::Section;
+use sophie_research::results::{page, text};
+use sophie_terminal::console::{self, Console};
+use sophie_terminal::output::OutDir;
 
 /// Where results go.
 pub struct Publisher {

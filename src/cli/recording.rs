@@ -5,8 +5,8 @@ use sophie_recording::bytes::{self, Protocol};
 use sophie_recording::replay::{self, Options};
 use sophie_recording::report;
 use sophie_recording::truth::Truth;
-use sophie_report::terminal::complain;
-use sophie_report::terminal::console::{self, Console};
+use sophie_terminal::complain;
+use sophie_terminal::console::{self, Console};
 
 use super::PROGRAM;
 use super::args::{Kind, RecordingArgs};

@@ -1,16 +1,18 @@
 //! `sophie paper` and `sophie fit-arm`: results on terminal and disk.
 
-use sophie_report::terminal::complain;
-use sophie_report::terminal::console::{self, Console};
-use sophie_report::terminal::output::OutDir;
+use sophie_terminal::complain;
+use sophie_terminal::console::{self, Console};
+use sophie_terminal::output::OutDir;
 
 use super::PROGRAM;
 use super::args::{FitArgs, PaperArgs};
 use super::publish::Publisher;
-use sophie_paper::fit::Fit;
-use sophie_paper::printed::Printed;
-use sophie_paper::tendon_fit::TendonFit;
-use sophie_paper::{self as paper, bench_data, fit, fit_report, json, page, tendon_data, tendon_fit, text};
+use sophie_research::fit::arm::{self, Fit};
+use sophie_research::fit::tendon::{self, TendonFit};
+use sophie_research::fit::{arm_data, report, tendon_data};
+use sophie_research::paper;
+use sophie_research::paper::printed::Printed;
+use sophie_research::results::{json, page, text};
 
 const FIT_FILES: [&str; 4] = ["fit.html", "fit.json", "arm.toml", "arm.console"];
 
@@ -33,22 +35,22 @@ pub fn paper(args: &PaperArgs) -> Result<bool, String> {
 pub fn fit_arm(args: &FitArgs) -> Result<bool, String> {
     // It goes into the files of parameters as a comment.
     let file = console::one_line(&args.bench.display().to_string());
-    let points = bench_data::load(&args.bench)?;
+    let points = arm_data::load(&args.bench)?;
     let t = Printed::read().table_1;
-    let fitted = fit::fit(&points, [t.a1, t.a2, t.b1, t.b2]).map_err(|why| format!("{file}: {why}"))?;
-    fit_report::check_units(&points).map_err(|why| format!("{file}: {why}"))?;
-    let tendon = fit_tendon(args, &fitted, fit_report::infill(&points))?;
-    let parameters = fit_report::parameters(&points, &fitted, tendon.as_ref(), &file)
+    let fitted = arm::fit(&points, [t.a1, t.a2, t.b1, t.b2]).map_err(|why| format!("{file}: {why}"))?;
+    report::check_units(&points).map_err(|why| format!("{file}: {why}"))?;
+    let tendon = fit_tendon(args, &fitted, report::infill(&points))?;
+    let parameters = report::parameters(&points, &fitted, tendon.as_ref(), &file)
         .map_err(|why| format!("{file}: {why}"))?;
     let out = OutDir::prepare(&args.out, &FIT_FILES)?;
     let console = Console::new(args.json);
-    let sections = [fit_report::section(&points, &fitted, tendon.as_ref())];
+    let sections = [report::section(&points, &fitted, tendon.as_ref())];
     for line in text::lines(1, &sections[0]) {
         console.say(&line);
     }
     let results = json::json(&sections);
     let page = page::html("An arm from bench data", &file, &sections);
-    let lines = fit_report::console_lines(&parameters);
+    let lines = report::console_lines(&parameters);
     let files = [
         page.into_bytes(),
         results.clone().into_bytes(),
@@ -58,7 +60,7 @@ pub fn fit_arm(args: &FitArgs) -> Result<bool, String> {
     let written = out.write(&FIT_FILES.into_iter().zip(files).collect::<Vec<_>>())?;
     console.say("");
     console.say(&format!("written: {}", written.join("  ")));
-    for warning in fit_report::warnings(&points, &fitted) {
+    for warning in report::warnings(&points, &fitted) {
         complain(PROGRAM, &format!("warning: {file}: {warning}"));
     }
     if args.json {
@@ -74,7 +76,7 @@ fn fit_tendon(args: &FitArgs, arm: &Fit, infill: f64) -> Result<Option<TendonFit
         return Ok(None);
     };
     let rows = tendon_data::load(path)?;
-    let fitted = tendon_fit::fit(&rows, arm, 1e-3 * args.lever, infill);
+    let fitted = tendon::fit(&rows, arm, 1e-3 * args.lever, infill);
     fitted
         .map(Some)
         .map_err(|why| format!("{}: {why}", path.display()))

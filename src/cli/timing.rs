@@ -1,7 +1,7 @@
 //! `sophie timing`: timing of a board's log.
 
-use sophie_report::terminal::output::OutDir;
-use sophie_report::terminal::{complain, console};
+use sophie_terminal::output::OutDir;
+use sophie_terminal::{complain, console};
 use sophie_timing::analyse::analyse;
 use sophie_timing::capture::Capture;
 use sophie_timing::replay::Replay;

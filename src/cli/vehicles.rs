@@ -1,6 +1,6 @@
 //! `sophie study vehicles`: how many of a varied family accomplish the mission.
 
-use sophie_paper::study::vehicles::{self, report};
+use sophie_research::study::vehicles::{self, report};
 
 use super::args::StudyArgs;
 use super::publish::Publisher;

@@ -14,7 +14,7 @@ use super::{interrupt, run};
 
 /// Steps up to `id`, skipped.
 fn skips_to(builder: &mut Builder, id: &str) {
-    for step in sophie_console::bringup::STEPS {
+    for step in sophie_bringup::STEPS {
         if step.id == id {
             return builder.step(id);
         }

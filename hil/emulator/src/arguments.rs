@@ -5,8 +5,8 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use clap::error::ErrorKind;
-use sophie_report::terminal::complain;
 use sophie_sim::scenario::{Overrides, Scenario};
+use sophie_terminal::complain;
 
 use crate::{SPEEDS, flyable};
 

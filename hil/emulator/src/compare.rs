@@ -4,9 +4,9 @@
 //! report a target. The chip's pins act a millisecond later, and its self-test shifts pilot against gusts.
 
 use serde_json::{Value, json};
-use sophie_report::terminal::table::{Align, Table};
-use sophie_report::units::{deg, kgcm};
+use sophie_charts::units::{deg, kgcm};
 use sophie_sim::record::{FlightRecord, Grip, Phase};
+use sophie_terminal::table::{Align, Table};
 
 fn outcome(record: &FlightRecord) -> &'static str {
     if record.outcome.accomplished {

@@ -23,12 +23,13 @@ use sophie_emulator::silicon;
 use sophie_emulator::terminal::{Sockets, Terminal};
 use sophie_emulator::wires::{BoardFault, Gap};
 use sophie_emulator::{arguments, board_kind};
-use sophie_report::terminal::console::{self, Console};
-use sophie_report::terminal::live::Lines;
-use sophie_report::terminal::output::OutDir;
-use sophie_report::terminal::{Besides, FILES, complain, finish, result};
+use sophie_flight_report::terminal::live::Lines;
+use sophie_flight_report::terminal::{Attachment, FILES, finish, result};
 use sophie_sim::record::Silent;
 use sophie_sim::scenario::Scenario;
+use sophie_terminal::complain;
+use sophie_terminal::console::{self, Console};
+use sophie_terminal::output::OutDir;
 
 const PROGRAM: &str = "bench";
 /// The decoded log, and the log as written by the firmware.
@@ -192,7 +193,7 @@ fn write(
     let host = sophie_sim::flight::fly(scenario, &mut Silent);
     let mut value = summary(args, flight);
     value["host"] = compare::value(&host);
-    let besides = Besides {
+    let attachment = Attachment {
         name: "bench",
         value,
         lines: [compare::lines(&host, &flight.record), lines(flight)].concat(),
@@ -206,7 +207,7 @@ fn write(
     let logs = [text.into_bytes(), flight.board.log.clone()];
     let logs: Vec<_> = LOG_FILES.into_iter().zip(logs).collect();
     let _ = out.write(&logs)?;
-    finish(&flight.record, Some(&besides), out, console, args.json)?;
+    finish(&flight.record, Some(&attachment), out, console, args.json)?;
     Ok(())
 }
 
@@ -222,7 +223,7 @@ fn complain_of(gaps: &[Gap]) {
     }
 }
 
-/// Results of the emulation besides the flight, as JSON.
+/// Results of the emulation attachment the flight, as JSON.
 fn summary(args: &Args, flight: &Flight) -> serde_json::Value {
     let board = &flight.board;
     let run = &board.run;

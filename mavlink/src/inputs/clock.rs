@@ -1,19 +1,20 @@
-//! When something was measured by a sender whose clock is another: by TIMESYNC, as the standard has it.
+//! Measurement times of senders with a clock of their own, by MAVLink's TIMESYNC.
 
 use sophie_ports::external_pose::TimeSource;
 
 use super::{INPUTS, Refusal};
 use crate::wire::requests::Peer;
 
-/// Time between two questions for a sender's time, µs.
+/// Period of TIMESYNC requests to a sender, µs.
 const PERIOD: u64 = 1_000_000;
-/// The longest way there and back that says something of the sender's clock, µs: its offset is known to half of it.
+/// Longest usable round trip, µs: the offset is known to half of it.
 const WAY_MAX: u64 = 100_000;
-/// Growth of the shortest way with each question, so that a clock that drifts is followed.
+/// Growth of the shortest known round trip with each request, µs: an older measurement loses weight, so that a drifting
+/// clock is followed.
 const WAY_GROWTH: u64 = 2_000;
-/// Age beyond which a measurement is of no use, µs.
+/// Oldest accepted measurement, µs.
 pub(super) const AGE_MAX: u64 = 1_000_000;
-/// What a clock may be ahead, µs: what its offset is known to.
+/// Largest time in the future, µs: the error of an offset.
 const AHEAD_MAX: u64 = WAY_MAX / 2;
 
 /// A time of the vehicle's clock.
@@ -21,16 +22,16 @@ const AHEAD_MAX: u64 = WAY_MAX / 2;
 pub struct Time {
     /// µs since the start.
     pub at: u64,
-    /// How it is known.
+    /// Its source.
     pub source: TimeSource,
 }
 
-/// A time of measurement by the sender's clock; 0 stands for none.
+/// A time stamp of the sender's clock; 0 stands for "none".
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Stamp {
     /// µs.
     Micros(u64),
-    /// ms modulo 2^32, beside a clock of 64 bits: Unix time, or more than 49 days.
+    /// ms modulo 2^32 of a clock of 64 bits: Unix time, or more than 49 days.
     Millis(u32),
 }
 
@@ -39,8 +40,9 @@ impl Stamp {
         !matches!(self, Self::Micros(0) | Self::Millis(0))
     }
 
-    /// The same by the vehicle's clock, µs, which is `offset` behind and shows `now`. Of the times that a short stamp stands
-    /// for, the nearest. What is before the start comes out far ahead.
+    /// This time by the vehicle's clock, µs. The sender's clock is `offset` ahead of it, and it shows `now`. A short
+    /// stamp stands for many times: the one nearest to `now` is taken. A time before the start comes out far in the
+    /// future.
     fn by(self, offset: i64, now: u64) -> u64 {
         let theirs = match self {
             Self::Micros(theirs) => theirs,
@@ -54,23 +56,24 @@ impl Stamp {
     }
 }
 
-/// What is known of a sender's clock.
+/// A sender's clock.
 #[derive(Clone, Copy, Debug)]
 struct Clock {
     of: Peer,
-    /// When it is asked next, µs.
+    /// Time of the next request, µs.
     ask_at: u64,
-    /// When the last question went out, µs.
+    /// Time of the last request, µs; `None` once it is answered.
     asked_at: Option<u64>,
-    /// Its time less the vehicle's, µs, and the way of the answer that it is from.
+    /// The sender's time minus the vehicle's, µs, and the round trip of that measurement, µs.
     offset: Option<i64>,
     way: u64,
 }
 
-/// The clocks of the senders of which something was taken, on whatever line.
+/// The clocks of the senders with accepted inputs, on all lines.
 #[derive(Clone, Debug, Default)]
 pub struct Clocks {
-    /// One for each input: each has one source at a time, so a new source always finds one that is no source any more.
+    /// One for each input. Each input has one source, so a new source always finds the clock of a former one to
+    /// replace.
     known: [Option<Clock>; INPUTS],
 }
 
@@ -79,7 +82,8 @@ impl Clocks {
         self.known.iter_mut().flatten().find(|clock| clock.of == peer)
     }
 
-    /// Keeps the clock of `peer`, of which something was taken; one of a sender that is not `needed` makes room.
+    /// Keeps a clock for `peer`, a sender with an accepted input. It replaces the clock of a sender that is not
+    /// `needed`.
     pub(super) fn keep(&mut self, peer: Peer, needed: impl Fn(Peer) -> bool) {
         if self.of(peer).is_some() {
             return;
@@ -96,7 +100,7 @@ impl Clocks {
         }
     }
 
-    /// True where `peer` is to be asked at `now`, µs: once a second, if its clock is kept.
+    /// True if `peer` must be asked at `now`, µs: once a second, if it has a clock here.
     pub(super) fn due(&mut self, peer: Peer, now: u64) -> bool {
         let due = self.of(peer).filter(|clock| now >= clock.ask_at);
         if let Some(clock) = due {
@@ -106,7 +110,7 @@ impl Clocks {
         false
     }
 
-    /// The question to `peer` goes out at `now`, µs; false where its clock is kept no longer.
+    /// Notes a request to `peer` at `now`, µs; false if it has no clock here any more.
     pub(crate) fn ask(&mut self, peer: Peer, now: u64) -> bool {
         let Some(clock) = self.of(peer) else {
             return false;
@@ -116,7 +120,8 @@ impl Clocks {
         true
     }
 
-    /// Takes an answer that arrived at `now`, µs: the sender's time `theirs` at the question of `ours`, both in ns.
+    /// Takes an answer received at `now`, µs: the sender's time `theirs` when it got the request of time `ours`, both
+    /// in ns. An answer to another request, or a late one, is ignored.
     pub(crate) fn answer(&mut self, from: Peer, theirs: i64, ours: i64, now: u64) {
         let Some(clock) = self.of(from) else {
             return;
@@ -130,7 +135,8 @@ impl Clocks {
         }
         let middle = i64::try_from(asked_at.saturating_add(way / 2)).unwrap_or(i64::MAX);
         let offset = (theirs / 1000).saturating_sub(middle);
-        // Each is known to half of its way: what is farther off than both is another clock, whose sender started again.
+        // Each offset is known to half of its round trip. A difference beyond both comes from a restarted sender with a
+        // new clock.
         let other = clock.offset.is_some_and(|known| known.abs_diff(offset) > WAY_MAX);
         if way > clock.way && !other {
             return;
@@ -140,7 +146,7 @@ impl Clocks {
         clock.offset = Some(offset);
     }
 
-    /// When what `from` sent with the time `stamp` of its clock, and arrived at `now`, was measured.
+    /// Measurement time of a message of `from` with the time stamp `stamp`, received at `now`, µs.
     pub(super) fn time(&self, stamp: Stamp, from: Peer, now: u64) -> Result<Time, Refusal> {
         let receipt = Time {
             at: now,
@@ -151,7 +157,7 @@ impl Clocks {
         }
         let clock = self.known.iter().flatten().find(|clock| clock.of == from);
         let offset = clock.and_then(|clock| clock.offset);
-        // A clock that agrees by chance must not win over one that is known.
+        // The known offset goes first: a foreign clock can agree with the vehicle's by chance.
         for (offset, source) in [(offset, TimeSource::Offset), (Some(0), TimeSource::Vehicle)] {
             let Some(offset) = offset else {
                 continue;

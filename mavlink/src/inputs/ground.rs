@@ -1,4 +1,4 @@
-//! Optical flow and range that another computer, or a module over MAVLink, measures below the vehicle.
+//! Optical flow and range below the vehicle, from a companion computer or a module over MAVLink.
 
 use sophie_control::navigation::flow_range_sample::{Flow, Range};
 
@@ -7,18 +7,18 @@ use sophie_dialect::{DISTANCE_SENSOR_DATA, OPTICAL_FLOW_RAD_DATA};
 
 /// MAV_SENSOR_ORIENTATION: along the body's down axis.
 const DOWN: u8 = 25;
-/// DISTANCE_SENSOR's quality of a signal that is not valid.
+/// DISTANCE_SENSOR's signal quality of an invalid measurement.
 const INVALID: u8 = 1;
-/// Reach of a range whose message does not say it, m: what comes with a flow, and a nearest distance of 0.
+/// Nearest and farthest distance, m, for a message without them: a range within a flow message, or a minimum of 0.
 const REACH: (f32, f32) = (0.02, 40.0);
-/// Oldest range that a flow brings along, µs.
+/// Oldest range in a flow message, µs.
 const RANGE_AGE_MAX: u32 = 500_000;
 
-/// What OPTICAL_FLOW_RAD says, in the body's axes: the flow, and the range where it has one, with its age at the end of the
-/// flow's interval, µs. Their times are the caller's to set.
+/// Flow of OPTICAL_FLOW_RAD in the body's axes, and its range, if it has one, with the range's age at the end of the
+/// flow's interval, µs. The caller sets the times.
 ///
 /// # Errors
-/// Values that are no numbers or cannot be.
+/// A value is not a number or impossible.
 pub fn flow(m: &OPTICAL_FLOW_RAD_DATA) -> Result<(Flow, Option<(Range, u64)>), Refusal> {
     let flow = Flow {
         until_us: 0,
@@ -37,10 +37,11 @@ pub fn flow(m: &OPTICAL_FLOW_RAD_DATA) -> Result<(Flow, Option<(Range, u64)>), R
     flow.checked().map(|flow| (flow, range)).ok_or(Refusal::Value)
 }
 
-/// What DISTANCE_SENSOR says; its time is the caller's to set.
+/// Range of DISTANCE_SENSOR. The caller sets its time.
 ///
 /// # Errors
-/// A sensor that does not look down, a reach that cannot be or whose end is not given: nothing within it could not be known.
+/// A sensor that does not look down, or a reach that is impossible or has no maximum: without a maximum, "no return"
+/// and "invalid" are the same.
 pub fn range(m: &DISTANCE_SENSOR_DATA) -> Result<Range, Refusal> {
     if m.orientation != DOWN {
         return Err(Refusal::Frame);
@@ -49,13 +50,13 @@ pub fn range(m: &DISTANCE_SENSOR_DATA) -> Result<Range, Refusal> {
         return Err(Refusal::Value);
     }
     let metres = |cm: u16| f32::from(cm) / 100.0;
-    // 0 is not given: no sensor measures from there on, and many say 0 where they see nothing.
+    // A minimum of 0 means "not given": no sensor measures from there on, and many send 0 without a return.
     let near = if m.min_distance == 0 {
         REACH.0
     } else {
         metres(m.min_distance)
     };
-    // At its farthest, and with a signal that it says is not valid, such a sensor sees nothing.
+    // The maximum distance and an invalid signal both mean "no return".
     let seen = m.signal_quality != INVALID && m.current_distance < m.max_distance;
     let range = Range {
         at_us: 0,

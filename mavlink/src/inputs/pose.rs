@@ -6,18 +6,18 @@ use sophie_ports::external_pose::Pose;
 use super::{Refusal, bounded, rotation};
 use sophie_dialect::{ATT_POS_MOCAP_DATA, ODOMETRY_DATA, VISION_POSITION_ESTIMATE_DATA};
 
-/// Farthest from the origin along an axis, m: beyond it a float has steps of a millimetre.
+/// Largest coordinate, m: beyond it a float has steps of a millimetre.
 pub(super) const POSITION_MAX: f32 = 10_000.0;
-/// Fastest along an axis, m/s.
+/// Largest speed along an axis, m/s.
 const SPEED_MAX: f32 = 100.0;
-/// Largest angle, rad: a turn.
+/// Largest angle, rad: a full turn.
 const ANGLE_MAX: f32 = core::f32::consts::TAU;
-/// Most that a variance is, in the square of its unit: more says nothing.
+/// Largest variance, in the square of its unit.
 const VARIANCE_MAX: f32 = 1e6;
-/// ODOMETRY's quality of an estimate that has failed.
+/// ODOMETRY's quality of a failed estimate.
 const FAILED: i8 = -1;
 
-/// MAV_FRAME: what coordinates mean.
+/// MAV_FRAME, the frame of coordinates.
 pub(super) const LOCAL_NED: u8 = 1;
 const LOCAL_ENU: u8 = 4;
 const BODY_NED: u8 = 8;
@@ -158,8 +158,8 @@ fn north_east_down(
     })
 }
 
-/// The variances of the first and the last three states in the upper triangle of a covariance, row by row; `None` where
-/// they are not given, which is NaN in the first place, or zeros, which older senders have there.
+/// Variances of the first and of the last three states in the upper triangle of a covariance, row by row. `None` if
+/// they are not given: NaN in the first place, or the zeros of older senders.
 fn variances(covariance: &[f32; 21]) -> Result<(Option<Vec3>, Option<Vec3>), Refusal> {
     let &[a, _, _, _, _, _, b, _, _, _, _, c, _, _, _, d, _, _, e, _, f] = covariance;
     if a.is_nan() {
@@ -173,7 +173,7 @@ fn variances(covariance: &[f32; 21]) -> Result<(Option<Vec3>, Option<Vec3>), Ref
     sound.then_some(both).ok_or(Refusal::Value)
 }
 
-/// Variances along the world's axes of what has `variance` along the body's, independent of each other.
+/// Variances along the world's axes, given independent variances along the body's axes.
 fn turned(q: Quat, variance: Vec3) -> Vec3 {
     let along = |axis: Vec3, variance: f32| {
         let axis = q.rotate(axis);

@@ -1,4 +1,4 @@
-//! Where another computer sees the pipe.
+//! Place of the pipe, by a companion computer.
 
 use sophie_control::approach::pipe_target::PipeTarget;
 
@@ -6,11 +6,12 @@ use super::pose::{LOCAL_NED, POSITION_MAX};
 use super::{Refusal, bounded, rotation};
 use sophie_dialect::LANDING_TARGET_DATA;
 
-/// What LANDING_TARGET says: x, y, z of the crown where the vehicle is to sit, and q, whose x axis runs along the pipe. All
-/// zeros, or NaN in the first, is a direction that is not given. Its time is the caller's to set.
+/// Pipe of LANDING_TARGET: x, y, z of the crown at the perch, and q, whose x axis runs along the pipe. A q of zeros, or
+/// with NaN first, gives no direction. The caller sets the time.
 ///
 /// # Errors
-/// Axes other than the poses' own, no position, values that are no numbers or out of bounds, a pipe too steep to sit on.
+/// Another frame than the poses', no position, a value that is not a number or out of bounds, or a pipe too steep to
+/// sit on.
 pub fn target(m: &LANDING_TARGET_DATA) -> Result<PipeTarget, Refusal> {
     if m.frame != LOCAL_NED {
         return Err(Refusal::Frame);

@@ -1,4 +1,4 @@
-//! What goes out: the most urgent that is due and within the budget.
+//! Sending: the most urgent frame that is due and within the budget.
 
 use mavlink_core::MessageData;
 use sophie_control::mode::Mode;
@@ -56,7 +56,7 @@ impl Server {
         );
     }
 
-    /// First of all: no flood of questions makes the vehicle look lost.
+    /// Before all else, so that a flood of requests cannot make the vehicle look lost.
     fn send_heartbeat(&mut self, now: u64, vehicle: &Vehicle) -> Option<u32> {
         let room = self.budget.allows(frame_bytes::<HEARTBEAT_DATA>());
         let due = room && self.services.schedule.take(HEARTBEAT_DATA::ID, now);
@@ -124,7 +124,7 @@ impl Server {
     }
 
     fn send_text(&mut self, vehicle: &Vehicle, notice: &'static str) -> Option<u32> {
-        // Without room it waits, and what happens meanwhile is said by what holds then.
+        // Without budget the text waits; it is made from the state at the time of sending.
         if !self.budget.allows(frame_bytes::<STATUSTEXT_DATA>()) {
             return None;
         }
@@ -132,7 +132,7 @@ impl Server {
         Some(self.encoder.encode(&text.message()))
     }
 
-    /// The console and the streams, neither of which waits for more than one frame of the other's.
+    /// The console and the streams, by turns: each waits for at most one frame of the other.
     fn send_console_by_turns(&mut self, now: u64, vehicle: &Vehicle) -> Option<u32> {
         if self.services.shell.waits {
             return self.send_console().or_else(|| self.send_stream(now, vehicle));
@@ -151,7 +151,7 @@ impl Server {
     }
 
     fn send_stream(&mut self, now: u64, vehicle: &Vehicle) -> Option<u32> {
-        // Each stream at most once: none that has lost its turn is looked at again at the same time.
+        // Each stream at most once: a stream that has lost its turn is not due again.
         for _ in 0..STREAMS.len() {
             let due = self.services.schedule.next(now)?;
             if self.budget.allows(due.bytes + RESERVE) {
@@ -165,7 +165,7 @@ impl Server {
         None
     }
 
-    /// Behind the message `id` of the flight battery the servo battery's, if one is measured.
+    /// If `id` is the flight battery's message, the servo battery's follows, if it is measured.
     fn second_battery(&mut self, id: u32, vehicle: &Vehicle) {
         if id == BATTERY_STATUS_DATA::ID && vehicle.servo_battery.is_some() {
             self.services.answer(Answer::ServoBattery);
@@ -197,7 +197,7 @@ impl Server {
     }
 }
 
-/// Makes the frame of a stream; `None` where nothing fresh is known.
+/// Makes the frame of a stream; `None` if the value is stale.
 fn stream(encoder: &mut Encoder, id: u32, now: u64, vehicle: &Vehicle) -> Option<u32> {
     // Wraps after 49 days, as the standard's field does.
     let ms = (now / 1000) as u32;

@@ -1,23 +1,23 @@
-//! Answers to those who asked, kept until there is room on the line.
+//! Answers to requests, kept until the line has room.
 
 use crate::services::parameters::Place;
 use crate::services::streams::{STREAMS, frame_bytes};
 use crate::wire::requests::Peer;
 use sophie_dialect::*;
 
-/// What is to be said to someone who asked.
+/// An answer to a request, made into a frame when the line has room.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Answer {
     Ack {
         command: u16,
         result: MavResult,
-        /// Of what takes time, %.
+        /// Progress of a long command, %.
         progress: u8,
         to: Peer,
     },
     Ping(PING_DATA),
     Timesync(TIMESYNC_DATA),
-    /// A question for the time of who sends inputs.
+    /// A TIMESYNC request to a sender of inputs.
     AskTime(Peer),
     Interval {
         id: u16,
@@ -29,9 +29,9 @@ pub(crate) enum Answer {
     /// The servo battery, behind the flight battery.
     ServoBattery,
     Version,
-    /// Where the description of the parameters is.
+    /// The address of the description of the parameters.
     Metadata,
-    /// This mode, and those behind it where all were asked for.
+    /// This mode; if all were requested, the following ones as well.
     Mode {
         index: u8,
         all: bool,

@@ -1,4 +1,4 @@
-//! Commands, and what each is answered with.
+//! Commands and their acknowledgements.
 
 pub(crate) mod calibration;
 mod intervals;
@@ -13,10 +13,10 @@ use crate::vehicle::Vehicle;
 use crate::wire::requests::{Command, Peer};
 use sophie_dialect::*;
 
-/// What a command is answered with.
+/// The answer to a command.
 pub(crate) struct Reply {
     pub(crate) result: MavResult,
-    /// What was asked for, behind the acknowledgement: clients wait for that first.
+    /// The requested message, sent behind the acknowledgement: clients wait for that first.
     pub(crate) then: Option<Answer>,
 }
 
@@ -36,7 +36,7 @@ impl From<Answer> for Reply {
 }
 
 impl Services {
-    /// Obeys a command; `None` where the answer comes later.
+    /// Obeys a command; `None` if the acknowledgement comes later.
     pub(crate) fn command(
         &mut self,
         command: &Command,
@@ -67,27 +67,27 @@ impl Services {
         self.refuse("disarm first")
     }
 
-    /// Not now: the text says why.
+    /// Rejects a command for now; a text gives the reason.
     fn refuse(&mut self, why: &str) -> MavResult {
         self.texts
             .say(MavSeverity::MAV_SEVERITY_WARNING, format_args!("refused: {why}"));
         MavResult::MAV_RESULT_TEMPORARILY_REJECTED
     }
 
-    /// Not of this vehicle.
+    /// Rejects a command that this vehicle does not have.
     fn unsupported(&mut self, why: &str) -> MavResult {
         self.refuse(why);
         MavResult::MAV_RESULT_UNSUPPORTED
     }
 
-    /// Never with these numbers.
+    /// Rejects a command with wrong parameters.
     fn deny(&mut self, why: &str) -> MavResult {
         self.refuse(why);
         MavResult::MAV_RESULT_DENIED
     }
 }
 
-/// A number of a command's field that is whole and not negative.
+/// A command's field as a whole, non-negative number.
 fn whole(value: f32) -> Option<u32> {
     let number = value as u32;
     // Beyond 2^24 a float has no room for every whole number: message numbers and µs of minutes stay below. From 2^32 on the
@@ -96,8 +96,8 @@ fn whole(value: f32) -> Option<u32> {
     (fits && (number as f32 - value).abs() <= 0.0).then_some(number)
 }
 
-/// A field that may be left out: NaN is "not given" in the standard, and means what 0 does. [`request`] makes the other
-/// spelling, `INT32_MAX` in a whole field, a NaN as well.
+/// An optional field: NaN means "not given" in the standard, and stands for 0. [`request`] also makes a NaN of the
+/// other spelling, `INT32_MAX` in a whole field.
 ///
 /// [`request`]: crate::wire::requests::request
 const fn or_zero(value: f32) -> f32 {

@@ -1,4 +1,4 @@
-//! The files that a ground station reads: what there is to know of the parameters (MAVLink's component metadata).
+//! The files for ground stations: the description of the parameters (MAVLink's component metadata).
 //!
 //! `tests/metadata.rs` prints them from the table of parameters.
 
@@ -7,11 +7,11 @@
 pub struct File {
     /// Its path below the root.
     pub path: &'static str,
-    /// What is in it.
+    /// Its content.
     pub bytes: &'static [u8],
 }
 
-/// What metadata there is, and where.
+/// The list of the metadata files.
 pub const GENERAL: File = File {
     path: "general.json",
     bytes: include_bytes!("../../files/general.json"),
@@ -21,11 +21,11 @@ pub const PARAMETER: File = File {
     path: "parameter.json.xz",
     bytes: include_bytes!("../../files/parameter.json.xz"),
 };
-/// All of them.
+/// All files.
 pub static FILES: [File; 2] = [GENERAL, PARAMETER];
-/// Where a station begins: COMPONENT_METADATA has it.
+/// Address of the list; COMPONENT_METADATA sends it.
 pub const GENERAL_URI: &str = "mftp:///general.json";
-/// Checksum of what is behind [`GENERAL_URI`].
+/// Checksum of the file at [`GENERAL_URI`].
 pub const GENERAL_CRC: u32 = crc32(GENERAL.bytes);
 
 /// MAVLink's checksum of a file: the reflected polynomial 0xEDB88320 from 0, not inverted at the end.

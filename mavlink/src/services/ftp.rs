@@ -1,8 +1,9 @@
-//! Files over MAVLink's FTP, read only: what a ground station needs to know of the parameters.
+//! Read-only files over MAVLink's FTP: the description of the parameters, for ground stations.
 //!
-//! A file's session is its number, and what is due goes to who asked: any number of readers may read at once, a request that is
-//! repeated gets its answer again, and a reader that leaves without a word leaves nothing open. `BURSTS` readers are sent
-//! bursts by turns; a further one gets a burst of one piece and asks for the next, as the protocol has it.
+//! The session number of a file is its index, and an answer goes to its requester. So any number of readers can read at
+//! once, a repeated request gets its answer again, and a reader that leaves leaves no session open. At most `BURSTS`
+//! readers are sent bursts, in turn; a further reader gets a burst of one piece and asks for the next, as the protocol
+//! allows.
 
 use heapless::Deque;
 
@@ -15,12 +16,13 @@ pub const PAYLOAD: usize = 251;
 const HEADER: usize = 12;
 /// Bytes of a file in a message at most.
 const DATA: usize = PAYLOAD - HEADER;
-/// Readers that are sent bursts at once.
+/// Largest number of simultaneous bursts.
 const BURSTS: usize = 4;
-/// Answers that wait at most: one for each reader, and its burst. What finds no room is asked for again.
+/// Largest number of waiting answers: one for each reader, and its burst. An answer without room is dropped; the reader
+/// asks again.
 const WAITING: usize = 2 * BURSTS;
 
-/// Requests, by their numbers in the protocol.
+/// Opcodes of the protocol.
 mod op {
     pub const NONE: u8 = 0;
     pub const TERMINATE_SESSION: u8 = 1;
@@ -36,10 +38,10 @@ mod op {
     pub const NAK: u8 = 129;
 }
 
-/// Why a request is refused, by its number in the protocol.
+/// Error codes of the protocol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
-enum Refusal {
+enum ErrorCode {
     InvalidDataSize = 3,
     InvalidSession = 4,
     EndOfFile = 6,
@@ -74,7 +76,7 @@ impl Head {
         }
     }
 
-    /// The payload with `data` behind this head; what is too long is cut off.
+    /// The payload: this head and `data`, cut to its room.
     fn with(mut self, data: &[u8]) -> [u8; PAYLOAD] {
         let mut payload = [0; PAYLOAD];
         let (head, room) = payload.split_at_mut(HEADER);
@@ -104,21 +106,21 @@ impl Head {
     }
 }
 
-/// What a request is answered with.
+/// The content of an answer.
 #[derive(Clone, Copy, Debug)]
 enum Answer {
     Done,
-    Refused(Refusal),
+    Refused(ErrorCode),
     Number(u32),
     /// The directory, from the head's offset on.
     List,
     /// This many bytes of the session's file, from the head's offset on.
     Piece(u8),
-    /// The same, of a burst.
+    /// The same, as part of a burst.
     Burst {
         size: u8,
         /// The rest follows.
-        goes_on: bool,
+        continues: bool,
     },
 }
 
@@ -151,7 +153,7 @@ impl Ftp {
         }
     }
 
-    /// Takes a request of `from`; what is an answer itself is let be.
+    /// Takes a request of `from`. Answers of other servers are ignored.
     pub fn ask(&mut self, from: Peer, payload: &[u8; PAYLOAD]) {
         let request = Head::of(payload);
         if matches!(request.op, op::ACK | op::NAK) {
@@ -179,7 +181,7 @@ impl Ftp {
             head,
             answer,
         };
-        // The newest request counts: who misses the answer to one before asks again.
+        // The newest request replaces an older one of the same reader, which would be repeated if it mattered.
         let mut waiting = self.waiting.iter_mut();
         match waiting.find(|old| old.to == from && old.bursts() == new.bursts()) {
             Some(old) => *old = new,
@@ -189,7 +191,7 @@ impl Ftp {
         }
     }
 
-    /// The next that is due, and to whom.
+    /// The next answer and its reader.
     pub fn answer(&mut self) -> Option<(Peer, [u8; PAYLOAD])> {
         let Waiting { to, head, answer } = self.waiting.pop_front()?;
         let payload = match answer {
@@ -198,9 +200,9 @@ impl Ftp {
             Answer::Number(number) => head.with(&number.to_le_bytes()),
             Answer::List => head.with(&self.list(head.offset)),
             Answer::Piece(size) => head.with(self.piece(head, size).0),
-            Answer::Burst { size, goes_on } => {
+            Answer::Burst { size, continues } => {
                 let (piece, more) = self.piece(head, size);
-                if more && goes_on {
+                if more && continues {
                     let next = Head {
                         offset: head.offset.saturating_add(piece.len() as u32),
                         sequence: head.sequence.wrapping_add(1),
@@ -213,7 +215,7 @@ impl Ftp {
                     };
                     let _ = self.waiting.push_back(rest);
                 }
-                let burst_complete = !(more && goes_on);
+                let burst_complete = !(more && continues);
                 Head {
                     burst_complete,
                     ..head
@@ -224,7 +226,7 @@ impl Ftp {
         Some((to, payload))
     }
 
-    fn obey(&mut self, from: Peer, head: &mut Head, path: Option<&[u8]>) -> Result<Answer, Refusal> {
+    fn obey(&mut self, from: Peer, head: &mut Head, path: Option<&[u8]>) -> Result<Answer, ErrorCode> {
         match head.request {
             op::NONE => Ok(Answer::Done),
             op::TERMINATE_SESSION | op::RESET_SESSIONS => {
@@ -232,15 +234,15 @@ impl Ftp {
                 Ok(Answer::Done)
             }
             op::LIST_DIRECTORY => {
-                let path = path.ok_or(Refusal::InvalidDataSize)?;
+                let path = path.ok_or(ErrorCode::InvalidDataSize)?;
                 if !path.is_empty() && path != b"." {
-                    return Err(Refusal::FileNotFound);
+                    return Err(ErrorCode::FileNotFound);
                 }
                 let more = (head.offset as usize) < self.files.len();
-                more.then_some(Answer::List).ok_or(Refusal::EndOfFile)
+                more.then_some(Answer::List).ok_or(ErrorCode::EndOfFile)
             }
             op::OPEN_FILE_RO | op::CALC_FILE_CRC32 => {
-                let (session, file) = self.find(path.ok_or(Refusal::InvalidDataSize)?)?;
+                let (session, file) = self.find(path.ok_or(ErrorCode::InvalidDataSize)?)?;
                 if head.request == op::CALC_FILE_CRC32 {
                     return Ok(Answer::Number(crc32(file.bytes)));
                 }
@@ -249,23 +251,23 @@ impl Ftp {
             }
             op::READ_FILE | op::BURST_READ_FILE => {
                 let file = self.files.get(usize::from(head.session));
-                if rest(file.ok_or(Refusal::InvalidSession)?, *head).is_empty() {
-                    return Err(Refusal::EndOfFile);
+                if rest(file.ok_or(ErrorCode::InvalidSession)?, *head).is_empty() {
+                    return Err(ErrorCode::EndOfFile);
                 }
                 let size = wanted(head.size);
                 if head.request == op::READ_FILE {
                     return Ok(Answer::Piece(size));
                 }
                 let others = self.waiting.iter().filter(|w| w.bursts() && w.to != from);
-                let goes_on = others.count() < BURSTS;
-                Ok(Answer::Burst { size, goes_on })
+                let continues = others.count() < BURSTS;
+                Ok(Answer::Burst { size, continues })
             }
-            op::CREATE_FILE..=op::RENAME => Err(Refusal::FileProtected),
-            _ => Err(Refusal::UnknownCommand),
+            op::CREATE_FILE..=op::RENAME => Err(ErrorCode::FileProtected),
+            _ => Err(ErrorCode::UnknownCommand),
         }
     }
 
-    /// Drops what is due to `reader`.
+    /// Drops the answers that wait for `reader`.
     fn forget(&mut self, reader: Peer) {
         for _ in 0..self.waiting.len() {
             if let Some(waiting) = self.waiting.pop_front()
@@ -291,13 +293,13 @@ impl Ftp {
     }
 
     /// The file at `path` with its session.
-    fn find(&self, path: &[u8]) -> Result<(u8, &'static File), Refusal> {
+    fn find(&self, path: &[u8]) -> Result<(u8, &'static File), ErrorCode> {
         let mut numbered = (0..).zip(self.files);
         let found = numbered.find(|(_, file)| file.path.as_bytes() == path);
-        found.ok_or(Refusal::FileNotFound)
+        found.ok_or(ErrorCode::FileNotFound)
     }
 
-    /// `size` bytes of what the head's session and offset point at, or what there is; true where more follows.
+    /// Up to `size` bytes of the head's session from its offset on; true if more follow.
     fn piece(&self, head: Head, size: u8) -> (&'static [u8], bool) {
         let file = self.files.get(usize::from(head.session));
         let rest = file.map_or(&[][..], |file| rest(file, head));
@@ -308,7 +310,7 @@ impl Ftp {
     }
 }
 
-/// What `file` has from the head's offset on.
+/// The bytes of `file` from the head's offset on.
 fn rest(file: &File, head: Head) -> &'static [u8] {
     file.bytes.get(head.offset as usize..).unwrap_or_default()
 }
@@ -321,7 +323,7 @@ fn wanted(size: u8) -> u8 {
     }
 }
 
-/// A path without the root's slash and without what fills it up.
+/// A path without the root's slash and the padding.
 fn path(data: &[u8]) -> &[u8] {
     let end = data.iter().position(|byte| *byte == 0).unwrap_or(data.len());
     let path = data.get(..end).unwrap_or_default();

@@ -1,7 +1,8 @@
-//! The parameter protocol on the one table: every value is a float, read and set by name or place.
+//! The parameter protocol on the one table: every value is a float, read and set by name or index.
 //!
-//! What is set goes into a copy, which is stored `SETTLE` after the last change and is in force after a restart, as at
-//! the console: what flies is what was looked at on the ground.
+//! A new value goes into a working copy. The copy is stored `SETTLE` after the last change and is in force after a
+//! restart, as at the console: the vehicle flies only with parameters that were in force when it was checked on the
+//! ground.
 
 use sophie_control::params::{ParamError, Params};
 
@@ -11,36 +12,36 @@ use sophie_dialect::{MavParamType, PARAM_VALUE_DATA};
 /// Time from the last change to storing, µs.
 const SETTLE: u64 = 1_000_000;
 
-/// Which parameter is to be said.
+/// Index of a parameter in the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Place(u16);
 
-/// Why a parameter was not set.
+/// Reason for not setting a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Refused {
-    /// No parameter has this name or place.
+pub enum SetError {
+    /// No parameter has this name or index.
     Unknown,
     /// Not while armed.
     Armed,
-    /// A float is asked for.
+    /// The value is not a float.
     Type,
-    /// Out of its range, none of its choices, or no number.
+    /// Out of its range, not one of its choices, or not a number.
     NotAllowed(&'static str),
 }
 
-/// The copy that is read and set.
+/// The working copy, which is read and set.
 #[derive(Clone, Debug)]
 pub struct Parameters {
     copy: Params,
-    /// When the newest change came, µs; `None` where all is stored.
+    /// Time of the newest change, µs; `None` once it is stored.
     changed_at: Option<u64>,
-    /// The next of a list that was asked for, and how many are still to be said.
+    /// The next parameter of the running list, and the number still to send.
     next: u16,
     listed: u16,
 }
 
 impl Parameters {
-    /// With `params` in force.
+    /// A copy of `params`, which are in force.
     pub const fn new(params: Params) -> Self {
         Self {
             copy: params,
@@ -50,22 +51,22 @@ impl Parameters {
         }
     }
 
-    /// The place of the parameter named in `id`, or of the one at `index` where that is not negative.
-    pub fn find(&self, id: &[u8; 16], index: i16) -> Result<Place, Refused> {
+    /// The place of the parameter at `index`, or of the one named in `id` if `index` is negative.
+    pub fn find(&self, id: &[u8; 16], index: i16) -> Result<Place, SetError> {
         let at = match usize::try_from(index) {
             Ok(at) => Some(at).filter(|&at| at < Params::TABLE.len()),
             Err(_) => {
                 let name = id.split(|&byte| byte == 0).next().unwrap_or_default();
-                // MAVProxy asks in capitals.
+                // MAVProxy sends names in capitals.
                 Params::TABLE
                     .iter()
                     .position(|row| row.name.as_bytes().eq_ignore_ascii_case(name))
             }
         };
-        at.map(|at| Place(at as u16)).ok_or(Refused::Unknown)
+        at.map(|at| Place(at as u16)).ok_or(SetError::Unknown)
     }
 
-    /// What is said of a parameter.
+    /// The message with a parameter's value.
     pub fn value(&self, Place(at): Place) -> Option<PARAM_VALUE_DATA> {
         let row = Params::TABLE.get(usize::from(at))?;
         Some(PARAM_VALUE_DATA {
@@ -80,7 +81,7 @@ impl Parameters {
     /// Sets a parameter while the vehicle is `at_rest`.
     ///
     /// # Errors
-    /// Nothing is changed then.
+    /// The reason; the copy is unchanged.
     pub fn set(
         &mut self,
         Place(at): Place,
@@ -88,23 +89,23 @@ impl Parameters {
         kind: u8,
         at_rest: bool,
         now: u64,
-    ) -> Result<(), Refused> {
-        let row = Params::TABLE.get(usize::from(at)).ok_or(Refused::Unknown)?;
+    ) -> Result<(), SetError> {
+        let row = Params::TABLE.get(usize::from(at)).ok_or(SetError::Unknown)?;
         if !at_rest {
-            return Err(Refused::Armed);
+            return Err(SetError::Armed);
         }
         if kind != MavParamType::MAV_PARAM_TYPE_REAL32 as u8 {
-            return Err(Refused::Type);
+            return Err(SetError::Type);
         }
         self.copy.set(row.name, value).map_err(|why| match why {
-            ParamError::Unknown => Refused::Unknown,
-            ParamError::NotAllowed(row) => Refused::NotAllowed(row.name),
+            ParamError::Unknown => SetError::Unknown,
+            ParamError::NotAllowed(row) => SetError::NotAllowed(row.name),
         })?;
         self.changed_at = Some(now);
         Ok(())
     }
 
-    /// Puts what was found into the parameter called `name`.
+    /// Sets the parameter called `name` to a calibrated value; `None` if the value is not allowed.
     pub fn put(&mut self, name: &str, value: f32, now: u64) -> Option<Place> {
         self.copy.set(name, value).ok()?;
         self.changed_at = Some(now);
@@ -112,8 +113,8 @@ impl Parameters {
         Some(Place(at as u16))
     }
 
-    /// Begins a list of all. What was said of one under way counts for who asked before: it goes on, once round, for all
-    /// hear it, and begun again at each question it would never end.
+    /// Begins a list of all parameters. A list that is already being sent continues to its end and then once round: all
+    /// stations hear it, and a restart at each request would never end.
     pub fn list(&mut self) {
         if self.listed == 0 {
             self.next = 0;
@@ -121,7 +122,7 @@ impl Parameters {
         self.listed = Params::TABLE.len() as u16;
     }
 
-    /// The next of the list.
+    /// The next parameter of the list.
     pub fn listed(&mut self) -> Option<Place> {
         self.listed = self.listed.checked_sub(1)?;
         let at = self.next;
@@ -131,7 +132,7 @@ impl Parameters {
         Some(Place(at))
     }
 
-    /// The copy, where it is to be stored now: once for each change.
+    /// True if the copy must be stored now: once for each change.
     pub fn to_store(&mut self, at_rest: bool, now: u64) -> bool {
         let settled = self
             .changed_at
@@ -142,12 +143,12 @@ impl Parameters {
         settled
     }
 
-    /// Takes over what was set elsewhere, by whom it is stored.
+    /// Takes over parameters that another line set and stores.
     pub const fn follow(&mut self, params: &Params) {
         self.copy = *params;
     }
 
-    /// The copy.
+    /// The working copy.
     pub const fn copy(&self) -> &Params {
         &self.copy
     }

@@ -1,4 +1,5 @@
-//! The console over MAVLink: `SERIAL_CONTROL`'s shell, one station at a time. The bytes are the console's, as on a cable.
+//! The console over MAVLink: `SERIAL_CONTROL`'s shell, for one station at a time. The bytes are those of the console on
+//! a cable.
 
 use heapless::Vec;
 
@@ -7,27 +8,28 @@ use sophie_dialect::{SERIAL_CONTROL_DATA, SerialControlDev, SerialControlFlag};
 
 /// Bytes of one message.
 pub const CHUNK: usize = 70;
-/// Bytes that wait for the console at most: two messages and a [`HANG_UP`]. What does not fit is lost, as on a cable.
+/// Largest number of bytes that wait for the console: two messages and a [`HANG_UP`]. Further ones are lost, as on a
+/// cable.
 pub const TYPED: usize = 2 * CHUNK + 1;
-/// Silence of a station after which its console is ended, µs: a minute of its heartbeats. What turns ends by itself within
-/// seconds; a live flight may run at many times the pace of its stations.
+/// Silence of a station after which its console session ends, µs: a minute of its heartbeats. A motor test ends within
+/// seconds without it; a live flight may run at many times the pace of its stations.
 const SILENCE: u64 = 60_000_000;
-/// Ctrl-C: ends what runs at the console and drops what is typed there so far. Alone it takes no console over from another
+/// Ctrl-C: ends the running command and drops an unfinished line. Alone it does not take the console from another
 /// terminal.
 pub const HANG_UP: u8 = 0x03;
 
-/// The far end of the console.
+/// The station's end of the console.
 #[derive(Debug, Default)]
 pub struct Shell {
-    /// Who uses it.
+    /// The station that uses it.
     user: Option<Peer>,
-    /// When something came from there last, µs.
+    /// Time of its newest message or heartbeat, µs.
     heard_at: u64,
     typed: Vec<u8, TYPED>,
     said: Vec<u8, CHUNK>,
-    /// Messages so far: who reads them sees what was lost.
+    /// Messages so far, modulo 2^16: a gap in the count shows a lost message.
     count: u16,
-    /// A stream has gone out since its last frame: the next one is the console's, where there is one.
+    /// A stream was sent after the console's last frame: the console has the next turn.
     pub(crate) waits: bool,
 }
 
@@ -43,7 +45,7 @@ impl Shell {
         }
     }
 
-    /// Takes a message. A station that types takes the console from another, whose command ends.
+    /// Takes a message. A station that types takes the console from another, whose command is ended.
     pub(crate) fn obey(&mut self, serial: &SERIAL_CONTROL_DATA, from: Peer, now: u64) {
         let flags = SerialControlFlag::from_bits_truncate(serial.flags.into());
         let shell = serial.device == SerialControlDev::SERIAL_CONTROL_DEV_SHELL as u8;
@@ -61,27 +63,27 @@ impl Shell {
                 let _ = self.typed.push(*byte);
             }
         }
-        // Who wants no answer uses it no longer, as PX4 has it.
+        // A station that asks for no response releases the console, as in PX4.
         if !flags.contains(SerialControlFlag::SERIAL_CONTROL_FLAG_RESPOND) {
             self.hang_up();
         }
     }
 
-    /// A heartbeat of `from` has come.
+    /// Notes a heartbeat of `from`.
     pub(crate) fn hear(&mut self, from: Peer, now: u64) {
         if self.user == Some(from) {
             self.heard_at = now;
         }
     }
 
-    /// Ends the console of a station that has gone.
+    /// Ends the console session of a silent station.
     pub(crate) fn expire(&mut self, now: u64) {
         if now.saturating_sub(self.heard_at) > SILENCE {
             self.hang_up();
         }
     }
 
-    /// Ends the console of whoever uses it, if any.
+    /// Ends the console session, if a station has one.
     pub fn hang_up(&mut self) {
         if self.user.take().is_some() {
             self.said.clear();
@@ -90,29 +92,29 @@ impl Shell {
         }
     }
 
-    /// What has been typed since the last call.
+    /// The bytes typed since the last call.
     pub fn typed(&mut self) -> Vec<u8, TYPED> {
         core::mem::take(&mut self.typed)
     }
 
-    /// True where a station uses it.
+    /// True while a station uses the console.
     pub const fn used(&self) -> bool {
         self.user.is_some()
     }
 
-    /// True where it takes what the console says next.
+    /// True if the shell has room for console output.
     pub fn takes(&self) -> bool {
         self.used() && self.said.is_empty()
     }
 
-    /// Takes what the console says, [`CHUNK`] bytes at most, where [`Self::takes`] is true.
+    /// Takes console output, at most [`CHUNK`] bytes, if [`Self::takes`] is true.
     pub fn say(&mut self, bytes: &[u8]) {
         if self.takes() {
             let _ = self.said.extend_from_slice(bytes);
         }
     }
 
-    /// What was said, as a message.
+    /// The waiting output as a message; `None` without a user or output.
     pub(crate) fn said(&mut self) -> Option<SERIAL_CONTROL_DATA> {
         let user = self.user?;
         if self.said.is_empty() {
@@ -127,7 +129,7 @@ impl Shell {
         self.count = self.count.wrapping_add(1);
         Some(SERIAL_CONTROL_DATA {
             baudrate: 0,
-            // Of no use in an answer to the standard.
+            // The standard does not use this field in an answer.
             timeout: self.count,
             device: SerialControlDev::SERIAL_CONTROL_DEV_SHELL as u8,
             flags: SerialControlFlag::SERIAL_CONTROL_FLAG_REPLY.bits() as u8,

@@ -1,26 +1,26 @@
-//! What is sent unasked: each message with its period, which a ground station may change.
+//! Streams: messages that are sent periodically. A ground station can change a period.
 //!
-//! A stream for which there is no budget loses its turn: nothing is queued.
+//! A stream without budget loses its turn: nothing is queued.
 
 use mavlink_core::MessageData;
 
 use crate::wire::frame::OVERHEAD;
 use sophie_dialect::*;
 
-/// A message that is sent again and again.
+/// A periodic message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stream {
     /// Number of the message.
     pub id: u32,
     /// Its name.
     pub name: &'static str,
-    /// Time between two of them as long as no one asks for another, ms; 0 where it is sent on request alone.
+    /// Default time between two of them, ms; 0 for a message that is sent on request alone.
     pub period_ms: u32,
     /// Length of its frame at most, bytes.
     pub bytes: u32,
 }
 
-/// Length of the frame of a message with nothing left out, bytes.
+/// Length of a message's frame without trimmed zeros, bytes.
 pub const fn frame_bytes<M: MessageData>() -> u32 {
     (M::ENCODED_LEN + OVERHEAD) as u32
 }
@@ -53,7 +53,7 @@ streams! {
 
 /// Number of streams.
 pub const COUNT: usize = STREAMS.len();
-/// Shortest period that can be asked for, µs: that of the task which serves the line.
+/// Shortest period, µs: that of the task which serves the line.
 pub const PERIOD_MIN_US: u32 = 20_000;
 
 /// When each stream is due.
@@ -76,7 +76,7 @@ impl Turn {
         self.period > 0 && self.due <= now
     }
 
-    /// Sets the next turn; those that were missed are left out.
+    /// Sets the next turn; missed turns are left out.
     fn pass(&mut self, now: u64) {
         let period = u64::from(self.period);
         let next = self.due.saturating_add(period);
@@ -109,7 +109,7 @@ impl Schedule {
         Self { turns }
     }
 
-    /// The stream but heartbeats that has been due for longest at `now`, µs; its next turn is set.
+    /// The stream that has been due for longest at `now`, µs, heartbeats excepted; sets its next turn.
     pub fn next(&mut self, now: u64) -> Option<&'static Stream> {
         let (stream, turn) = (STREAMS.iter().zip(&mut self.turns))
             .filter(|(stream, turn)| stream.id != HEARTBEAT_DATA::ID && turn.is_due(now))
@@ -118,7 +118,7 @@ impl Schedule {
         Some(stream)
     }
 
-    /// True where `id` is due at `now`, µs; its next turn is set then.
+    /// True if `id` is due at `now`, µs; sets its next turn then.
     pub fn take(&mut self, id: u32, now: u64) -> bool {
         match self.turn(id) {
             Some(turn) if turn.is_due(now) => {
@@ -129,7 +129,7 @@ impl Schedule {
         }
     }
 
-    /// Makes `id` due.
+    /// Makes `id` due now.
     pub fn hurry(&mut self, id: u32) {
         if let Some(turn) = self.turn(id) {
             turn.due = 0;
@@ -141,12 +141,12 @@ impl Schedule {
         self.turns.get_mut(at)
     }
 
-    /// The period of `id`, µs; 0 where it is not sent, `None` where it is no stream.
+    /// The period of stream `id`, µs; 0 if it is off, `None` if `id` is not a stream.
     pub fn period(&mut self, id: u32) -> Option<u32> {
         self.turn(id).map(|turn| turn.period)
     }
 
-    /// Sends `id` each `period` µs from `now` on, never where it is 0; `None` where it is no stream.
+    /// Sends `id` each `period` µs from `now` on; a period of 0 turns it off. `None` if `id` is not a stream.
     pub fn set_period(&mut self, id: u32, period: u32, now: u64) -> Option<()> {
         let turn = self.turn(id)?;
         *turn = Turn { period, due: now };

@@ -1,7 +1,7 @@
-//! Each message that is made of the vehicle's picture, in MAVLink's units and axes.
+//! The messages of the vehicle's state, in MAVLink's units.
 //!
-//! Body axes are FRD, the world is NED and quaternions have w first here as there: only units change. What is not known
-//! has the standard's own value for it.
+//! Frames are the same here and there: the body is FRD, the world NED, quaternions have w first. Only units change. An
+//! unknown value is sent as the standard's own value for "unknown".
 
 use sophie_control::allocation::wrench::PerArm;
 use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
@@ -14,7 +14,7 @@ use sophie_control::pilot::rc::{ArmChoice, StickMode, Sticks};
 use crate::vehicle::Vehicle;
 use sophie_dialect::*;
 
-/// The version of the protocol in every heartbeat.
+/// Protocol version in heartbeats.
 const MAVLINK_VERSION: u8 = 3;
 /// Pulse of a centred stick, µs.
 const PULSE_CENTRE: f32 = 1500.0;
@@ -23,7 +23,7 @@ const PULSE_HALF: f32 = 500.0;
 /// `a * 1e3 / GRAVITY`: thousandths of standard gravity.
 const MILLI_G: f32 = 1e3 / GRAVITY;
 
-/// What the vehicle is and does.
+/// Kind, mode and state of the vehicle.
 pub fn heartbeat(vehicle: &Vehicle) -> HEARTBEAT_DATA {
     let mut base_mode = MavModeFlag::MAV_MODE_FLAG_CUSTOM_MODE_ENABLED;
     let mode = vehicle.mode();
@@ -55,7 +55,7 @@ fn custom_mode(vehicle: &Vehicle) -> u32 {
     vehicle.mode().map_or(0, |mode| mode as u32)
 }
 
-/// The mode that the vehicle is in, none of the standard's.
+/// The present mode, which is not one of the standard's.
 pub fn current_mode(vehicle: &Vehicle) -> CURRENT_MODE_DATA {
     CURRENT_MODE_DATA {
         custom_mode: custom_mode(vehicle),
@@ -64,7 +64,7 @@ pub fn current_mode(vehicle: &Vehicle) -> CURRENT_MODE_DATA {
     }
 }
 
-/// One mode of all, from 1: the commander alone changes it, a ground station cannot.
+/// The mode at `index`, from 1. Only the commander changes the mode: a ground station cannot select it.
 pub fn available_mode(index: u8) -> Option<AVAILABLE_MODES_DATA> {
     let mode = Mode::ALL.get(usize::from(index).checked_sub(1)?)?;
     Some(AVAILABLE_MODES_DATA {
@@ -79,7 +79,7 @@ pub fn available_mode(index: u8) -> Option<AVAILABLE_MODES_DATA> {
     })
 }
 
-/// `from` with zeros behind, cut to `N` bytes.
+/// `from`, padded with zeros or cut to `N` bytes.
 pub fn text<const N: usize>(from: &str) -> [u8; N] {
     let mut bytes = [0; N];
     for (to, from) in bytes.iter_mut().zip(from.bytes()) {
@@ -88,7 +88,7 @@ pub fn text<const N: usize>(from: &str) -> [u8; N] {
     bytes
 }
 
-/// Health of the vehicle's parts, as the arming checks see them.
+/// Health of the vehicle's parts, by the arming checks.
 pub fn sys_status(vehicle: &Vehicle) -> SYS_STATUS_DATA {
     let present = SENSORS
         .iter()
@@ -121,7 +121,7 @@ pub fn sys_status(vehicle: &Vehicle) -> SYS_STATUS_DATA {
     }
 }
 
-/// What a part needs beside its arming checks, which are not made in flight.
+/// Further condition of a healthy part: arming checks do not run in flight.
 enum Needs {
     Nothing,
     Attitude,
@@ -130,7 +130,7 @@ enum Needs {
     FreeArming,
 }
 
-/// A part of the vehicle and the arming checks that it fails when it is sick.
+/// A part of the vehicle, and the arming checks that fail with it.
 struct Part {
     bit: MavSysStatusSensor,
     inhibits: &'static [ArmingInhibit],
@@ -198,7 +198,7 @@ const SENSORS: &[Part] = &[
     },
 ];
 
-/// Current, cA; -1 where it is not known.
+/// Current, cA; -1 if unknown.
 fn current(vehicle: &Vehicle) -> i16 {
     let current = vehicle.battery.and_then(|b| b.current);
     current.map_or(-1, |current| (current * 1e2 + 0.5) as i16)
@@ -209,19 +209,19 @@ fn used(vehicle: &Vehicle) -> Option<f32> {
     vehicle.battery?.used
 }
 
-/// Charge left, %; -1 where it is not known.
+/// Charge left, %; -1 if unknown.
 fn remaining(vehicle: &Vehicle) -> i8 {
     match used(vehicle) {
         Some(used) if vehicle.capacity > 0.0 => {
             let left = 100.0 * (1.0 - used / vehicle.capacity);
-            // The conversion takes NaN as 0.
+            // The conversion makes 0 of NaN.
             left.clamp(0.0, 100.0) as i8
         }
         _ => -1,
     }
 }
 
-/// The flight battery as one cell: its cells are not measured.
+/// The flight battery as one cell: the cells are not measured.
 pub fn battery_status(vehicle: &Vehicle) -> BATTERY_STATUS_DATA {
     let low = |inhibit| vehicle.condition.is_some_and(|c| c.inhibits.contains(inhibit));
     let critical = vehicle
@@ -255,7 +255,7 @@ pub fn battery_status(vehicle: &Vehicle) -> BATTERY_STATUS_DATA {
     }
 }
 
-/// The servo battery, of which the voltage alone is measured; `None` without one.
+/// The servo battery; only its voltage is measured. `None` without one.
 pub fn servo_battery_status(vehicle: &Vehicle) -> Option<BATTERY_STATUS_DATA> {
     let battery = vehicle.servo_battery?;
     let charge = match battery.supply {
@@ -328,7 +328,7 @@ pub fn scaled_imu(vehicle: &Vehicle, time_boot_ms: u32) -> Option<SCALED_IMU_DAT
     })
 }
 
-/// The nearest whole number that there is room for.
+/// Rounded to a whole number, limited to the type's range.
 fn nearest(value: f32) -> i16 {
     (value + if value < 0.0 { -0.5 } else { 0.5 }) as i16
 }
@@ -381,7 +381,7 @@ fn channels(sticks: &Sticks) -> [u16; 8] {
     let switch = |on| if on { 1.0 } else { -1.0 };
     let shares = [
         sticks.roll,
-        // Sent as the stick moves: pushed is high, and takes the nose down.
+        // The sign of the stick: pushed forward is high, and lowers the nose.
         -sticks.pitch,
         2.0 * sticks.throttle - 1.0,
         sticks.yaw,
@@ -401,8 +401,8 @@ fn channels(sticks: &Sticks) -> [u16; 8] {
     shares.map(|share| (PULSE_CENTRE + PULSE_HALF * share + 0.5) as u16)
 }
 
-/// Motors 1 to 4 as pulses between their ends, those of DShot as 1000 to 2000 µs, tendon servos 5 to 8; 0 for what is not
-/// driven.
+/// Motors 1 to 4 as pulses between their ends (DShot as 1000 to 2000 µs), tendon servos 5 to 8; 0 for an output without
+/// pulses.
 pub fn servo_output_raw(vehicle: &Vehicle, time_boot_ms: u32) -> SERVO_OUTPUT_RAW_DATA {
     let pulse = |command: f32| (vehicle.motor_pulses.pulse_us(command) + 0.5) as u16;
     let [servo1_raw, servo2_raw, servo3_raw, servo4_raw] =
@@ -425,7 +425,7 @@ pub fn servo_output_raw(vehicle: &Vehicle, time_boot_ms: u32) -> SERVO_OUTPUT_RA
     }
 }
 
-/// Whether it stands or flies. Perched is the nearest that there is: it stands, rotors stopped.
+/// Landed state. Perched is reported as on the ground: the rotors stand.
 pub fn extended_sys_state(vehicle: &Vehicle) -> EXTENDED_SYS_STATE_DATA {
     let landed = match vehicle.mode() {
         None => MavLandedState::MAV_LANDED_STATE_UNDEFINED,
@@ -481,7 +481,7 @@ pub fn arms(vehicle: &Vehicle, time_boot_ms: u32) -> SOPHIE_ARMS_DATA {
     }
 }
 
-/// What the autopilot can do. Every parameter is a float: both encodings of the protocol agree on it.
+/// Capabilities of the autopilot. Every parameter is a float, for which both encodings of the protocol are equal.
 pub fn autopilot_version() -> AUTOPILOT_VERSION_DATA {
     let can = MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MAVLINK2
         | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_COMMAND_INT

@@ -1,4 +1,4 @@
-//! What happened, in words: changes of mode and reason, warnings, and every arming check that begins to fail.
+//! Texts for the operator: changes of mode and reason, warnings, and each arming check that begins to fail.
 
 use core::fmt::Write;
 
@@ -12,17 +12,17 @@ use sophie_dialect::{MavSeverity, STATUSTEXT_DATA};
 
 /// Longest text of one message.
 pub const LONGEST: usize = 50;
-/// Before an arming check.
+/// Prefix of an arming check.
 pub const ARMING: &str = "arming: ";
-/// Texts that wait at most; further ones are dropped.
+/// Largest number of waiting texts; further ones are dropped.
 const WAITING: usize = 4;
 
-/// A text and how urgent it is.
+/// A text and its severity.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Text {
-    /// How urgent.
+    /// Severity (MAV_SEVERITY).
     pub severity: u8,
-    /// What happened.
+    /// The words.
     pub text: String<LONGEST>,
 }
 
@@ -38,21 +38,21 @@ impl Text {
     }
 }
 
-/// What has been said and what is still to be said.
+/// The texts that wait, and the state that the last ones reported.
 #[derive(Clone, Debug, Default)]
 pub struct Texts {
     waiting: Deque<Text, WAITING>,
     mode: Option<Mode>,
     reason: Option<Reason>,
     warning: &'static str,
-    /// What is wrong with signing.
+    /// Reported defect of signing.
     signing: &'static str,
-    /// Arming checks that have been named since they began to fail.
+    /// Failing arming checks that were reported.
     named: ArmingInhibits,
 }
 
 impl Texts {
-    /// Before the first.
+    /// Before the first text.
     pub const fn new() -> Self {
         Self {
             waiting: Deque::new(),
@@ -64,7 +64,7 @@ impl Texts {
         }
     }
 
-    /// Says all that holds again: someone new listens.
+    /// Reports the whole state again, for a new station.
     pub fn repeat(&mut self) {
         *self = Self {
             waiting: core::mem::take(&mut self.waiting),
@@ -72,21 +72,21 @@ impl Texts {
         };
     }
 
-    /// Names every arming check that fails once more: someone was refused for them.
+    /// Reports every failing arming check again, after a refused arming.
     pub fn name_checks(&mut self) {
         self.named = ArmingInhibits::NONE;
     }
 
-    /// Says `words`, cut to what there is room for.
+    /// Queues `words`, cut to [`LONGEST`].
     pub fn say(&mut self, severity: MavSeverity, words: core::fmt::Arguments<'_>) {
         let mut text = String::new();
-        // What does not fit is left out.
+        // The rest is left out.
         let _ = write!(Cut(&mut text), "{words}");
         let severity = severity as u8;
         let _ = self.waiting.push_back(Text { severity, text });
     }
 
-    /// The next text, given what the vehicle is like now and what is wrong with signing, if anything.
+    /// The next text, given the state of the vehicle and the defect of signing; `""` means no defect.
     pub fn next(&mut self, vehicle: &Vehicle, signing: &'static str) -> Option<Text> {
         if let Some(condition) = &vehicle.condition {
             self.observe(condition, signing);
@@ -95,7 +95,7 @@ impl Texts {
     }
 
     fn observe(&mut self, condition: &Condition, signing: &'static str) {
-        // One at a time, as they are sent.
+        // One text at a time: the state may change before the next.
         if !self.waiting.is_empty() {
             return;
         }
@@ -148,7 +148,7 @@ impl Texts {
     }
 }
 
-/// Writes as much as there is room for.
+/// Writes up to the string's capacity.
 struct Cut<'a>(&'a mut String<LONGEST>);
 
 impl Write for Cut<'_> {

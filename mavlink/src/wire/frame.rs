@@ -1,8 +1,8 @@
-//! The layout of a MAVLink 2 frame, and frames that are sent.
+//! Layout of a MAVLink 2 frame, and the encoder of sent frames.
 
 use mavlink_core::{MAVLinkV2MessageRaw, MavHeader, MessageData, calculate_crc};
 
-/// First byte of a MAVLink 2 frame; MAVLink 1 is not spoken.
+/// First byte of a MAVLink 2 frame. MAVLink 1 is not supported.
 pub(crate) const STX: u8 = 0xFD;
 /// Bytes around the payload of a frame without signature: start, header, checksum.
 pub const OVERHEAD: usize = 12;
@@ -10,16 +10,16 @@ pub const OVERHEAD: usize = 12;
 pub(crate) const HEADER: usize = 10;
 /// Bytes of a signature.
 pub const SIGNATURE: usize = 13;
-/// The longest frame.
+/// Length of the longest frame, bytes.
 pub const LONGEST: usize = OVERHEAD + 255 + SIGNATURE;
-/// The incompatibility flag of a signed frame, the only one that is known.
+/// Incompatibility flag of a signed frame, the only supported one.
 pub(crate) const SIGNED: u8 = 1;
-/// The vehicle's number among systems: the first, as autopilots have it.
+/// System ID of the vehicle: 1, as of all autopilots.
 pub const SYSTEM: u8 = 1;
-/// The autopilot's number among the vehicle's components (MAV_COMP_ID_AUTOPILOT1).
+/// Component ID of the autopilot (MAV_COMP_ID_AUTOPILOT1).
 pub const COMPONENT: u8 = 1;
 
-/// A frame whose checksum is right.
+/// A frame with a valid checksum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frame<'a> {
     /// Number of the message.
@@ -30,19 +30,19 @@ pub struct Frame<'a> {
     pub component: u8,
     /// The message, without the zeros at its end.
     pub payload: &'a [u8],
-    /// It carries a signature.
+    /// The frame has a signature.
     pub signed: bool,
-    /// All of it, from the first byte to the checksum or the signature.
+    /// The whole frame, from the first byte to the checksum or the signature.
     pub bytes: &'a [u8],
 }
 
-/// Makes frames, numbered as they are sent.
+/// Encodes frames and numbers them.
 pub struct Encoder {
     raw: MAVLinkV2MessageRaw,
     system: u8,
     component: u8,
     sequence: u8,
-    /// Room is left for a signature.
+    /// Frames get room for a signature.
     signed: bool,
 }
 
@@ -53,12 +53,12 @@ impl Default for Encoder {
 }
 
 impl Encoder {
-    /// The vehicle's, before the first frame.
+    /// The vehicle's encoder, before the first frame.
     pub const fn new() -> Self {
         Self::of(SYSTEM, COMPONENT)
     }
 
-    /// Those of another: a station's.
+    /// The encoder of another component, such as a station.
     pub const fn of(system: u8, component: u8) -> Self {
         Self {
             raw: MAVLinkV2MessageRaw::new(),
@@ -69,7 +69,7 @@ impl Encoder {
         }
     }
 
-    /// Leaves room for a signature in frames that are made from here on, or none.
+    /// Sets whether following frames get room for a signature.
     pub const fn leave_room(&mut self, signed: bool) {
         self.signed = signed;
     }
@@ -100,13 +100,13 @@ impl Encoder {
         }
     }
 
-    /// The frame that was made last, to be signed.
+    /// The last frame, for signing.
     pub fn frame_mut(&mut self) -> &mut [u8] {
         let length = self.frame().len();
         self.raw.as_mut_slice().get_mut(..length).unwrap_or_default()
     }
 
-    /// The frame that was made last.
+    /// The last frame.
     pub fn frame(&self) -> &[u8] {
         self.raw.raw_bytes()
     }

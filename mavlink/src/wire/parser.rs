@@ -1,6 +1,7 @@
-//! Frames out of a stream of bytes, however it is cut, garbled or flooded.
+//! Frames out of a stream of bytes that may be cut, garbled or flooded.
 //!
-//! Each byte costs at most `CANDIDATES` looks at what is buffered, so that a flood costs its line rate and no more.
+//! Each received byte tests at most `CANDIDATES` frame starts in the buffer: the cost of a flood is bounded by the
+//! line's rate.
 
 use heapless::Vec;
 use mavlink_core::calculate_crc;
@@ -8,18 +9,18 @@ use mavlink_core::calculate_crc;
 use crate::wire::frame::{Frame, HEADER, LONGEST, SIGNATURE, SIGNED, STX};
 use crate::wire::requests::crc_extra;
 
-/// Beginnings of frames looked at for one byte that arrives.
+/// Largest number of frame starts tested for one received byte.
 const CANDIDATES: usize = 4;
-/// Silence after which an unfinished frame is given up, µs: three of the longest at 57,600 baud.
+/// Silence after which an unfinished frame is dropped, µs: three of the longest frames at 57,600 baud.
 pub(crate) const GAP: u64 = 150_000;
 
-/// What the buffer begins with.
-enum Look {
-    /// A frame that is not complete.
+/// The start of the buffer.
+enum Candidate {
+    /// An incomplete frame.
     Incomplete,
-    /// A sound frame of this length.
+    /// A valid frame of this length, bytes.
     Frame(usize),
-    /// This many bytes that are of no use.
+    /// So many bytes that do not begin a frame.
     Useless(usize),
 }
 
@@ -27,9 +28,9 @@ enum Look {
 #[derive(Clone, Debug, Default)]
 pub struct Parser {
     bytes: Vec<u8, LONGEST>,
-    /// Length of the sound frame at the start of `bytes`; 0 where there is none.
+    /// Length of the complete frame at the start of `bytes`; 0 without one.
     ready: usize,
-    /// When the newest byte arrived, µs.
+    /// Time of the newest byte, µs.
     at: u64,
 }
 
@@ -43,7 +44,7 @@ impl Parser {
         }
     }
 
-    /// Takes a byte that arrived at `now`, µs; gives the frame that it completes.
+    /// Takes a byte received at `now`, µs; returns the frame that it completes.
     pub fn push(&mut self, byte: u8, now: u64) -> Option<Frame<'_>> {
         let ready = core::mem::take(&mut self.ready);
         self.discard(ready);
@@ -55,48 +56,49 @@ impl Parser {
             return None;
         }
         for _ in 0..CANDIDATES {
-            match self.look() {
-                Look::Incomplete => return None,
-                Look::Frame(length) => {
+            match self.candidate() {
+                Candidate::Incomplete => return None,
+                Candidate::Frame(length) => {
                     self.ready = length;
                     return self.frame();
                 }
-                Look::Useless(count) => self.discard(count),
+                Candidate::Useless(count) => self.discard(count),
             }
         }
-        // Made to cost time: what follows is looked at from its next beginning.
+        // The bytes are made to cost time: they are dropped.
         self.bytes.clear();
         None
     }
 
-    fn look(&self) -> Look {
+    fn candidate(&self) -> Candidate {
         let &[_, length, incompatible, .., a, b, c] = self.bytes.get(..HEADER).unwrap_or_default() else {
             let unknown = self.bytes.get(2).is_some_and(|flags| flags & !SIGNED != 0);
             return if unknown {
-                Look::Useless(1)
+                Candidate::Useless(1)
             } else {
-                Look::Incomplete
+                Candidate::Incomplete
             };
         };
         if incompatible & !SIGNED != 0 {
-            return Look::Useless(1);
+            return Candidate::Useless(1);
         }
         let body = HEADER + usize::from(length);
         let signature = if incompatible & SIGNED != 0 { SIGNATURE } else { 0 };
         let whole = body + 2 + signature;
         if self.bytes.len() < whole {
-            return Look::Incomplete;
+            return Candidate::Incomplete;
         }
-        // A message that is not known cannot be checked: all of it is skipped, since what lies in it is not for here.
+        // The checksum of an unknown message cannot be tested. All of it is skipped: its content could look like a
+        // frame.
         let Some(extra) = crc_extra(u32::from_le_bytes([a, b, c, 0])) else {
-            return Look::Useless(whole);
+            return Candidate::Useless(whole);
         };
         let sum = self.bytes.get(1..body).map(|bytes| calculate_crc(bytes, extra));
         let sent = self.bytes.get(body..body + 2);
         if sum.is_some_and(|sum| sent == Some(&sum.to_le_bytes())) {
-            Look::Frame(whole)
+            Candidate::Frame(whole)
         } else {
-            Look::Useless(1)
+            Candidate::Useless(1)
         }
     }
 
@@ -114,7 +116,7 @@ impl Parser {
         })
     }
 
-    /// Drops the first `count` bytes and what follows up to the next beginning of a frame.
+    /// Drops the first `count` bytes, and further ones up to the next start of a frame.
     fn discard(&mut self, count: usize) {
         if count == 0 {
             return;

@@ -1,7 +1,7 @@
-//! Tells MAVLink and text apart on a line that carries both, by what arrives, as PX4 and ArduPilot do on USB.
+//! Distinguishes MAVLink and text on a line that carries both, by the received bytes, as PX4 and ArduPilot do on USB.
 //!
-//! The line begins with text. A sound frame makes it MAVLink's: one of version 2 that is known here, or a heartbeat of
-//! version 1, which QGroundControl sends until it has heard version 2. A line of text between frames gives it back.
+//! The line begins with text. A valid frame switches it to MAVLink: a known one of version 2, or a heartbeat of version
+//! 1, which QGroundControl sends until it receives version 2. A line of text between frames switches it back.
 
 use heapless::Vec;
 use mavlink_core::{MessageData, calculate_crc};
@@ -12,39 +12,39 @@ use sophie_dialect::HEARTBEAT_DATA;
 
 /// First byte of a MAVLink 1 frame.
 const STX_1: u8 = 0xFE;
-/// Bytes around its payload.
+/// Bytes around the payload of a MAVLink 1 frame.
 const OVERHEAD_1: usize = 8;
-/// Payload of a heartbeat, in both versions.
+/// Payload of a heartbeat in both versions, bytes.
 const HEARTBEAT: usize = 9;
-/// A heartbeat of version 1.
+/// Length of a MAVLink 1 heartbeat, bytes.
 const HEARTBEAT_1: usize = OVERHEAD_1 + HEARTBEAT;
 
-/// Whose line it is.
+/// The protocol of the line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Speaks {
-    /// The console's.
+pub enum Protocol {
+    /// Text of the console.
     #[default]
     Text,
-    /// MAVLink's.
+    /// MAVLink frames.
     Mavlink,
 }
 
-/// For whom a byte is.
+/// Receiver of a byte.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum For {
+pub enum Route {
     /// The console.
     Console,
     /// The MAVLink server.
     Mavlink,
-    /// The console, in place of bytes that were taken for a frame and were none: what was typed is not whole.
+    /// The console, in place of bytes that looked like a frame and were not: the typed line is not complete.
     Unreadable,
-    /// The console, in place of the line that took the line back.
-    Return,
+    /// The console, as the end of the text line that switched the protocol back.
+    Reclaim,
     /// Neither.
     Neither,
 }
 
-/// Where the next byte belongs.
+/// Position of the next byte.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Place {
     /// Between frames.
@@ -52,32 +52,32 @@ enum Place {
     Between,
     /// Length of the payload.
     Length { old: bool },
-    /// Flags, which say whether a signature follows.
+    /// Flags, which contain the mark of a signature.
     Flags { payload: usize },
-    /// Within a frame that has this many bytes to come.
+    /// Within a frame, with so many bytes to come.
     Within { left: usize },
 }
 
-/// Sorts the bytes of one line.
+/// Routes the bytes of one line.
 #[derive(Debug, Default)]
-pub struct Sorter {
-    speaks: Speaks,
+pub struct ProtocolDetector {
+    protocol: Protocol,
     place: Place,
-    /// Looks for frames while the line is the console's.
+    /// Detects frames while the protocol is text.
     frames: Parser,
-    /// What may be a heartbeat of version 1.
+    /// A possible heartbeat of version 1.
     old: Vec<u8, HEARTBEAT_1>,
-    /// Characters of a line of text between frames; `None` where another byte was among them.
+    /// Length of the text line between frames; `None` once it contains a byte that is not text.
     text: Option<usize>,
-    /// When the newest byte arrived, µs.
+    /// Time of the newest byte, µs.
     at: u64,
 }
 
-impl Sorter {
-    /// Of a line that is the console's.
+impl ProtocolDetector {
+    /// A line that begins with text.
     pub const fn new() -> Self {
         Self {
-            speaks: Speaks::Text,
+            protocol: Protocol::Text,
             place: Place::Between,
             frames: Parser::new(),
             old: Vec::new(),
@@ -86,31 +86,31 @@ impl Sorter {
         }
     }
 
-    /// Whose line it is.
-    pub const fn speaks(&self) -> Speaks {
-        self.speaks
+    /// The protocol of the line.
+    pub const fn protocol(&self) -> Protocol {
+        self.protocol
     }
 
-    /// Gives the line to the console: it was opened, closed or unplugged.
+    /// Switches back to text, after the line was opened, closed or unplugged.
     pub fn reset(&mut self) {
         *self = Self::new();
     }
 
-    /// Gives up a frame that has not gone on by `now`, µs; true where that left the console with less than was typed.
-    pub fn gives_up(&mut self, now: u64) -> bool {
+    /// Drops a frame that has stalled by `now`, µs; true if the console lost typed bytes with it.
+    pub fn expires(&mut self, now: u64) -> bool {
         let over = self.place != Place::Between && now.saturating_sub(self.at) > GAP;
         if over {
             self.leave_frame();
         }
-        over && self.speaks == Speaks::Text
+        over && self.protocol == Protocol::Text
     }
 
-    /// Takes a byte that arrived at `now`, µs, after [`Self::gives_up`]: for whom it is.
-    pub fn take(&mut self, byte: u8, now: u64) -> For {
+    /// Takes a byte received at `now`, µs, after [`Self::expires`]; returns its receiver.
+    pub fn take(&mut self, byte: u8, now: u64) -> Route {
         self.at = now;
-        match self.speaks {
-            Speaks::Mavlink => self.within_mavlink(byte),
-            Speaks::Text => self.within_text(byte, now),
+        match self.protocol {
+            Protocol::Mavlink => self.within_mavlink(byte),
+            Protocol::Text => self.within_text(byte, now),
         }
     }
 
@@ -149,28 +149,28 @@ impl Sorter {
         left == 0
     }
 
-    fn within_mavlink(&mut self, byte: u8) -> For {
+    fn within_mavlink(&mut self, byte: u8) -> Route {
         if self.place != Place::Between || matches!(byte, STX | STX_1) {
             self.follow(byte);
-            return For::Mavlink;
+            return Route::Mavlink;
         }
         match byte {
             b'\r' | b'\n' => {
                 let line = self.text.replace(0).is_some_and(|length| length > 0);
                 if line {
                     self.reset();
-                    return For::Return;
+                    return Route::Reclaim;
                 }
             }
             b' '..=b'~' => self.text = self.text.map(|length| length.saturating_add(1)),
             _ => self.text = None,
         }
-        For::Mavlink
+        Route::Mavlink
     }
 
-    fn within_text(&mut self, byte: u8, now: u64) -> For {
+    fn within_text(&mut self, byte: u8, now: u64) -> Route {
         if self.place == Place::Between && !matches!(byte, STX | STX_1) {
-            return For::Console;
+            return Route::Console;
         }
         let old = !self.old.is_empty() || (self.place == Place::Between && byte == STX_1);
         if old {
@@ -181,7 +181,7 @@ impl Sorter {
         } else {
             self.frames.push(byte, now).is_some()
         };
-        // Nothing but a heartbeat is looked for in version 1; other flags are not known in version 2.
+        // In version 1 only a heartbeat is detected; in version 2, other flags are unknown.
         let other = match self.place {
             Place::Flags { .. } => byte & !SIGNED != 0,
             _ => old && !may_be_heartbeat(&self.old),
@@ -189,16 +189,16 @@ impl Sorter {
         let ended = self.follow(byte);
         if sound {
             self.leave_frame();
-            self.speaks = Speaks::Mavlink;
+            self.protocol = Protocol::Mavlink;
         } else if ended || other {
             self.leave_frame();
-            return For::Unreadable;
+            return Route::Unreadable;
         }
-        if old { For::Neither } else { For::Mavlink }
+        if old { Route::Neither } else { Route::Mavlink }
     }
 }
 
-/// The beginning of a MAVLink 1 frame is that of a heartbeat.
+/// True if these bytes can begin a MAVLink 1 heartbeat.
 fn may_be_heartbeat(bytes: &[u8]) -> bool {
     let length = bytes
         .get(1)
@@ -206,7 +206,7 @@ fn may_be_heartbeat(bytes: &[u8]) -> bool {
     length && bytes.get(5).is_none_or(|&id| id == 0)
 }
 
-/// A whole and sound heartbeat of MAVLink 1.
+/// True for a complete and valid MAVLink 1 heartbeat.
 fn is_heartbeat(bytes: &[u8]) -> bool {
     let Some((&[_, ref body @ ..], sum)) = bytes.split_last_chunk::<2>() else {
         return false;

@@ -69,8 +69,8 @@ fn message<M: MessageData>(frame: &Frame<'_>) -> Option<M> {
     M::deser(MavlinkVersion::V2, frame.payload).ok()
 }
 
-/// One row a request: its variant, then for each message that makes it the target and the request. A row makes the variant, the
-/// checksum's start and the decoder, so that no message can lack one of the three.
+/// One row for each request: its variant, then each of its messages with target and content. A row makes the variant,
+/// the checksum's first byte and the decoder: a message cannot lack one of the three.
 macro_rules! messages {
     ($(
         $(#[$doc:meta])*

@@ -1,9 +1,10 @@
-//! Signed frames: with a key each frame that is sent carries a signature, and none is obeyed without.
+//! Signed frames: with a key, each sent frame carries a signature, and a received frame is obeyed only with a valid
+//! one.
 //!
-//! A signature is of 48 bits of SHA-256 over the key, the frame and a time in units of 10 µs since 2015, which grows from
-//! frame to frame (mavlink.io/en/guide/message_signing.html). There is no clock here that knows the date: time starts
-//! where a stored bound says, and follows the latest that came with a sound signature. The bound lies ahead of every time
-//! that was taken, so that nothing from before a restart is taken again.
+//! A signature is 48 bits of SHA-256 over the key, the frame and a time in units of 10 µs since 2015, which grows from
+//! frame to frame (mavlink.io/en/guide/message_signing.html). The board has no calendar clock: its time starts at a
+//! stored bound and follows the latest validly signed time. The bound lies ahead of every accepted time, so that no
+//! frame from before a restart is accepted again.
 
 use sha2::{Digest, Sha256};
 use sophie_ports::signing::{Key, Record, Stored};
@@ -12,21 +13,21 @@ use crate::wire::frame::{Frame, SIGNATURE};
 use mavlink_core::MessageData;
 use sophie_dialect::HEARTBEAT_DATA;
 
-/// Bytes of the signature proper, the last of a frame.
+/// Length of the hash, the last part of a frame, bytes.
 const HASH: usize = 6;
-/// Senders whose times are remembered. One that was silent for a minute makes room.
+/// Number of senders with a remembered time. A sender that is silent for a minute makes room.
 const SENDERS: usize = 6;
-/// A minute in units of 10 µs: by so much a new sender may be behind.
+/// A minute in units of 10 µs. The time of a new sender may be so much behind.
 const MINUTE: u64 = 6_000_000;
-/// The stored bound is set this far ahead of the latest time: an hour, so that it is rarely written.
+/// Distance of the stored bound ahead of the latest time: an hour, so that it is rarely written.
 const LEASE: u64 = 60 * MINUTE;
-/// It is written again when less than this is left, so that half an hour of flight is covered.
+/// The bound is written again when less than this is left: half an hour of flight is covered.
 const RENEWAL: u64 = LEASE / 2;
-/// Time from one attempt to write it to the next, µs.
+/// Time between two attempts to write the bound, µs.
 const RETRY: u64 = 10_000_000;
 /// Time between two texts about refused frames, µs.
 const REPORT: u64 = 10_000_000;
-/// The latest time that there is: 48 bits last until 2104.
+/// Largest time: 48 bits last until 2104.
 const TIME_MAX: u64 = (1 << 48) - 1;
 
 /// Frames that were refused since the start.
@@ -34,46 +35,46 @@ const TIME_MAX: u64 = (1 << 48) - 1;
 pub struct Refused {
     /// Without a signature.
     pub unsigned: u32,
-    /// With a signature that the key does not give.
+    /// With a wrong signature.
     pub wrong: u32,
-    /// Taken before, too old, or of one sender too many.
+    /// Repeated, too old, or of a sender without a free entry.
     pub old: u32,
 }
 
-/// Who sent: system, component and link.
+/// Sender: system, component and link.
 type Name = [u8; 3];
 
 /// A sender and the time of its latest frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Sender {
     name: Name,
-    /// 0: no sender.
+    /// 0 for a free entry.
     latest: u64,
 }
 
-/// The key, and the times of what was signed with it: one for all lines, so that what was said on one is not taken on
-/// another.
+/// The key and the times of accepted and sent frames. All lines share one, so that a frame sent on one line is not
+/// accepted on another.
 #[derive(Clone, Debug)]
 pub struct Signing {
     stored: Stored,
-    /// The time that is at the board's start.
+    /// Signing time at the board's start.
     origin: u64,
-    /// Nothing of this time or before is taken.
+    /// Frames of this time or before are refused.
     floor: u64,
-    /// Latest time of a frame that was taken.
+    /// Latest time of an accepted frame.
     taken: u64,
-    /// Latest time of a frame that was sent.
+    /// Latest time of a sent frame.
     sent: u64,
     senders: [Sender; SENDERS],
     refused: Refused,
     reported: Refused,
-    /// When texts and writing may come next, µs.
+    /// Earliest times of the next report and of the next write, µs.
     report_at: u64,
     store_at: u64,
 }
 
 impl Signing {
-    /// With what is stored at the start.
+    /// The state at the start, given the stored record.
     pub const fn new(stored: Stored) -> Self {
         let bound = match stored {
             Stored::Key(Record { bound, .. }) => bound,
@@ -104,17 +105,17 @@ impl Signing {
         }
     }
 
-    /// What is stored.
+    /// The stored key.
     pub const fn stored(&self) -> &Stored {
         &self.stored
     }
 
-    /// Frames that were refused since the start.
+    /// Refused frames since the start.
     pub const fn refused(&self) -> Refused {
         self.refused
     }
 
-    /// Why nothing is obeyed, for as long as nothing is; empty otherwise.
+    /// Reason for refusing all frames; empty while frames are accepted.
     pub const fn notice(&self) -> &'static str {
         match self.stored {
             Stored::None | Stored::Key(_) => "",
@@ -123,18 +124,18 @@ impl Signing {
         }
     }
 
-    /// Frames are signed.
+    /// True if sent frames are signed.
     pub const fn signs(&self) -> bool {
         matches!(self.stored, Stored::Key(_))
     }
 
-    /// The time at `now`, µs since the start.
+    /// The signing time at `now`, µs since the start.
     fn time(&self, now: u64) -> u64 {
         self.origin.saturating_add(now / 10).min(TIME_MAX)
     }
 
-    /// True where `frame`, which arrived at `now`, may be obeyed. Without a signature only heartbeats may, as PX4 has it:
-    /// they change nothing.
+    /// True if `frame`, received at `now`, may be obeyed. Without a signature only heartbeats may, as in PX4: they
+    /// change nothing.
     pub fn takes(&mut self, frame: &Frame<'_>, now: u64) -> bool {
         if self.stored == Stored::None {
             return true;
@@ -150,7 +151,7 @@ impl Signing {
         };
         let time = self.time(now);
         let Some(sender) = sender(&mut self.senders, &signed, self.floor, time) else {
-            // Before the hash, which costs more than all else.
+            // Tested before the hash, which takes longer than all else.
             count(&mut self.refused.old, true);
             return false;
         };
@@ -167,7 +168,8 @@ impl Signing {
         true
     }
 
-    /// Signs `frame`, whose last 13 bytes are free for it, as number `link` of this vehicle's lines at `now`, µs.
+    /// Signs `frame` at `now`, µs, as number `link` of this vehicle's lines. The frame's last 13 bytes are free for the
+    /// signature.
     pub fn sign(&mut self, frame: &mut [u8], link: u8, now: u64) {
         let Stored::Key(Record { key, .. }) = self.stored else {
             return;
@@ -183,7 +185,7 @@ impl Signing {
         *last = hash(&key, bytes);
     }
 
-    /// The record that is to be stored at `now`, µs since the start; the board must be at rest.
+    /// The record that must be stored at `now`, µs since the start; the board must be at rest.
     pub fn to_store(&mut self, now: u64) -> Option<Record> {
         let Stored::Key(Record { key, bound }) = self.stored else {
             return None;
@@ -202,12 +204,13 @@ impl Signing {
         })
     }
 
-    /// `record` has been stored.
+    /// Notes that `record` has been stored.
     pub const fn keep(&mut self, record: Record) {
         self.stored = Stored::Key(record);
     }
 
-    /// What was refused, where that is more than was reported, now and then; `now` in µs since the start.
+    /// The refused frames since the start, if more than last reported, at most once each `REPORT`; `now` in µs since
+    /// the start.
     pub fn report(&mut self, now: u64) -> Option<Refused> {
         if self.refused == self.reported || now < self.report_at {
             return None;
@@ -222,7 +225,7 @@ impl Signing {
 struct Signed<'a> {
     name: Name,
     time: u64,
-    /// What is hashed behind the key.
+    /// The bytes that are hashed after the key.
     bytes: &'a [u8],
     hash: &'a [u8; HASH],
 }
@@ -243,7 +246,7 @@ impl<'a> Signed<'a> {
     }
 }
 
-/// The place of `signed`'s sender; `None` where its time is too old at `now`, or there is no place.
+/// The entry of `signed`'s sender; `None` if its time is too old at `now`, or all entries are taken.
 fn sender<'s>(
     senders: &'s mut [Sender; SENDERS],
     signed: &Signed<'_>,
@@ -257,7 +260,7 @@ fn sender<'s>(
     let at = match known {
         Some(at) => at,
         None if signed.time.saturating_add(MINUTE) < now => return None,
-        // What an old one said is too old for a new one as well: nothing is lost with its time.
+        // The times of an expired sender are too old for a new one as well: its entry can be reused.
         None => (senders.iter()).position(|s| s.latest == 0 || s.latest.saturating_add(MINUTE) < now)?,
     };
     let sender = senders.get_mut(at)?;
@@ -272,7 +275,7 @@ fn hash(key: &Key, bytes: &[u8]) -> [u8; HASH] {
     [a, b, c, d, e, f]
 }
 
-/// Compares in a time that does not depend on where they differ.
+/// Compares in constant time.
 fn same(a: &[u8; HASH], b: &[u8; HASH]) -> bool {
     let difference = a.iter().zip(b).fold(0, |all, (a, b)| all | (a ^ b));
     core::hint::black_box(difference) == 0

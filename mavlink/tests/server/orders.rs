@@ -9,7 +9,7 @@ use sophie_control::pilot::bench_orders::{BenchRequest, BenchView, PULSE_MAX_US,
 use sophie_control::pilot::rc::Sticks;
 use sophie_control::pilot::remote::RemoteRequest;
 use sophie_dialect::*;
-use sophie_mavlink::{Answers, Condition, Requests};
+use sophie_mavlink::{Answers, CommanderRequests, Condition};
 
 use crate::station::{Station, frame, frame_from};
 
@@ -71,7 +71,7 @@ impl Craft {
 
     fn run(&mut self, ms: u64) {
         for _ in 0..ms / 20 {
-            let Requests { remote, bench } = {
+            let CommanderRequests { remote, bench } = {
                 let station = &mut self.station;
                 station.server.requests(station.now, &station.vehicle)
             };

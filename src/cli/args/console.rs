@@ -6,9 +6,9 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use clap::{Args, ValueEnum};
-use sophie_console::Failure;
-use sophie_console::port::PortName;
-use sophie_console::session::Session;
+use sophie_board_link::Failure;
+use sophie_board_link::port::PortName;
+use sophie_board_link::session::Session;
 
 use super::values::within;
 use crate::cli::key;

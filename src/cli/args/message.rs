@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
-use sophie_report::terminal::console;
+use sophie_terminal::console;
 
 use crate::cli::refuse;
 

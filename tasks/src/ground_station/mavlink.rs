@@ -22,7 +22,7 @@ use sophie_control::params::Params;
 use sophie_mavlink::inputs::Inputs;
 use sophie_mavlink::wire::frame::LONGEST;
 pub use sophie_mavlink::wire::signing;
-use sophie_mavlink::{Answers, Condition, Order, Requests, Server, Signing, Vehicle};
+use sophie_mavlink::{Answers, CommanderRequests, Condition, Order, Server, Signing, Vehicle};
 use sophie_ports::signing::Stored;
 
 use crate::deadline::{FixedRate, TaskId, Tick};
@@ -363,7 +363,7 @@ async fn renew<const N: usize>(links: &Links, link: &Link<'_, N>, storage: &mut 
 }
 
 /// Sends what the commander is to do.
-fn give(links: &Links, at: Instant, requests: Requests) {
+fn give(links: &Links, at: Instant, requests: CommanderRequests) {
     if let Some(request) = requests.remote {
         links.remote.send(at, request);
     }

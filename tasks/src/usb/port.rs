@@ -6,7 +6,7 @@ use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::pipe::Pipe;
 use embassy_time::{Duration, Instant, with_timeout};
 use heapless::Vec;
-use sophie_mavlink::wire::protocol_detector::{For, Sorter, Speaks};
+use sophie_mavlink::wire::protocol_detector::{Protocol, ProtocolDetector, Route};
 
 use super::PACKET;
 use crate::console::CANCEL;
@@ -35,7 +35,7 @@ pub struct Port {
 }
 
 struct State {
-    sorter: Sorter,
+    detector: ProtocolDetector,
     /// The bus is silent: there is no cable, no host, or it sleeps.
     suspended: bool,
 }
@@ -51,7 +51,7 @@ impl Port {
     pub const fn new() -> Self {
         Self {
             state: Mutex::new(RefCell::new(State {
-                sorter: Sorter::new(),
+                detector: ProtocolDetector::new(),
                 suspended: true,
             })),
             console: Pipe::new(),
@@ -62,15 +62,15 @@ impl Port {
 
     /// The console's end.
     pub const fn console(&self) -> (UsbInput<'_>, UsbOutput<'_>) {
-        self.end(Speaks::Text)
+        self.end(Protocol::Text)
     }
 
     /// MAVLink's end.
     pub const fn mavlink(&self) -> (UsbInput<'_>, UsbOutput<'_>) {
-        self.end(Speaks::Mavlink)
+        self.end(Protocol::Mavlink)
     }
 
-    const fn end(&self, user: Speaks) -> (UsbInput<'_>, UsbOutput<'_>) {
+    const fn end(&self, user: Protocol) -> (UsbInput<'_>, UsbOutput<'_>) {
         (UsbInput { port: self, user }, UsbOutput { port: self, user })
     }
 
@@ -86,7 +86,7 @@ impl Port {
 
     /// Gives the port back to the console and drops what waits for the host.
     pub(super) fn close(&self) {
-        self.with(|state| state.sorter.reset());
+        self.with(|state| state.detector.reset());
         self.drop_output();
         // What was begun there ends; where it is full, something ends it anyway.
         let _ = self.console.try_write(&[CANCEL]);
@@ -114,8 +114,8 @@ impl Port {
         self.mavlink.write_all(&frames).await;
     }
 
-    fn belongs_to(&self, user: Speaks) -> bool {
-        self.with(|state| !state.suspended && state.sorter.speaks() == user)
+    fn belongs_to(&self, user: Protocol) -> bool {
+        self.with(|state| !state.suspended && state.detector.protocol() == user)
             .unwrap_or(false)
     }
 }
@@ -124,25 +124,25 @@ impl State {
     /// Sorts a packet; true where the port is another's now.
     fn sort(&mut self, packet: &[u8], now: u64, text: &mut Sorted, frames: &mut Sorted) -> bool {
         self.suspended = false;
-        let first = self.sorter.speaks();
+        let first = self.detector.protocol();
         // There is room for all.
-        if self.sorter.gives_up(now) {
+        if self.detector.expires(now) {
             let _ = text.push(UNREADABLE);
         }
         for &byte in packet {
-            let before = self.sorter.speaks();
-            let _ = match self.sorter.take(byte, now) {
-                For::Console => text.push(byte),
-                For::Unreadable => text.push(UNREADABLE),
-                For::Return => text.push(b'\r'),
-                For::Mavlink => frames.push(byte),
-                For::Neither => Ok(()),
+            let before = self.detector.protocol();
+            let _ = match self.detector.take(byte, now) {
+                Route::Console => text.push(byte),
+                Route::Unreadable => text.push(UNREADABLE),
+                Route::Reclaim => text.push(b'\r'),
+                Route::Mavlink => frames.push(byte),
+                Route::Neither => Ok(()),
             };
-            if before == Speaks::Text && self.sorter.speaks() == Speaks::Mavlink {
+            if before == Protocol::Text && self.detector.protocol() == Protocol::Mavlink {
                 let _ = text.push(CANCEL);
             }
         }
-        self.sorter.speaks() != first
+        self.detector.protocol() != first
     }
 }
 
@@ -150,14 +150,14 @@ impl State {
 #[derive(Clone, Copy)]
 pub struct UsbInput<'a> {
     port: &'a Port,
-    user: Speaks,
+    user: Protocol,
 }
 
 impl SerialInput for UsbInput<'_> {
     async fn read(&mut self, buffer: &mut [u8]) -> Result<usize, PortError> {
         Ok(match self.user {
-            Speaks::Text => self.port.console.read(buffer).await,
-            Speaks::Mavlink => self.port.mavlink.read(buffer).await,
+            Protocol::Text => self.port.console.read(buffer).await,
+            Protocol::Mavlink => self.port.mavlink.read(buffer).await,
         })
     }
 }
@@ -166,7 +166,7 @@ impl SerialInput for UsbInput<'_> {
 #[derive(Clone, Copy)]
 pub struct UsbOutput<'a> {
     port: &'a Port,
-    user: Speaks,
+    user: Protocol,
 }
 
 impl SerialOutput for UsbOutput<'_> {

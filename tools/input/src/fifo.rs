@@ -1,4 +1,4 @@
-//! Opening what may be a named pipe.
+//! Opening of a file that may be a named pipe.
 
 use std::fs::File;
 use std::io::{self, ErrorKind};
@@ -8,10 +8,10 @@ use std::sync::mpsc;
 use std::thread;
 use std::time::Duration;
 
-/// How long a named pipe may be without a writer: a program that was started at the same time opens it within that.
+/// Longest wait for the writer of a named pipe: a program that was started at the same time opens it within that.
 const WRITER_WAIT: Duration = Duration::from_secs(5);
 
-/// Opens the file at `path`; a named pipe that no program opens for writing is given up after [`WRITER_WAIT`].
+/// Opens the file at `path`. A named pipe without a writer is an error after [`WRITER_WAIT`].
 pub fn open(path: &Path) -> io::Result<File> {
     if !std::fs::metadata(path)?.file_type().is_fifo() {
         return File::open(path);

@@ -1,4 +1,5 @@
-//! Files that a command line names, read up to a bound: a device or pipe without an end costs a message, not the memory.
+//! Files named on a command line, read up to a bound: an endless device or pipe gives a message and does not fill the
+//! memory.
 
 #![deny(
     clippy::unwrap_used,
@@ -17,10 +18,10 @@ mod fifo;
 /// Bytes of a MiB.
 pub const MIB: u64 = 1 << 20;
 
-/// The bytes of the file at `path`, at most `most` of them.
+/// The bytes of the file at `path`, at most `most`.
 ///
 /// # Errors
-/// Why it cannot be read, without its name: the system's reason, a directory, or more than `most` bytes.
+/// The reason, without the file's name: the system's, a directory, or more than `most` bytes.
 pub fn read(path: &Path, most: u64) -> Result<Vec<u8>, String> {
     // Opening a directory succeeds on some systems, and reading it then fails with a number.
     if path.is_dir() {
@@ -40,7 +41,7 @@ pub fn read(path: &Path, most: u64) -> Result<Vec<u8>, String> {
 /// The text of the file at `path`, at most `most` bytes of UTF-8.
 ///
 /// # Errors
-/// As [`read`], or that it is not UTF-8.
+/// As [`read`], or the text is not UTF-8.
 pub fn read_text(path: &Path, most: u64) -> Result<String, String> {
     String::from_utf8(read(path, most)?).map_err(|_| "it is not text in UTF-8".to_owned())
 }
@@ -56,7 +57,7 @@ pub fn open(path: &Path) -> io::Result<File> {
     return File::open(path);
 }
 
-/// A bound as a message has it.
+/// A bound, as text for messages.
 fn size(bytes: u64) -> String {
     if bytes >= MIB {
         format!("{} MiB", bytes / MIB)

@@ -11,7 +11,7 @@ use sophie_ports::sensors::GroundDecoder;
 
 use crate::lines::{Lines, short, time};
 
-/// What the bytes are.
+/// Protocol of the bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Protocol {
     /// A receiver's SBUS or S.BUS2.
@@ -22,25 +22,25 @@ pub enum Protocol {
     Msp,
 }
 
-/// What the decoder made of them.
+/// Result of the decoder.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Decoded {
     /// From the first byte to the last, s.
     pub seconds: f64,
     /// Bytes.
     pub bytes: u64,
-    /// Frames that were found sound.
+    /// Valid frames.
     pub frames: u64,
-    /// How often sticks, or flow and range, were given out.
+    /// Number of outputs: sticks, or flow and range.
     pub published: u64,
-    /// Longest time without that, from the first byte on and to the last one, ms.
+    /// Longest time without an output, from the first to the last byte, ms.
     pub longest_pause_ms: f64,
 }
 
 /// Decodes a capture.
 ///
 /// # Errors
-/// One line: where, which value, and what is allowed.
+/// One line: place, value, allowed values.
 pub fn decode(path: &Path, protocol: Protocol, params: &Params) -> Result<Decoded, String> {
     let mut lines = Lines::open(path)?;
     let mut decoder = Decoder::new(protocol, params);
@@ -88,7 +88,7 @@ fn parse(line: &str) -> Result<(u64, u8), String> {
 /// One of them.
 enum Decoder {
     Rc(Box<rc_decoder::Decoder>),
-    /// The module, and its frames, of which it gives out those that have news.
+    /// The module's decoder, and its count of frames: only frames with news give an output.
     Ground(Box<GroundModule>, msp::Parser, u64),
 }
 
@@ -109,7 +109,7 @@ impl Decoder {
         Self::Rc(Box::new(rc_decoder::Decoder::from_params(&params)))
     }
 
-    /// Takes a byte; true where something was given out.
+    /// Takes a byte; true if it completes an output.
     fn take(&mut self, byte: u8, at: Instant) -> bool {
         match self {
             Self::Rc(decoder) => decoder.take(&[byte], at).is_some(),

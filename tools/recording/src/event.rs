@@ -6,7 +6,7 @@ use sophie_control::navigation::flow_range_sample::{Flow, Range};
 
 use crate::lines::{number, time};
 
-/// Bounds of what is recorded: rad/s, m/s², rad, s, m and N. Wider than any sensor of a vehicle of this size.
+/// Bounds of recorded values: rad/s, m/s², rad, s, m and N. Wider than any sensor of a vehicle of this size.
 const RATE: (f32, f32) = (-100.0, 100.0);
 const FORCE: (f32, f32) = (-1_000.0, 1_000.0);
 const ANGLE: (f32, f32) = (-10.0, 10.0);
@@ -49,7 +49,7 @@ impl Cells<'_> {
         ))
     }
 
-    /// When it was measured, µs: not after `at`, when it came.
+    /// Measurement time, µs: not after `at`, the time of receipt.
     fn measured(&self, name: &'static str, at: u64) -> Result<u64, String> {
         let measured = (self.0)(name).map_or(Ok(at), |text| time(name, text))?;
         if measured > at {
@@ -66,7 +66,7 @@ impl Cells<'_> {
         }))
     }
 
-    /// A flow that came at `at`, µs.
+    /// A flow received at `at`, µs.
     pub fn flow(&self, at: u64) -> Result<Event, String> {
         Ok(Event::Flow(Flow {
             until_us: self.measured("flow_t_us", at)?,
@@ -79,7 +79,7 @@ impl Cells<'_> {
         }))
     }
 
-    /// A range that came at `at`, µs; `nan` is one without anything in reach.
+    /// A range received at `at`, µs; `nan` means no return.
     pub fn range(&self, at: u64) -> Result<Event, String> {
         let text = self.text("range_m")?;
         let nothing = text.eq_ignore_ascii_case("nan");

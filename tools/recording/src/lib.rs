@@ -1,6 +1,6 @@
 //! Recordings of sensors and of bytes, run through this stack's own filter, estimators and decoders.
 //!
-//! Open loop: what was recorded goes in, what the vehicle would have made of it comes out. docs/recording.md has the formats.
+//! Open loop: the recording is the input, the stack's estimates are the output. docs/recording.md has the formats.
 
 pub mod bytes;
 mod event;

@@ -54,7 +54,7 @@ impl Lines {
     /// The next line that is neither empty nor a comment, without blanks around it; `None` at the end.
     ///
     /// # Errors
-    /// One line: where the file cannot be read, and why.
+    /// One line: the place where the file cannot be read, and the reason.
     pub fn next(&mut self) -> Result<Option<&str>, String> {
         while !std::mem::take(&mut self.again) {
             self.line.clear();
@@ -73,7 +73,7 @@ impl Lines {
             }
             let text = std::str::from_utf8(&self.line);
             let text = text.map_err(|_| self.bad("no text, allowed is text or gzipped text"))?;
-            // Borrowed from the field again below: a loop cannot give what it may overwrite.
+            // Borrowed from the field again below: a loop cannot return a line that it may overwrite.
             if !matches!(text.trim().as_bytes().first(), None | Some(b'#')) {
                 break;
             }
@@ -112,7 +112,7 @@ pub fn number(name: &str, text: &str, (least, most): (f32, f32), unit: &str) -> 
     value.ok_or_else(|| format!("{name} '{}', allowed {least} to {most} {unit}", short(text)))
 }
 
-/// What a complaint shows of a value.
+/// A value, cut for a message.
 pub fn short(text: &str) -> String {
     text.chars()
         .take(40)

@@ -1,4 +1,4 @@
-//! Recorded sensors through filter, attitude and position estimate, the very stages that fly, at their own rates.
+//! Recorded sensors through filter, attitude and position estimate: the flown stages at their own rates.
 
 use std::path::Path;
 
@@ -15,9 +15,9 @@ use crate::event::Event;
 use crate::sensors::Sensors;
 use crate::truth::{Errors, Truth};
 
-/// Period of the position estimate, µs: as the task has it.
+/// Period of the position estimate, µs: that of the task.
 const PERIOD: u64 = 5_000;
-/// Intervals of the inertial sensor from which its rate is taken, and the rates that the filter is made for, Hz.
+/// Number of intervals of the inertial sensor that give its rate, and the rates of the filter, Hz.
 const INTERVALS: usize = 1_000;
 const RATES: (f32, f32) = (190.0, 8_500.0);
 /// Most measurements that are kept while that rate is looked for.
@@ -25,59 +25,59 @@ const BEGIN_MAX: usize = 1_000_000;
 /// End of a fault's text for the pilot, which is left out here.
 const LEFT_OUT: &str = ", left out";
 
-/// Which part of a recording counts, and with which parameters.
+/// Range of the recording, and parameters.
 #[derive(Clone, Debug)]
 pub struct Options {
     /// Of the vehicle.
     pub params: Params,
-    /// Flow and range before are dropped, s from the file's first line.
+    /// Earlier flow and range are dropped, s from the file's first line.
     pub from_s: f64,
 }
 
 /// A fault, by its name, and its time, s from the file's first line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Named {
-    /// As the pilot reads it, without what follows from it.
+    /// The pilot's text, without the advice.
     pub name: &'static str,
-    /// From where on it is named.
+    /// Begin.
     pub from_s: f64,
-    /// To where.
+    /// End.
     pub to_s: f64,
 }
 
-/// What came out.
+/// Results of a replay.
 #[derive(Clone, Debug, Default)]
 pub struct Outcome {
     /// From the first line to the last, s.
     pub seconds: f64,
-    /// Samples, flows and ranges that were taken, and the rate of the samples, Hz.
+    /// Accepted samples, flows and ranges, and the rate of the samples, Hz.
     pub counts: [u64; 3],
     /// Of the inertial sensor.
     pub rate_hz: f32,
-    /// When the attitude was calibrated, s; `None` where the vehicle never lay still.
+    /// Time of the attitude's calibration, s; `None` if the vehicle never lay still.
     pub calibrated_s: Option<f64>,
-    /// When there was an estimate first, s.
+    /// Time of the first estimate, s.
     pub estimate_s: Option<f64>,
-    /// Share of the time with one: in the air, where the recording has the rotors' thrust.
+    /// Share of the time with an estimate: of the time in the air, if the recording has the rotors' thrust.
     pub estimate_share: f64,
     /// That time, s.
     pub flown_s: f64,
     /// The last estimate.
     pub last: Option<Estimate>,
-    /// Each fault in the order in which they were named.
+    /// The faults, in the order of their reports.
     pub faults: Vec<Named>,
     /// Silences of the inertial sensor after which the estimate restarts.
     pub gaps: u32,
     /// The longest of them, s.
     pub longest_gap_s: f64,
-    /// Against the truth, where there is one.
+    /// Error against the truth, if the recording has one.
     pub errors: Option<Errors>,
 }
 
 /// Runs a recording.
 ///
 /// # Errors
-/// One line: where, which value, and what is allowed.
+/// One line: place, value, allowed values.
 pub fn replay(path: &Path, options: &Options, truth: Option<Truth>) -> Result<Outcome, String> {
     let mut sensors = Sensors::open(path)?;
     let (begin, rate_hz) = begin(&mut sensors)?;
@@ -124,7 +124,7 @@ fn begin(sensors: &mut Sensors) -> Result<(Vec<(u64, Event)>, f32), String> {
     }
 }
 
-/// The stages and what they have made so far.
+/// The stages and their results so far.
 struct Replay {
     sensing: Sensing,
     sample: ImuSample,
@@ -209,7 +209,7 @@ impl Replay {
         }
     }
 
-    /// A step of the attitude, and of the position where its period is over.
+    /// A step of the attitude, and of the position at the end of its period.
     fn step(&mut self, at: u64, wanted: bool) {
         self.estimator.estimate(&self.sample, &mut self.attitude);
         let seconds = self.since(at) as f64 * 1e-6;

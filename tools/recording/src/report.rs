@@ -1,4 +1,4 @@
-//! What came out, in words and as JSON.
+//! The results in words and as JSON.
 
 use serde_json::{Value, json};
 

@@ -7,7 +7,7 @@ use crate::event::{Cells, Event};
 use crate::lines::{Lines, short, time};
 use crate::table::Head;
 
-/// Columns of an inertial sample, and of what else a table may have.
+/// Columns of an inertial sample, and optional columns.
 const INERTIAL: [&str; 7] = ["t_us", "gx", "gy", "gz", "ax", "ay", "az"];
 const FLOW: [&str; 4] = ["flow_x", "flow_y", "flow_s", "flow_quality"];
 /// Values of a line after its letter, in order.
@@ -26,7 +26,7 @@ pub struct Sensors {
 }
 
 impl Sensors {
-    /// Opens a file and looks at what it is.
+    /// Opens a file and detects its format.
     ///
     /// # Errors
     /// One line about the file.
@@ -57,10 +57,10 @@ impl Sensors {
         })
     }
 
-    /// The next measurement and when it came, µs; `None` at the end.
+    /// The next measurement and its time, µs; `None` at the end.
     ///
     /// # Errors
-    /// One line: where, which value, and what is allowed.
+    /// One line: place, value, allowed values.
     pub fn next(&mut self) -> Result<Option<(u64, Event)>, String> {
         loop {
             if let (Some(event), Some(at)) = (self.waiting.pop_front(), self.last_us) {
@@ -103,7 +103,7 @@ fn letter(line: &str) -> Result<(u64, Vec<Event>), String> {
             return Err(format!("a line of '{}', {what}", short(letter)));
         }
     };
-    // What follows is more than is used here.
+    // Further values are ignored.
     let values: Vec<&str> = cells.take(names.len()).collect();
     let cell = |name: &'static str| {
         let at = names.iter().position(|known| *known == name)?;
@@ -120,7 +120,7 @@ fn letter(line: &str) -> Result<(u64, Vec<Event>), String> {
     Ok((at, vec![event?]))
 }
 
-/// A line of a table: what it has of each sensor.
+/// A line of a table: its values for each sensor.
 fn row(head: &Head, line: &str) -> Result<(u64, Vec<Event>), String> {
     let values = head.cells(line)?;
     let cell = |name: &'static str| head.cell(&values, name);
@@ -136,7 +136,7 @@ fn row(head: &Head, line: &str) -> Result<(u64, Vec<Event>), String> {
     if cell("range_m").is_some() {
         events.push(cells.range(at)?);
     }
-    // Last: by then what came with it is there.
+    // The inertial sample goes last, after the other values of its line.
     if cell("gx").is_some() {
         events.push(cells.inertial()?);
     }

@@ -9,7 +9,7 @@ const COLUMNS_MAX: usize = 200;
 pub struct Head(Vec<String>);
 
 impl Head {
-    /// Of the first line.
+    /// The head of a first line.
     ///
     /// # Errors
     /// One line: too many columns, or one twice.
@@ -28,15 +28,15 @@ impl Head {
         Ok(Self(names))
     }
 
-    /// There is a column of this name.
+    /// True if there is a column of this name.
     pub fn has(&self, name: &str) -> bool {
         self.0.iter().any(|known| known == name)
     }
 
-    /// Complains where some of `wanted` are missing.
+    /// Requires the columns `wanted`.
     ///
     /// # Errors
-    /// One line with the first that is.
+    /// One line with the first missing one.
     pub fn require(&self, wanted: &[&str]) -> Result<(), String> {
         let missing = wanted.iter().find(|name| !self.has(name));
         missing.map_or(Ok(()), |name| {
@@ -47,7 +47,7 @@ impl Head {
         })
     }
 
-    /// The cell under `name` of a line of cells; `None` where it is empty or missing.
+    /// The cell under `name` of a line of cells; `None` if it is empty or missing.
     pub fn cell<'a>(&self, cells: &[&'a str], name: &str) -> Option<&'a str> {
         let at = self.0.iter().position(|known| known == name)?;
         cells.get(at).copied().filter(|cell| !cell.is_empty())
@@ -56,7 +56,7 @@ impl Head {
     /// The cells of `line`.
     ///
     /// # Errors
-    /// One line where it has another number of cells than the head.
+    /// One line, if it has another number of cells than the head.
     pub fn cells<'a>(&self, line: &'a str) -> Result<Vec<&'a str>, String> {
         let cells: Vec<&str> = line.split(',').map(str::trim).collect();
         if cells.len() == self.0.len() {

@@ -1,4 +1,4 @@
-//! What motion capture saw: a table of places, velocities and attitudes, and how far an estimate is off it.
+//! Truth by motion capture: a table of places, velocities and attitudes, and an estimate's error against it.
 
 use std::path::Path;
 
@@ -18,12 +18,12 @@ const ATTITUDE: [&str; 3] = ["roll_deg", "pitch_deg", "yaw_deg"];
 const FAR: (f32, f32) = (-10_000.0, 10_000.0);
 const FAST: (f32, f32) = (-100.0, 100.0);
 const TURNED: (f32, f32) = (-720.0, 720.0);
-/// Longest time between two rows that is filled, µs.
+/// Longest interpolated gap between two rows, µs.
 const GAP: u64 = 100_000;
 /// Most rows: five hours at 200 Hz.
 const ROWS_MAX: usize = 4_000_000;
 
-/// At one time; what the file does not have is `None`.
+/// The truth at one time; `None` for a value that the file lacks.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Row {
     at_us: u64,
@@ -45,7 +45,7 @@ impl Truth {
     /// Reads a file.
     ///
     /// # Errors
-    /// One line: where, which value, and what is allowed.
+    /// One line: place, value, allowed values.
     pub fn read(path: &Path) -> Result<Self, String> {
         let mut lines = Lines::open(path)?;
         let head = head(&mut lines)?;
@@ -69,7 +69,7 @@ impl Truth {
                 let cell = |name: &'static str| head.cell(&cells, name).unwrap_or_default();
                 let vector =
                     |any: bool, names: [&'static str; 3], range, unit| -> Result<Option<Vec3>, String> {
-                        // A row may lack what its camera has not seen.
+                        // A row may lack values: the camera sees the vehicle only in part of its volume.
                         if !any || names.iter().all(|name| cell(name).is_empty()) {
                             return Ok(None);
                         }
@@ -99,7 +99,8 @@ impl Truth {
         Ok(Self { rows, next: 0 })
     }
 
-    /// At `at_us` µs, never earlier than asked for before; nothing before its first row, after its last and in its gaps.
+    /// The truth at `at_us`, µs, which never decreases from call to call; `None` before the first row, after the last
+    /// and in gaps.
     pub fn at(&mut self, at_us: u64) -> Row {
         while self.rows.get(self.next + 1).is_some_and(|row| row.at_us <= at_us) {
             self.next += 1;
@@ -151,13 +152,14 @@ impl Spread {
     }
 }
 
-/// How far estimate and attitude were off.
+/// Errors of estimate and attitude.
 ///
-/// The estimate's axes are its own: they are laid onto the truth's where each estimate begins, by heading and place. Roll and
-/// pitch are off by a constant that is the set-up's (sensor against markers), which is taken out and shown.
+/// The estimate has its own axes: they are aligned with the truth's where each estimate begins, by heading and place.
+/// The constant difference of roll and pitch belongs to the set-up (sensor against markers); it is subtracted and
+/// reported.
 #[derive(Clone, Debug, Default)]
 pub struct Errors {
-    /// Turn from the estimate's axes to the truth's, rad, and its origin there, m; `None` while there is no estimate.
+    /// Turn from the estimate's axes to the truth's, rad, and its origin there, m; `None` before the first estimate.
     laid: Option<(f32, Vec3)>,
     velocity: Spread,
     height: Spread,
@@ -167,7 +169,7 @@ pub struct Errors {
 }
 
 impl Errors {
-    /// Compares an attitude, and the estimate that there is.
+    /// Compares an attitude, and an estimate if there is one.
     pub fn take(&mut self, truth: &Row, q: Option<Quat>, estimate: Option<&Estimate>) {
         let Some(q) = q else {
             return;
@@ -217,7 +219,7 @@ impl Errors {
         self.place_end
     }
 
-    /// Roll and pitch, degrees RMS, and the constants that are taken out of them, degrees.
+    /// Roll and pitch, degrees RMS, and the subtracted constants, degrees.
     pub fn attitude(&self) -> Option<([f64; 2], [f64; 2])> {
         let both = [self.roll, self.pitch];
         let [roll, pitch] = both.map(|s| s.rms_about_mean().map(f64::to_degrees));

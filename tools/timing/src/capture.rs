@@ -21,7 +21,7 @@ pub struct Capture {
     pub trace: Trace,
     /// Starts of the board whose greeting the log has.
     pub greetings: usize,
-    /// What to know of the file, though nothing of it is lost; a line each.
+    /// Remarks on the file, though no part of it is lost; a line each.
     pub notes: Vec<String>,
     /// Unreadable and remaining parts, in a sentence.
     pub incomplete: Option<String>,
@@ -40,7 +40,7 @@ impl Capture {
     /// Reads a file; `elf` is its image, needed only for raw logs.
     ///
     /// # Errors
-    /// One line: what is wrong with the files and what is required.
+    /// One line: the defect of the file, and the required format.
     pub fn read(path: &Path, elf: Option<&Path>) -> Result<Self, String> {
         let messages = source::read(path, elf)?;
         let mut capture = Self::default();

@@ -19,16 +19,16 @@ const NOISE_MAX: f64 = 0.01;
 pub struct Messages {
     /// Each with its prefix.
     pub lines: Vec<String>,
-    /// What was unreadable, in a sentence.
+    /// The unreadable part, in a sentence.
     pub broken: Option<String>,
-    /// How the text is encoded, where that is unusual.
+    /// The text's encoding, if it is unusual.
     pub encoding: Option<&'static str>,
 }
 
 /// Reads `capture`; `elf` is its image, needed only for raw logs.
 ///
 /// # Errors
-/// One line: what is wrong with either file and what is required.
+/// One line: the defect of a file, and the required format.
 pub fn read(capture: &Path, elf: Option<&Path>) -> Result<Messages, String> {
     let bytes = load(capture, LOG_MAX)?;
     let image = elf.map(|elf| load(elf, IMAGE_MAX)).transpose()?;

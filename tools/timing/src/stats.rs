@@ -12,7 +12,7 @@ impl Sorted {
         Self(times)
     }
 
-    /// How many.
+    /// Count.
     #[must_use]
     pub fn count(&self) -> usize {
         self.0.len()

@@ -10,16 +10,16 @@ use crate::live::Garbled;
 /// Address bits in an event.
 const ADDRESS: u32 = 0x000F_FFFC;
 
-/// What happened.
+/// Kind of event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A task was woken.
     Ready,
     /// A task is polled.
     Begin,
-    /// It has been.
+    /// The poll has ended.
     End,
-    /// Nothing left to poll.
+    /// The executor is idle.
     Idle,
 }
 
@@ -28,7 +28,7 @@ pub enum Kind {
 pub struct Event {
     /// Time, µs since start.
     pub at: u64,
-    /// What happened.
+    /// Kind of event.
     pub kind: Kind,
     /// Target: lower bits of an address.
     pub address: u32,
@@ -41,9 +41,9 @@ pub struct Event {
 pub struct Name {
     /// Lower bits of its address.
     pub address: u32,
-    /// Where it runs.
+    /// Its executor.
     pub level: Level,
-    /// What it is called.
+    /// Its name.
     pub name: String,
 }
 
@@ -67,7 +67,7 @@ pub struct Trace {
     pub(crate) origin: u64,
 }
 
-/// True where a count that only grows, and wraps, has gone from `before` back to `now`: the board has started again.
+/// True if a count that only grows, and wraps, has gone from `before` back to `now`: the board has restarted.
 fn went_back(before: u32, now: u32) -> bool {
     now.wrapping_sub(before) > u32::MAX / 2
 }

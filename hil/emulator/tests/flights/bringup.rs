@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-use sophie_console::bringup::{self, STEPS};
-use sophie_console::port::PortName;
-use sophie_console::session::Session;
+use sophie_board_link::port::PortName;
+use sophie_board_link::session::Session;
+use sophie_bringup::STEPS;
 use sophie_control::params::MotorMap;
 use sophie_emulator::bench_operator::BenchOperator;
 use sophie_emulator::closed_loop::Setup;
@@ -53,7 +53,7 @@ struct Walked {
     stood: Stood,
     log: String,
     builder: Builder,
-    all_passed: Result<bool, sophie_console::Failure>,
+    all_passed: Result<bool, sophie_board_link::Failure>,
 }
 
 /// A new H743 on the table, and `builder` at its console.
@@ -67,7 +67,7 @@ fn walk(folder: &Folder, builder: impl FnOnce(BenchOperator) -> Builder) -> Walk
     let walker = std::thread::spawn(move || {
         let port: PortName = format!("tcp:127.0.0.1:{port}").parse().unwrap();
         let all_passed = Session::open(&port, None, PATIENCE, Arc::default())
-            .and_then(|mut session| bringup::run(&mut session, &mut builder, &protocol, &[]));
+            .and_then(|mut session| sophie_bringup::run(&mut session, &mut builder, &protocol, &[]));
         (builder, all_passed)
     });
     let firmware = Firmware::read(image(), board_kind::find("matek-h743").unwrap()).unwrap();

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
-use sophie_console::bringup::{Reply, User};
+use sophie_bringup::{Reply, User};
 use sophie_control::calibration::Face;
 use sophie_control::params::Params;
 use sophie_control::pilot::rc::{ArmChoice, StickMode, Sticks};

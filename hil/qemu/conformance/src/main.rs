@@ -9,6 +9,8 @@
 
 #[cfg(target_os = "none")]
 mod core_under_test;
+#[cfg(target_os = "none")]
+mod kept_message;
 mod laws;
 #[cfg(target_os = "none")]
 mod machine;

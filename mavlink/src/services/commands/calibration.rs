@@ -1,6 +1,6 @@
-//! Calibration by command, by the console's laws ([`sophie_control::calibration`]), with texts that say what to do.
+//! Calibration by command, with the console's laws ([`sophie_control::calibration`]) and texts that guide the user.
 //!
-//! What is found is put as a parameter that was set: stored a second later, in force after a restart.
+//! A result is set as a parameter: stored a second later, in force after a restart.
 
 use sophie_control::calibration::{
     self, AccelFit, BIAS, Face, SCALES, Samples, Unfit, rest_rate, six_faces, thousandths,
@@ -20,40 +20,40 @@ const REST: u64 = 2_500_000;
 /// Time to turn the vehicle to the next side, µs.
 const PATIENCE: u64 = 60_000_000;
 
-/// What is calibrated.
+/// The sensor under calibration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum What {
+enum Kind {
     Gyro,
     Level,
     SixSides,
 }
 
-/// A calibration under way.
+/// A running calibration.
 #[derive(Clone, Debug)]
 pub struct Calibration {
-    what: What,
-    /// Of this rest.
+    kind: Kind,
+    /// Samples of the present rest.
     samples: Samples,
-    /// When it began, µs.
+    /// Start of the present rest, µs.
     rest: u64,
-    /// When this side was asked for, µs.
+    /// Time of the request for the present side, µs.
     asked: u64,
-    /// Means of the sides so far.
+    /// Means of the finished sides, m/s².
     means: heapless::Vec<Vec3, 6>,
 }
 
-/// What a rest has come to.
-enum Found {
-    /// The same side again, or the next.
+/// Result of a rest.
+enum RestResult {
+    /// Another rest, on the same side or the next.
     More,
-    /// The end.
+    /// The gyro is at rest: the calibration ends.
     Gyro,
-    /// Bias, and scale where it was asked for.
+    /// Bias, and scale after six sides.
     Accel(Vec3, Option<Vec3>),
 }
 
 impl Services {
-    /// Begins a calibration, or ends the one under way; `None` where it is acknowledged later.
+    /// Begins a calibration or cancels the running one; `None` if the acknowledgement comes later.
     pub(super) fn calibrate(
         &mut self,
         command: &Command,
@@ -61,16 +61,16 @@ impl Services {
         now: u64,
         vehicle: &Vehicle,
     ) -> Option<MavResult> {
-        let what = match command.params.map(or_zero).map(whole) {
+        let kind = match command.params.map(or_zero).map(whole) {
             [Some(0), Some(0), Some(0), Some(0), Some(0), Some(0), Some(0)] => {
                 if self.calibration.take().is_some() {
                     self.settle(MavResult::MAV_RESULT_CANCELLED);
                 }
                 return Some(MavResult::MAV_RESULT_ACCEPTED);
             }
-            [Some(1), Some(0), Some(0), Some(0), Some(0), Some(0), Some(0)] => What::Gyro,
-            [Some(0), Some(0), Some(0), Some(0), Some(1), Some(0), Some(0)] => What::SixSides,
-            [Some(0), Some(0), Some(0), Some(0), Some(2 | 4), Some(0), Some(0)] => What::Level,
+            [Some(1), Some(0), Some(0), Some(0), Some(0), Some(0), Some(0)] => Kind::Gyro,
+            [Some(0), Some(0), Some(0), Some(0), Some(1), Some(0), Some(0)] => Kind::SixSides,
+            [Some(0), Some(0), Some(0), Some(0), Some(2 | 4), Some(0), Some(0)] => Kind::Level,
             _ => return Some(self.unsupported("others calibrate at the console")),
         };
         if !vehicle.at_rest() {
@@ -80,17 +80,17 @@ impl Services {
             return answer;
         }
         self.calibration = Some(Calibration {
-            what,
+            kind,
             samples: Samples::default(),
             rest: now,
             asked: now,
             means: heapless::Vec::new(),
         });
         self.progress(0);
-        let text = match what {
-            What::Gyro => "leave the vehicle at rest",
-            What::Level => "put the vehicle on a level table",
-            What::SixSides => Face::Belly.text(),
+        let text = match kind {
+            Kind::Gyro => "leave the vehicle at rest",
+            Kind::Level => "put the vehicle on a level table",
+            Kind::SixSides => Face::Belly.text(),
         };
         self.guide(text);
         None
@@ -103,7 +103,7 @@ impl Services {
         );
     }
 
-    /// One step of the calibration under way, at each run.
+    /// One step of the running calibration.
     pub(crate) fn continue_calibration(&mut self, now: u64, vehicle: &Vehicle) {
         let Some(calibration) = &mut self.calibration else {
             return;
@@ -115,7 +115,7 @@ impl Services {
         }
         match calibration.step(now, vehicle) {
             None => (),
-            Some(Ok(Found::More)) => {
+            Some(Ok(RestResult::More)) => {
                 let done = calibration.means.len();
                 if let (Some(side), true) = (Face::ALL.get(done), calibration.asked == now) {
                     self.progress((done * 100 / Face::ALL.len()) as u8);
@@ -124,7 +124,7 @@ impl Services {
             }
             Some(Ok(found)) => {
                 self.calibration = None;
-                if let Found::Accel(bias, scale) = found {
+                if let RestResult::Accel(bias, scale) = found {
                     self.put(BIAS, bias, now);
                     if let Some(scale) = scale {
                         self.put(SCALES, scale, now);
@@ -158,12 +158,12 @@ impl Services {
 }
 
 impl Calibration {
-    /// Takes a sample; what the rest has come to where it has ended.
-    fn step(&mut self, now: u64, vehicle: &Vehicle) -> Option<Result<Found, Unfit>> {
+    /// Takes a sample; at the end of a rest returns its result.
+    fn step(&mut self, now: u64, vehicle: &Vehicle) -> Option<Result<RestResult, Unfit>> {
         if let Some(attitude) = vehicle.attitude {
-            self.samples.add(match self.what {
-                What::Gyro => attitude.rate + attitude.gyro_bias,
-                What::Level | What::SixSides => attitude.accel,
+            self.samples.add(match self.kind {
+                Kind::Gyro => attitude.rate + attitude.gyro_bias,
+                Kind::Level | Kind::SixSides => attitude.accel,
             });
         }
         if now.saturating_sub(self.rest) < REST {
@@ -171,17 +171,17 @@ impl Calibration {
         }
         self.rest = now;
         let samples = core::mem::take(&mut self.samples);
-        Some(match self.what {
-            What::Gyro => rest_rate(&samples).map(|_| Found::Gyro),
-            What::Level => {
-                calibration::level(&samples, &vehicle.accel_fit).map(|bias| Found::Accel(bias, None))
+        Some(match self.kind {
+            Kind::Gyro => rest_rate(&samples).map(|_| RestResult::Gyro),
+            Kind::Level => {
+                calibration::level(&samples, &vehicle.accel_fit).map(|bias| RestResult::Accel(bias, None))
             }
-            What::SixSides => self.take_side(&samples, now, &vehicle.accel_fit),
+            Kind::SixSides => self.take_side(&samples, now, &vehicle.accel_fit),
         })
     }
 
-    /// A side that does not lie still as it was asked for is waited for.
-    fn take_side(&mut self, samples: &Samples, now: u64, fit: &AccelFit) -> Result<Found, Unfit> {
+    /// Takes a side that lies still in the requested position; waits for it up to `PATIENCE`.
+    fn take_side(&mut self, samples: &Samples, now: u64, fit: &AccelFit) -> Result<RestResult, Unfit> {
         let side = Face::ALL.get(self.means.len()).copied().unwrap_or(Face::Left);
         match calibration::face(samples, side) {
             Ok(mean) => {
@@ -192,8 +192,8 @@ impl Calibration {
             Err(_) => (),
         }
         match <&[Vec3; 6]>::try_from(self.means.as_slice()) {
-            Ok(means) => six_faces(means, fit).map(|found| Found::Accel(found.bias, Some(found.scale))),
-            Err(_) => Ok(Found::More),
+            Ok(means) => six_faces(means, fit).map(|found| RestResult::Accel(found.bias, Some(found.scale))),
+            Err(_) => Ok(RestResult::More),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Messages that are asked for once, and how often the others come.
+//! Requests for single messages, and the periods of streams.
 
 use mavlink_core::MessageData;
 use sophie_control::mode::Mode;
@@ -9,7 +9,7 @@ use crate::services::answer::Answer;
 use crate::services::streams::{PERIOD_MIN_US, STREAMS};
 use sophie_dialect::*;
 
-/// Longest interval, µs, 35 minutes: what MESSAGE_INTERVAL can say.
+/// Longest interval, µs, 35 minutes: the range of MESSAGE_INTERVAL.
 const PERIOD_MAX_US: u32 = i32::MAX as u32;
 const NO_NUMBER: &str = "no message has that number";
 
@@ -24,7 +24,7 @@ impl Services {
         let period = match whole(interval) {
             Some(0) => stream.period_ms * 1000,
             Some(period) if (PERIOD_MIN_US..=PERIOD_MAX_US).contains(&period) => period,
-            // -1: no longer. A heartbeat is what the others know the vehicle by.
+            // -1 turns a stream off, except heartbeats, by which others know the vehicle.
             None if whole(-interval) == Some(1) && id != HEARTBEAT_DATA::ID => 0,
             _ => return self.deny("an interval is 20 ms to 35 min, 0 or -1"),
         };
@@ -47,7 +47,7 @@ impl Services {
         Answer::Interval { id, interval_us }.into()
     }
 
-    /// A message that is asked for once; `index` says which of several.
+    /// Answers the request for one message; `index` selects one of several.
     pub(super) fn once(&mut self, id: f32, index: f32) -> Reply {
         let Some(id) = whole(id) else {
             return self.deny(NO_NUMBER).into();

@@ -1,15 +1,15 @@
-//! The commands that are obeyed, and when, as docs/mavlink.md lists them.
+//! The supported commands and their conditions, as docs/mavlink.md lists them.
 
 use sophie_dialect::MavCmd;
 
-/// When a command is obeyed.
+/// Condition of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum When {
     /// In every state.
     Always,
     /// At rest: DISARMED and CALIBRATING.
     AtRest,
-    /// Where the commander agrees.
+    /// If the commander agrees, under these conditions.
     Commander(&'static str),
 }
 
@@ -18,9 +18,9 @@ pub enum When {
 pub struct Obeyed {
     /// The command.
     pub command: MavCmd,
-    /// Its parameters, and what they do.
+    /// Its parameters and their effect.
     pub form: &'static str,
-    /// When.
+    /// Its condition.
     pub when: When,
 }
 
@@ -28,7 +28,7 @@ const fn obeyed(command: MavCmd, form: &'static str, when: When) -> Obeyed {
     Obeyed { command, form, when }
 }
 
-/// Every command that is obeyed. The image has none of these words.
+/// Every supported command. These texts are not in the image.
 pub const OBEYED: [Obeyed; 14] = [
     obeyed(
         MavCmd::MAV_CMD_REQUEST_MESSAGE,

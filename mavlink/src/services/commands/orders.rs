@@ -1,4 +1,4 @@
-//! Orders to the commander: arming, gripper, and what is tried on the bench. Each is acknowledged when it has answered.
+//! Orders to the commander: arming, gripper and bench tests. Each is acknowledged when the commander has answered.
 
 use sophie_control::pilot::bench_orders::{
     BenchOrder, BenchRefusal, BenchRequest, BenchState, PLACE_TIME, Place, SPIN_TIME, Spin,
@@ -11,19 +11,19 @@ use crate::vehicle::Vehicle;
 use crate::wire::requests::{Command, Peer};
 use sophie_dialect::*;
 
-/// Time that the commander has to answer, µs: fifty of its periods.
+/// Longest time to the commander's answer, µs: fifty of its periods.
 const COMMANDER: u64 = 500_000;
 /// The standard's number for disarming in flight.
 const FORCED: u32 = 21_196;
 /// Number of the first tendon servo among the outputs, as in SERVO_OUTPUT_RAW.
 const FIRST_SERVO: u32 = 5;
 
-/// What is to be sent to the commander now, and again until it is taken back.
+/// The requests to the commander. Each is sent at every run until it is answered or withdrawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Requests {
+pub struct CommanderRequests {
     /// Arming and gripper.
     pub remote: Option<RemoteRequest>,
-    /// The bench.
+    /// Bench tests.
     pub bench: Option<BenchRequest>,
 }
 
@@ -35,17 +35,17 @@ struct Pending {
     since: u64,
 }
 
-/// What is tried on the bench.
+/// A bench test.
 #[derive(Clone, Copy, Debug)]
 struct Trial {
-    /// Its number is 0 until it is sent.
+    /// The number is 0 before it is sent.
     request: BenchRequest,
-    /// When it is to end, µs.
+    /// Its end, µs.
     until: u64,
 }
 
 impl Trial {
-    /// From `now`, µs, for `seconds` at most.
+    /// A test that begins at `now`, µs, and lasts `seconds` at most.
     fn new(order: BenchOrder, now: u64, seconds: f32) -> Self {
         Self {
             request: BenchRequest { number: 0, order },
@@ -58,10 +58,10 @@ impl Trial {
 #[derive(Debug)]
 pub struct Orders {
     pending: Option<Pending>,
-    /// Its number is 0 until it is sent.
+    /// The number is 0 before it is sent.
     remote: Option<RemoteRequest>,
     trial: Option<Trial>,
-    /// Number of the newest order of the bench that was given here.
+    /// Number of this line's newest bench order.
     own: u32,
 }
 
@@ -77,7 +77,7 @@ impl Orders {
 }
 
 impl Services {
-    /// Gives the order that `command` asks for; `None` where it is acknowledged later.
+    /// Gives the order that `command` asks for; `None` if the acknowledgement comes later.
     pub(super) fn order_by(&mut self, command: &Command, from: Peer, now: u64) -> Option<MavResult> {
         let number = u32::from(command.number);
         if number == MavCmd::MAV_CMD_COMPONENT_ARM_DISARM as u32 {
@@ -138,7 +138,7 @@ impl Services {
         } else {
             BenchOrder::End
         };
-        // 0, or not given: as long as it may be.
+        // 0, or not given, means the longest time.
         let shorter = seconds > 0.0 && seconds < SPIN_TIME;
         let seconds = if shorter { seconds } else { SPIN_TIME };
         self.try_on_bench(command, from, now, Trial::new(order, now, seconds))
@@ -163,7 +163,7 @@ impl Services {
 
     fn give(&mut self, command: &Command, from: Peer, now: u64, order: RemoteOrder) -> Option<MavResult> {
         if order == RemoteOrder::Kill {
-            // It waits for no other.
+            // A kill does not wait for another command.
             self.settle(MavResult::MAV_RESULT_TEMPORARILY_REJECTED);
             self.calibration = None;
         }
@@ -180,10 +180,10 @@ impl Services {
         })
     }
 
-    /// The answer to `command` comes later.
+    /// Notes that `command` is acknowledged later.
     ///
     /// # Errors
-    /// What it is answered with at once: nothing where it is the one that waits, sent again.
+    /// The acknowledgement to send now; `None` if `command` is a repetition of the one that waits.
     pub(super) fn begin(&mut self, command: u16, to: Peer, since: u64) -> Result<(), Option<MavResult>> {
         match self.orders.pending {
             Some(p) if p.command == command && p.to == to => Err(None),
@@ -195,14 +195,14 @@ impl Services {
         }
     }
 
-    /// Acknowledges the command that waits.
+    /// Acknowledges the waiting command.
     pub(super) fn settle(&mut self, result: MavResult) {
         if let Some(Pending { command, to, .. }) = self.orders.pending.take() {
             self.acknowledge(command, to, result, 0);
         }
     }
 
-    /// Says how far the command that waits has come, %.
+    /// Reports the progress of the waiting command, %.
     pub(super) fn progress(&mut self, percent: u8) {
         if let Some(Pending { command, to, .. }) = self.orders.pending {
             self.acknowledge(command, to, MavResult::MAV_RESULT_IN_PROGRESS, percent);
@@ -218,9 +218,9 @@ impl Services {
         (self.orders.pending).is_some_and(|p| now.saturating_sub(p.since) > COMMANDER)
     }
 
-    /// What is to be sent to the commander at `now`, µs since the start, given what it has answered.
-    pub fn requests(&mut self, now: u64, vehicle: &Vehicle) -> Requests {
-        Requests {
+    /// The requests to the commander at `now`, µs since the start, given its answers in `vehicle`.
+    pub fn requests(&mut self, now: u64, vehicle: &Vehicle) -> CommanderRequests {
+        CommanderRequests {
             remote: self.remote(now, vehicle),
             bench: self.bench(now, vehicle),
         }

@@ -1,11 +1,11 @@
-//! Restarting, and storing the parameters.
+//! Restart of the board, and storing of the parameters.
 
 use super::whole;
 use crate::services::Services;
 use crate::vehicle::Vehicle;
 use sophie_dialect::*;
 
-/// Time from the answer to a restart, µs: for the answer to get out.
+/// Delay of a restart, µs: the acknowledgement is sent first.
 const LAST_WORDS: u64 = 300_000;
 
 impl Services {

@@ -106,13 +106,16 @@ fn a_file_is_opened_by_its_path_and_read_to_its_end() {
     assert_eq!(found, LONG);
     assert_eq!(
         refusal(read(op::READ_FILE, 1, 1000, 239)),
-        Refusal::EndOfFile as u8
+        ErrorCode::EndOfFile as u8
     );
     assert_eq!(
         refusal(read(op::READ_FILE, 1, u32::MAX, 239)),
-        Refusal::EndOfFile as u8
+        ErrorCode::EndOfFile as u8
     );
-    assert_eq!(refusal(read(op::READ_FILE, 2, 0, 239)), Refusal::EndOfFile as u8);
+    assert_eq!(
+        refusal(read(op::READ_FILE, 2, 0, 239)),
+        ErrorCode::EndOfFile as u8
+    );
 }
 
 #[test]
@@ -132,7 +135,7 @@ fn a_burst_has_the_whole_rest_and_says_where_it_ends() {
     assert_eq!(found, LONG[300..]);
     assert_eq!(
         refusal(read(op::BURST_READ_FILE, 1, 1000, 100)),
-        Refusal::EndOfFile as u8
+        ErrorCode::EndOfFile as u8
     );
 }
 
@@ -243,11 +246,11 @@ fn the_directory_is_listed_from_any_entry_on() {
     assert_eq!(rest, b"Fempty\t0\0");
     assert_eq!(
         refusal(request(op::LIST_DIRECTORY, 0, 3, b"/")),
-        Refusal::EndOfFile as u8
+        ErrorCode::EndOfFile as u8
     );
     assert_eq!(
         refusal(request(op::LIST_DIRECTORY, 0, 0, b"/fs")),
-        Refusal::FileNotFound as u8
+        ErrorCode::FileNotFound as u8
     );
 }
 
@@ -256,21 +259,21 @@ fn what_would_change_a_file_is_refused_and_the_rest_by_the_protocols_own_numbers
     for op in op::CREATE_FILE..=op::RENAME {
         assert_eq!(
             refusal(request(op, 0, 0, b"a.json")),
-            Refusal::FileProtected as u8
+            ErrorCode::FileProtected as u8
         );
     }
-    assert_eq!(refusal(request(16, 0, 0, &[])), Refusal::UnknownCommand as u8);
+    assert_eq!(refusal(request(16, 0, 0, &[])), ErrorCode::UnknownCommand as u8);
     assert_eq!(
         refusal(request(op::OPEN_FILE_RO, 0, 0, b"none")),
-        Refusal::FileNotFound as u8
+        ErrorCode::FileNotFound as u8
     );
     assert_eq!(
         refusal(read(op::OPEN_FILE_RO, 0, 0, 240)),
-        Refusal::InvalidDataSize as u8
+        ErrorCode::InvalidDataSize as u8
     );
     assert_eq!(
         refusal(read(op::READ_FILE, 3, 0, 10)),
-        Refusal::InvalidSession as u8
+        ErrorCode::InvalidSession as u8
     );
 }
 

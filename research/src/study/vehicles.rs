@@ -1,0 +1,96 @@
+//! How many of a varied family of vehicles accomplish the mission, and whether the design check knows which.
+//!
+//! Infill, stiffness, pipe, motors, pilot, battery and gusts differ from one to the next, and so do mass, inertia and torque
+//! ratio, which the flight stack's parameters follow; of the arms' own gains and offsets it knows nothing.
+
+pub mod report;
+mod sampling;
+
+use sophie_sim::check::Check;
+use sophie_sim::parallel;
+use sophie_sim::record::{Outcome, Silent};
+
+pub use self::sampling::{SampledVehicle, sample};
+
+/// A vehicle, what the design check says of it, and how it flew.
+#[derive(Clone, Debug)]
+pub struct Flown {
+    /// The vehicle.
+    pub drawn: SampledVehicle,
+    /// Rows of the check that it fails, each with value and limit; none: it can fly.
+    pub check: Vec<String>,
+    /// Of its flight.
+    pub outcome: Outcome,
+}
+
+impl Flown {
+    /// Whether the check lets it pass.
+    #[must_use]
+    pub fn passes(&self) -> bool {
+        self.check.is_empty()
+    }
+
+    /// What ended the flight, without its numbers; none where the mission was accomplished.
+    #[must_use]
+    pub fn cause(&self) -> Option<String> {
+        (!self.outcome.accomplished).then(|| cause(&self.outcome.reason))
+    }
+}
+
+/// Checks and flies `count` vehicles with the seeds `seed`, `seed` + 1, …
+///
+/// # Errors
+/// One line: a vehicle that does not make a valid scenario.
+pub fn fly(count: u64, seed: u64, spread: f64) -> Result<Vec<Flown>, String> {
+    let drawn = (0..count)
+        .map(|i| sample(seed.saturating_add(i), spread))
+        .collect::<Result<Vec<_>, _>>()?;
+    Ok(parallel::each(&drawn, |drawn| Flown {
+        drawn: drawn.clone(),
+        check: Check::of(&drawn.scenario)
+            .failing()
+            .map(|row| row.shortfall())
+            .collect(),
+        outcome: sophie_sim::flight::fly(&drawn.scenario, &mut Silent).outcome,
+    }))
+}
+
+/// The first clause of a reason without its numbers, so that equal failures have equal words.
+fn cause(reason: &str) -> String {
+    let clause = reason.split([';', ',']).next().unwrap_or(reason);
+    let clause = clause.split(" (at ").next().unwrap_or(clause);
+    let parts: Vec<&str> = clause.splitn(3, ": ").take(2).collect();
+    let clause = parts.join(": ");
+    let mut words = Vec::new();
+    for word in clause.split_whitespace() {
+        let number = word.starts_with(|c: char| c.is_ascii_digit() || c == '+' || c == '-');
+        words.push(if number { "…" } else { word });
+    }
+    words.join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::cause;
+
+    #[test]
+    fn equal_failures_have_equal_causes() {
+        for (reason, wanted) in [
+            (
+                "pressure on arm 2 reached 1507 N/m2, allowed 1500 (at 71.2 s)",
+                "pressure on arm … reached … N/m2",
+            ),
+            (
+                "fly-to-pipe: not done after 60 s: 0.21 m off; check: grip",
+                "fly-to-pipe: not done after … s",
+            ),
+            ("perch: no proven grip", "perch: no proven grip"),
+            (
+                "rolled to +17.1 and -20.0 deg, wanted 25",
+                "rolled to … and … deg",
+            ),
+        ] {
+            assert_eq!(cause(reason), wanted);
+        }
+    }
+}

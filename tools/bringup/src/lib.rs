@@ -1,0 +1,414 @@
+//! The guided bring-up. Each step asks the builder for an action, types the console's own commands, judges the answer,
+//! and is written into the [`protocol`] before the next one begins.
+//!
+//! A step that measures also stores: it has passed when the board has restarted with its values in force. However a run
+//! ends, the finished steps are kept and not repeated.
+
+mod air;
+mod calibrate;
+mod checks;
+mod date;
+mod live;
+pub mod protocol;
+mod walk;
+
+use std::path::Path;
+
+use sophie_control::params::ServoMarks;
+
+use self::protocol::{Entry, Protocol, Result as Ended};
+pub use self::walk::{Reply, User};
+use self::walk::{Stop, Verdict, Walk};
+use sophie_board_link::Failure;
+use sophie_board_link::parameters;
+use sophie_board_link::session::Session;
+
+/// One step.
+pub struct Step {
+    /// Its name in the protocol and behind `--again`.
+    pub id: &'static str,
+    /// Its title.
+    pub title: &'static str,
+    /// The builder's action.
+    hands: &'static str,
+    /// Number of the arm, sensor or servo, for a step of one.
+    number: usize,
+    run: fn(&mut Walk<'_>, &Step) -> Judged,
+}
+
+type Judged = Result<Verdict, Stop>;
+
+/// A step of one arm, sensor or servo.
+const fn numbered(
+    id: &'static str,
+    title: &'static str,
+    hands: &'static str,
+    number: usize,
+    run: fn(&mut Walk<'_>, &Step) -> Judged,
+) -> Step {
+    Step {
+        id,
+        title,
+        hands,
+        number,
+        run,
+    }
+}
+
+/// A step of the whole vehicle.
+const fn step(
+    id: &'static str,
+    title: &'static str,
+    hands: &'static str,
+    run: fn(&mut Walk<'_>, &Step) -> Judged,
+) -> Step {
+    numbered(id, title, hands, 0, run)
+}
+
+const ARM: &str =
+    "Body level and still. First the arm straight, by a ruler along it, then its tip bent up and held.";
+const FSR: &str = "Nothing on the sensor first, then a known weight on its pad, all of it.";
+const SERVO: &str = "Tendons off, servos on their own battery, hands away: it goes to its middle at once. Find the reel's release mark, then its full mark.";
+
+/// All steps, in their order.
+pub const STEPS: [Step; 28] = [
+    step(
+        "chip",
+        "Chip and image",
+        "Power by USB or a bench supply; hands off. A brown-out level that is missing is set, once for each chip.",
+        checks::chip,
+    ),
+    step(
+        "setup",
+        "Motor controllers, receiver, battery",
+        "Say what is on the vehicle; its makers' papers have the numbers.",
+        checks::setup,
+    ),
+    step(
+        "selftest",
+        "Self-test of what is wired",
+        "Vehicle at rest, arms open. Receiver and flight battery may still be missing.",
+        checks::selftest,
+    ),
+    step(
+        "live-air",
+        "Barometer, live",
+        "Vehicle at rest, out of wind. Then it is lifted by 1 m, and put down again.",
+        air::air,
+    ),
+    step(
+        "live-imu",
+        "Inertial sensor, live",
+        "Roll the vehicle to both sides and pitch it up and down: roll and pitch must follow.",
+        live::imu,
+    ),
+    step(
+        "live-arms",
+        "Arm sensors, live",
+        "Bend each arm's tip up and let go: its tilt must follow.",
+        live::arms,
+    ),
+    step(
+        "live-grip",
+        "Pressure sensors, live",
+        "Press each pad with a thumb: its pressure must follow.",
+        live::grip,
+    ),
+    step(
+        "mounting",
+        "Mounting of the inertial sensor",
+        "Level, then nose down, then right side down, each to within 30 degrees.",
+        calibrate::mounting,
+    ),
+    step(
+        "gyro",
+        "Gyro at rest",
+        "Leave the vehicle at rest.",
+        calibrate::gyro,
+    ),
+    step(
+        "level",
+        "Accelerometer",
+        "The finished vehicle on a level table; or six sides by hand, which needs no table and checks the scale.",
+        calibrate::level,
+    ),
+    numbered("arm-1", "Sensor of arm 1, front-left", ARM, 1, calibrate::arm),
+    numbered("arm-2", "Sensor of arm 2, rear-left", ARM, 2, calibrate::arm),
+    numbered("arm-3", "Sensor of arm 3, front-right", ARM, 3, calibrate::arm),
+    numbered("arm-4", "Sensor of arm 4, rear-right", ARM, 4, calibrate::arm),
+    numbered("fsr-1", "Pressure sensor 1, front-left", FSR, 1, calibrate::fsr),
+    numbered("fsr-2", "Pressure sensor 2, rear-left", FSR, 2, calibrate::fsr),
+    numbered("fsr-3", "Pressure sensor 3, front-right", FSR, 3, calibrate::fsr),
+    numbered("fsr-4", "Pressure sensor 4, rear-right", FSR, 4, calibrate::fsr),
+    numbered("servo-1", "Servo 1, front-left", SERVO, 1, calibrate::servo),
+    numbered("servo-2", "Servo 2, rear-left", SERVO, 2, calibrate::servo),
+    numbered("servo-3", "Servo 3, front-right", SERVO, 3, calibrate::servo),
+    numbered("servo-4", "Servo 4, rear-right", SERVO, 4, calibrate::servo),
+    step(
+        "flow",
+        "Flow and range module",
+        "Turned by hand over a floor with a pattern, 0.5 m and 1.5 m high; where its lens is, a ruler shows \
+         (flow_x, flow_y, flow_z); a vehicle without one has nothing to do.",
+        calibrate::flow,
+    ),
+    step(
+        "battery",
+        "Battery voltage",
+        "Propellers off. Connect the flight battery; a multimeter at its plug.",
+        calibrate::battery,
+    ),
+    step(
+        "esc",
+        "Motor controllers",
+        "Propellers off, flight battery connected. Each motor turns for 2 s.",
+        calibrate::esc,
+    ),
+    step(
+        "rotors",
+        "Which rotor is which",
+        "Propellers off, flight battery connected. Each output turns for 2 s: say which rotor, and which way.",
+        calibrate::rotors,
+    ),
+    step(
+        "radio",
+        "Radio: sticks, switches, loss",
+        "Propellers off. Transmitter on, every switch off, throttle low.",
+        live::radio,
+    ),
+    step(
+        "final",
+        "Everything once more",
+        "Vehicle at rest, arms open, transmitter on, arm switch off, throttle low, flight battery connected.",
+        checks::everything,
+    ),
+];
+
+/// The parameter that each servo's step adds its digit to.
+const MARKS: &str = "servo_marks";
+
+/// The last step, which checks the results of the others.
+const LAST: &str = "final";
+
+/// Walks through the steps that have not passed, and those of `again`; true when all have passed.
+///
+/// # Errors
+/// One line: a file that cannot be written or belongs to another board, an unknown step, or a lost line.
+pub fn run(
+    session: &mut Session,
+    user: &mut dyn User,
+    protocol: &Path,
+    again: &[String],
+) -> Result<bool, Failure> {
+    for id in again {
+        if STEPS.iter().all(|step| step.id != id) {
+            let allowed: Vec<&str> = STEPS.iter().map(|step| step.id).collect();
+            return Err(Failure::Input(format!(
+                "--again {id}: allowed {}",
+                allowed.join(", ")
+            )));
+        }
+    }
+    let mut protocol = Protocol::open(protocol)?;
+    let board = checks::identity(session)?;
+    user.say(&format!("{}, chip {}", board.firmware, board.chip));
+    user.say(&board.build);
+    if let Some(other) = protocol.identify(board)? {
+        user.say(&other);
+    }
+    reopen(session, user, &mut protocol)?;
+    again.iter().for_each(|id| protocol.drop_entry(id));
+    // Written before the first step: a run needs a writable file.
+    protocol.write()?;
+    user.say(&format!(
+        "Protocol {}: {}",
+        protocol.path().display(),
+        protocol.state()
+    ));
+    if !protocol.open_steps().is_empty() {
+        user.say("Propellers off, flight battery disconnected, until a step asks for it.");
+    }
+    let done = steps(&mut Walk::new(session, user), &mut protocol);
+    user.say("");
+    match done {
+        Ok(()) => user.say(&protocol.state()),
+        Err(Stop::Skip | Stop::Quit | Stop::Failed(Failure::Stopped(_))) => {
+            leave(session, user)?;
+            user.say(&format!("Stopped. {}", protocol.state()));
+        }
+        Err(Stop::Failed(failure)) => return Err(failure),
+    }
+    user.say(&format!("Protocol: {}", protocol.path().display()));
+    Ok(protocol.open_steps().is_empty())
+}
+
+/// Leaves the board with no command running, and names the parameters that it has not stored.
+fn leave(session: &mut Session, user: &mut dyn User) -> Result<(), Failure> {
+    session.calm()?;
+    for line in parameters::unsaved(session)? {
+        user.say(&format!(
+            "Not saved at the board, and lost with its next restart: {line}"
+        ));
+    }
+    Ok(())
+}
+
+/// Reopens the steps whose values the board no longer has.
+fn reopen(session: &mut Session, user: &mut dyn User, protocol: &mut Protocol) -> Result<(), Failure> {
+    if STEPS.iter().all(|step| protocol.entry(step.id).is_none()) {
+        return Ok(());
+    }
+    let rows = parameters::listed(session)?;
+    for (index, step) in STEPS.iter().enumerate() {
+        if let Some(lost) = lost(index, protocol, &rows) {
+            user.say(&format!("{} is to be done again: {lost}", step.id));
+            protocol.drop_entry(step.id);
+        }
+    }
+    Ok(())
+}
+
+/// The first parameter that the step at `index` has stored and whose value on the board differs. The last step that
+/// stored a parameter is responsible for its value.
+fn lost(index: usize, protocol: &Protocol, rows: &[parameters::Listed]) -> Option<String> {
+    let (step, later) = STEPS.get(index..)?.split_first()?;
+    let stored = |step: &Step| {
+        let entry = protocol.entry(step.id)?;
+        (entry.result == Ended::Passed).then_some(&entry.parameters)
+    };
+    stored(step)?.iter().find_map(|(name, value)| {
+        let now = &rows.iter().find(|listed| listed.name == *name)?.value;
+        let has = if name == MARKS {
+            marked(step, now)
+        } else {
+            let answers = |later| stored(later).is_some_and(|all| all.contains_key(name));
+            now.parse() == Ok(*value) || later.iter().any(answers)
+        };
+        (!has).then(|| format!("{name} is {now} at the board, was {value}"))
+    })
+}
+
+/// The marks `now` have the digit of the step's servo: each step adds its own to one parameter.
+fn marked(step: &Step, now: &str) -> bool {
+    let Some((servo, now)) = step.number.checked_sub(1).zip(now.parse::<f32>().ok()) else {
+        return false;
+    };
+    ServoMarks::ALL
+        .iter()
+        .any(|marks| marks.number() == now && marks.has(servo))
+}
+
+fn steps(walk: &mut Walk<'_>, protocol: &mut Protocol) -> Result<(), Stop> {
+    let mut redone = false;
+    for (index, step) in STEPS.iter().enumerate() {
+        if protocol.passed(step.id) && !(redone && step.id == LAST) {
+            continue;
+        }
+        redone = true;
+        walk.say("");
+        walk.say(&format!(
+            "[{}/{}] {} ({})",
+            index + 1,
+            STEPS.len(),
+            step.title,
+            step.id
+        ));
+        walk.say(&format!("  {}", step.hands));
+        while !one(walk, protocol, step)? {}
+    }
+    Ok(())
+}
+
+/// One attempt at a step, written into the protocol; false if the builder wants to repeat it.
+fn one(walk: &mut Walk<'_>, protocol: &mut Protocol, step: &Step) -> Result<bool, Stop> {
+    let begun = walk.ask("Enter begins, s skips, q stops:");
+    let judged = begun.and_then(|_| (step.run)(walk, step));
+    let (ended, verdict) = match judged {
+        Ok(verdict) if verdict.passed => (Ended::Passed, verdict),
+        Ok(verdict) => (Ended::Failed, verdict),
+        Err(Stop::Skip) => (Ended::Skipped, Verdict::default()),
+        Err(stop) => return Err(stop),
+    };
+    for line in verdict.figures.iter().filter(|_| !verdict.shown) {
+        walk.say(&format!("    {line}"));
+    }
+    walk.say(match ended {
+        Ended::Passed => "  passed",
+        Ended::Failed => "  FAILED",
+        Ended::Skipped => "  skipped",
+    });
+    protocol.put(Entry {
+        id: step.id.to_owned(),
+        title: step.title.to_owned(),
+        result: ended,
+        at: date::now(),
+        figures: verdict.figures,
+        parameters: verdict.parameters,
+        build: protocol.build().to_owned(),
+    })?;
+    if ended != Ended::Failed {
+        return Ok(true);
+    }
+    match walk.ask("Enter tries it again, s leaves it failed, q stops:") {
+        Ok(_) => Ok(false),
+        Err(Stop::Skip) => Ok(true),
+        Err(stop) => Err(stop),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Passed steps with what they stored.
+    fn done(steps: &[(&str, &str, f64)]) -> Protocol {
+        let folder = std::env::temp_dir().join(format!("sophie-lost-{}", std::process::id()));
+        // Nothing is there, and nothing is written.
+        let mut protocol = Protocol::open(&folder.join("none.toml")).unwrap();
+        for (id, name, value) in steps {
+            protocol.note(Entry {
+                id: (*id).to_owned(),
+                title: String::new(),
+                result: Ended::Passed,
+                at: String::new(),
+                figures: Vec::new(),
+                build: String::new(),
+                parameters: [((*name).to_owned(), *value)].into(),
+            });
+        }
+        protocol
+    }
+
+    /// The steps to be done again where the board has `name` at `now`.
+    fn again(protocol: &Protocol, name: &str, now: &str) -> Vec<&'static str> {
+        let rows = [parameters::Listed {
+            name: name.to_owned(),
+            value: now.to_owned(),
+            allowed: String::new(),
+            changed: true,
+        }];
+        let open = (0..STEPS.len()).filter(|index| lost(*index, protocol, &rows).is_some());
+        open.map(|index| STEPS[index].id).collect()
+    }
+
+    #[test]
+    fn a_parameter_of_several_steps_is_missed_by_the_one_that_answers_for_it() {
+        let servos = done(&[
+            ("servo-1", MARKS, 13.0),
+            ("servo-2", MARKS, 123.0),
+            ("servo-3", MARKS, 3.0),
+        ]);
+        for (now, steps) in [
+            ("123", &[] as &[&str]),
+            ("1234", &[]),
+            ("13", &["servo-2"]),
+            ("0", &["servo-1", "servo-2", "servo-3"]),
+        ] {
+            assert_eq!(again(&servos, MARKS, now), steps, "{now}");
+        }
+        let idle = "motor_pulse_idle";
+        let pulses = done(&[("setup", idle, 1150.0), ("esc", idle, 1085.0)]);
+        assert!(again(&pulses, idle, "1085").is_empty());
+        assert_eq!(again(&pulses, idle, "1150"), ["esc"]);
+        assert_eq!(again(&done(&[("setup", idle, 1150.0)]), idle, "1085"), ["setup"]);
+    }
+}

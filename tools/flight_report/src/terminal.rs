@@ -1,0 +1,77 @@
+//! Terminal output of commands that fly, and their files.
+
+pub mod check;
+pub mod live;
+pub mod result;
+
+use sophie_sim::record::FlightRecord;
+use sophie_terminal::console::{self, Console};
+use sophie_terminal::output::OutDir;
+
+use crate::summary::Summary;
+use crate::{log, page};
+
+/// The files of a report.
+pub const FILES: [&str; 3] = ["report.html", "flight.mcap", "summary.json"];
+
+/// A value of the command beside the flight's record: a further file, and a field of the same name in the printed JSON.
+pub struct Attachment {
+    /// Name of the file without its ending, and of the field.
+    pub name: &'static str,
+    /// Its content.
+    pub value: serde_json::Value,
+    /// Lines for the terminal.
+    pub lines: Vec<String>,
+}
+
+/// Writes the report of `record` into `out` and shows it; `json` prints the summary on stdout.
+///
+/// # Errors
+/// One line: the file that cannot be written, and the reason.
+pub fn finish(
+    record: &FlightRecord,
+    attachment: Option<&Attachment>,
+    out: &OutDir,
+    console: &Console,
+    json: bool,
+) -> Result<(), String> {
+    let summary = Summary::of(record).to_json();
+    let mut files: Vec<(String, Vec<u8>)> = FILES
+        .map(str::to_owned)
+        .into_iter()
+        .zip([
+            page::html(record).into_bytes(),
+            log::mcap(record)?,
+            summary.clone().into_bytes(),
+        ])
+        .collect();
+    if let Some(attachment) = attachment {
+        let text = serde_json::to_string_pretty(&attachment.value).unwrap_or_default() + "\n";
+        files.push((format!("{}.json", attachment.name), text.into_bytes()));
+    }
+    let written = out.write(&files)?;
+    for line in result::tables(record) {
+        console.say(&line);
+    }
+    console.say("");
+    for line in attachment.iter().flat_map(|b| &b.lines) {
+        console.say(line);
+    }
+    console.say(&result::verdict(console, record));
+    console.say(&format!("written: {}", written.join("  ")));
+    if json {
+        console::print(&printed(summary, attachment))?;
+    }
+    console.end()
+}
+
+/// The JSON on stdout: the summary, and the additional value in a field of its own.
+fn printed(summary: String, attachment: Option<&Attachment>) -> String {
+    let Some(attachment) = attachment else {
+        return summary.trim_end().to_owned();
+    };
+    let mut all: serde_json::Map<String, serde_json::Value> =
+        serde_json::from_str(&summary).unwrap_or_default();
+    all.insert(attachment.name.to_owned(), attachment.value.clone());
+    serde_json::to_string_pretty(&all).unwrap_or_default()
+}

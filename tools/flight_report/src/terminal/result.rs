@@ -1,0 +1,103 @@
+//! Output before and after a flight.
+
+use sophie_sim::record::FlightRecord;
+use sophie_sim::scenario::{Scenario, keys};
+use sophie_terminal::console::Console;
+
+use sophie_charts::units::{deg, kgcm};
+use sophie_terminal::table::{Align, Table};
+
+/// One line on the flight to come.
+pub fn intro(scenario: &Scenario) -> String {
+    format!(
+        "{}: configuration {}, infill {} %, K {}, {} mixer, arms {}, seed {}",
+        scenario.name,
+        keys::configuration_word(scenario.vehicle.configuration),
+        scenario.vehicle.infill,
+        scenario.vehicle.gain_k,
+        keys::mixer_word(scenario.mixer),
+        keys::arms_word(scenario.arms),
+        scenario.seed
+    )
+}
+
+/// The phase table and the grip table.
+pub fn tables(record: &FlightRecord) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    lines.extend(phases(record).lines());
+    if !record.grip.is_empty() {
+        lines.push(String::new());
+        lines.extend(grip(record).lines());
+    }
+    lines
+}
+
+fn phases(record: &FlightRecord) -> Table {
+    use Align::{Left, Right};
+    let mut table = Table::new(&[
+        ("step", Left),
+        ("duration s", Right),
+        ("attitude error deg", Right),
+        ("worst α deg", Right),
+        ("saturated %", Right),
+        ("battery V", Right),
+        ("overruns", Right),
+        ("status", Left),
+    ]);
+    for p in &record.phases {
+        table.row([
+            p.name.clone(),
+            format!("{:.1}", p.end - p.start),
+            format!("{:.1}", deg(p.worst_attitude_error)),
+            format!("{:+.1}", deg(p.worst_tilt)),
+            format!("{:.1}", 100.0 * p.saturation),
+            format!("{:.2}", p.battery_voltage),
+            p.overruns.to_string(),
+            if p.done {
+                "done".to_owned()
+            } else {
+                "not done".to_owned()
+            },
+        ]);
+    }
+    table
+}
+
+fn grip(record: &FlightRecord) -> Table {
+    use Align::{Left, Right};
+    let mut table = Table::new(&[
+        ("grip", Left),
+        ("pressure N/m²", Right),
+        ("true N/m²", Right),
+        ("force kgcm", Right),
+        ("closure s", Right),
+    ]);
+    for g in &record.grip {
+        table.row([
+            format!("arm {}", g.arm),
+            format!("{:.0}", g.pressure),
+            format!("{:.0}", g.pressure_true),
+            format!("{:.2}", kgcm(g.torque)),
+            format!("{:.2}", g.closure),
+        ]);
+    }
+    table
+}
+
+/// Result of the flight in one line.
+pub fn verdict(console: &Console, record: &FlightRecord) -> String {
+    let word = if record.outcome.accomplished {
+        "accomplished"
+    } else {
+        "NOT accomplished"
+    };
+    let speed = record.sim_seconds / record.wall_seconds.max(1e-6);
+    let decimals = if speed < 10.0 { 2 } else { 0 };
+    format!(
+        "{}: {:.1} s flown in {:.2} s ({speed:.decimals$} times real time), {} overruns",
+        console.paint(word, record.outcome.accomplished),
+        record.sim_seconds,
+        record.wall_seconds,
+        record.overruns
+    )
+}
