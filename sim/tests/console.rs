@@ -18,7 +18,7 @@ use sophie_tasks::ports::{AnalogFrame, Loaded, Look, PortError, SerialOutput, St
 use sophie_tasks::stack_use::StackUse;
 use sophie_tasks::{analog, clamp, commander, console, estimator, imu, parameters, servos};
 
-/// A terminal at 115,200 baud, or one that takes nothing.
+/// A terminal at 115,200 baud, or one that accepts no bytes.
 #[derive(Clone, Default)]
 struct Screen {
     text: Rc<RefCell<String>>,
@@ -63,7 +63,7 @@ fn looks(level: u8) -> [Look; 2] {
     ]
 }
 
-/// A chip at brown-out `level`, which its start-up looked at.
+/// A chip at brown-out `level`, with its start-up checks.
 fn chip_at(level: u8) -> FakeChip {
     let chip = FakeChip {
         looks: looks(level).into(),
