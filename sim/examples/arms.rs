@@ -1,5 +1,5 @@
-//! What a tendon does to a bending arm: free and on a pipe, over infill and lever; modes; and the example bench data of
-//! docs/paper.md (`cargo run --release -p sophie-sim --example arms [-- bench]`).
+//! Effect of the tendon on a bending arm, free and on a pipe, over infill and lever; bending modes; and the example
+//! bench data of docs/paper.md (`cargo run --release -p sophie-sim --example arms [-- bench]`).
 
 #![allow(clippy::print_stdout, reason = "the table is what it is for")]
 
@@ -10,7 +10,7 @@ use sophie_sim::plant::hinged::link::ArmSpec;
 
 /// Grip pressure, Pa.
 const GRIP: f64 = 950.0;
-/// Of the reel, m, and kgcm per N·m.
+/// Radius of the reel, m, and kgcm per N·m.
 const REEL: f64 = 0.015;
 const KGCM: f64 = 10.197;
 /// Time to rest under a new force, s.

@@ -1,5 +1,5 @@
-//! Margins (docs/lab/2026-11-23-allocation.md): of the roll loop on the pipe, and of yaw at equal margins: disk margins of each allocation over the yaw gain and over arms that are not what
-//! the stack takes them for, and how tightly each holds its heading at the gain that its worst arms allow
+//! Stability margins (docs/results.md): the roll loop on the pipe; and for each allocation the yaw loop over its gain
+//! and over arms that differ from the stack's model, with the heading error at the gain that the worst arms allow
 //! (`cargo run --release -p sophie-sim --example margins`).
 
 #![allow(clippy::print_stdout, reason = "the table is what it is for")]
@@ -17,7 +17,7 @@ use sophie_sim::scenario::Scenario;
 use sophie_sim::streams::Streams;
 use sophie_sim::test_stands::flight_level::{Rig, level, vehicle};
 
-/// Arms tried, beside those that are as the stack takes them.
+/// Number of mismatched arms tried, besides the matched ones.
 const ARMS: u64 = 40;
 /// Largest errors: of the arms' softness, share, of their tilt, degrees, and of K, share.
 const SOFTNESS: f64 = 0.20;
@@ -29,11 +29,11 @@ const GAINS: [f32; 10] = [0.4, 0.61, 1.0, 1.5, 2.0, 3.0, 4.5, 6.0, 8.0, 10.0];
 const EQUAL: f64 = 0.5;
 const YAW: usize = 2;
 
-/// Arms `draw` of `nominal`; 0: as the stack takes them.
-fn drawn(nominal: &Scenario, draw: u64) -> Scenario {
+/// Sample number `sample` of mismatched arms of `nominal`; 0: matched arms.
+fn mismatched(nominal: &Scenario, sample: u64) -> Scenario {
     let mut s = nominal.clone();
-    if draw > 0 {
-        let streams = Streams::new(draw);
+    if sample > 0 {
+        let streams = Streams::new(sample);
         let within = |name: String, most: f64| streams.within(&name, -most, most);
         for arm in 0..4 {
             s.vehicle.arm_gain[arm] = 1.0 + within(format!("arm gain {arm}"), SOFTNESS);
@@ -52,7 +52,7 @@ fn with_gain(params: &Params, gain: f32) -> Params {
     }
 }
 
-/// Of the arms as taken, and the least of all drawn.
+/// Margin of the matched arms, and the least of all samples.
 struct Row {
     nominal: Margins,
     worst: f64,
@@ -72,7 +72,8 @@ fn rows(nominal: &Scenario, responses: &[Response]) -> Vec<Row> {
         .collect()
 }
 
-/// Heading's RMS in the gusts of the mixers' table, degrees, and the swing of rotor 1, N; none: lost.
+/// RMS heading error in the gusts of the mixers' table, degrees, and the swing of rotor 1, N; `None` for a lost
+/// vehicle.
 fn hover(s: &Scenario, gain: f32) -> Option<(f64, f64)> {
     let mut s = s.clone();
     s.world.gust_force = 0.35;
@@ -82,9 +83,11 @@ fn hover(s: &Scenario, gain: f32) -> Option<(f64, f64)> {
     (e.worst_yaw <= 60.0).then_some((e.rms_yaw, e.swing))
 }
 
-fn compare(configuration: Configuration, gain_k: f64, mixer: Variant, draws: &[u64]) {
+fn compare(configuration: Configuration, gain_k: f64, mixer: Variant, samples: &[u64]) {
     let nominal = vehicle(configuration, gain_k, 6.9, mixer);
-    let responses = parallel::each(draws, |draw| Hovering::of(&drawn(&nominal, *draw)).response(YAW));
+    let responses = parallel::each(samples, |sample| {
+        Hovering::of(&mismatched(&nominal, *sample)).response(YAW)
+    });
     let rows = rows(&nominal, &responses);
     for (gain, row) in GAINS.iter().zip(&rows) {
         println!(
@@ -102,8 +105,8 @@ fn compare(configuration: Configuration, gain_k: f64, mixer: Variant, draws: &[u
         println!("{configuration:?} K {gain_k} {mixer:?}: no gain has {EQUAL} with its worst arms");
         return;
     };
-    let mut flown: Vec<_> = parallel::each(&draws[..draws.len().min(13)], |draw| {
-        hover(&drawn(&nominal, *draw), *gain)
+    let mut flown: Vec<_> = parallel::each(&samples[..samples.len().min(13)], |sample| {
+        hover(&mismatched(&nominal, *sample), *gain)
     });
     let matched = flown.remove(0);
     let lost = flown.iter().filter(|f| f.is_none()).count();
@@ -140,8 +143,8 @@ fn springy() {
     println!();
 }
 
-/// The roll loop's margins while the vehicle comes to rest on a pipe, and how fast a slide grows.
-fn resting(draws: &[u64]) {
+/// Margins of the roll loop while the vehicle comes to rest on a pipe, and the growth rate of a slide.
+fn resting(samples: &[u64]) {
     println!("| where | weight on the rotors | gain, phase, disk | worst arms: gain, disk |");
     println!("|---|---|---|---|");
     let nominal = Scenario::default_mission();
@@ -152,8 +155,8 @@ fn resting(draws: &[u64]) {
     ];
     for (place, shares) in places {
         for &share in shares {
-            let all = parallel::each(draws, |draw| {
-                resting_margins(&drawn(&nominal, *draw), place, share)
+            let all = parallel::each(samples, |sample| {
+                resting_margins(&mismatched(&nominal, *sample), place, share)
             });
             let least = |of: fn(&Margins) -> f64| all.iter().map(of).fold(f64::INFINITY, f64::min);
             println!(
@@ -177,8 +180,8 @@ fn resting(draws: &[u64]) {
 }
 
 fn main() {
-    let draws: Vec<u64> = (0..=ARMS).collect();
-    resting(&draws);
+    let samples: Vec<u64> = (0..=ARMS).collect();
+    resting(&samples);
     springy();
     println!(
         "| configuration | K | mixer | yaw gain 1/s | gain margin | phase margin | disk margin | worst arms | crossover Hz | least there, Hz |"
@@ -186,7 +189,7 @@ fn main() {
     println!("|---|---|---|---|---|---|---|---|---|---|");
     for (configuration, gain_k) in [(B, 7.75), (B, 1.0), (A, 1.0)] {
         for mixer in [Flexible, Rigid] {
-            compare(configuration, gain_k, mixer, &draws);
+            compare(configuration, gain_k, mixer, &samples);
         }
     }
 }

@@ -73,7 +73,7 @@ struct Bench {
     thrust_error: f64,
     /// External moment on the tilt, N·m.
     push: f64,
-    /// True, at the sensor, Pa.
+    /// True pressure at the sensor, Pa.
     pressure: f64,
     tilt_alive: bool,
     analog_alive: bool,

@@ -26,7 +26,7 @@ use sophie_tasks::perching::{analog, clamp, servos};
 use sophie_tasks::pilot::commander;
 use sophie_tasks::storage::parameters;
 
-/// A terminal at 115,200 baud, or one that takes nothing.
+/// A terminal at 115,200 baud, or one that accepts no bytes.
 #[derive(Clone, Default)]
 struct Screen {
     text: Rc<RefCell<String>>,
@@ -71,7 +71,7 @@ fn looks(level: u8) -> [Look; 2] {
     ]
 }
 
-/// A chip at brown-out `level`, which its start-up looked at.
+/// A chip at brown-out `level`, with its start-up checks.
 fn chip_at(level: u8) -> FakeChip {
     let chip = FakeChip {
         looks: looks(level).into(),

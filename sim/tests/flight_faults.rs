@@ -106,7 +106,7 @@ fn a_hung_port_of_any_watched_task_leaves_the_watchdog_unfed() {
         let mut v = Vehicle::flying();
         hang(&v);
         v.run(200);
-        // The window in which it hung may have had enough runs.
+        // The window of the hang may contain enough runs.
         v.run(1000);
         assert_eq!(v.fed_over(1000), 0, "{name}");
     }

@@ -197,7 +197,7 @@ fn four_sound_arms_close_hold_and_let_go() {
     assert_eq!((b.forces(), b.servos.now()), ([0.0; 4], [RELEASE_US; 4]));
 }
 
-/// Default, mirrored, trimmed, short of travel, slow.
+/// Servos: default, mirrored, trimmed, short of travel, slow.
 fn mixed_servos() -> Params {
     Params {
         servo_release_2: 2450.0,

@@ -309,7 +309,7 @@ fn a_broken_part_does_not_end_the_flight() {
     }
 }
 
-/// Nothing else says how long the rotors can carry the vehicle.
+/// Only the battery voltage shows how long the rotors can carry the vehicle.
 #[test]
 fn a_converter_that_falls_silent_in_flight_lands_the_vehicle_with_its_rotors_turning() {
     let mut v = Vehicle::flying();

@@ -1,4 +1,4 @@
-//! An inertial sensor that sits and reads otherwise than its board's file has it: calibrated, then flown.
+//! An inertial sensor with another mounting and scale than its board's file states: calibrated, then flown.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -56,7 +56,7 @@ fn store(flash: &Memory) -> ParamStore<Memory> {
     ParamStore::new(flash.clone(), flash.range())
 }
 
-/// The parameters that a start finds.
+/// Parameters that a start loads.
 fn stored(flash: &Memory) -> Params {
     let time = VirtualTime::new();
     let found = Rc::new(RefCell::new(None));
@@ -67,7 +67,7 @@ fn stored(flash: &Memory) -> Params {
 }
 
 /// A builder with the vehicle in hand and a terminal.
-struct Hands {
+struct Builder {
     time: VirtualTime,
     ms: u64,
     part: FakeImu,
@@ -75,7 +75,7 @@ struct Hands {
     screen: Screen,
 }
 
-impl Hands {
+impl Builder {
     /// The vehicle with `flash`, started.
     fn with(flash: &Memory) -> Self {
         let time = VirtualTime::new();
@@ -146,13 +146,13 @@ fn hover(params: Params) -> Errors {
 #[test]
 fn a_sensor_built_in_wrong_is_calibrated_at_the_console_and_then_hovers() {
     let flash = Memory::blank(2);
-    let said = Hands::with(&flash).calibrates("mounting", &[Face::Belly, Face::Nose, Face::Right]);
+    let said = Builder::with(&flash).calibrates("mounting", &[Face::Belly, Face::Nose, Face::Right]);
     let turned = "imu_mounting 0 forward_down -> 8 right_down, in force after save";
     assert!(said.contains(turned), "{said}");
-    // After the restart: what the mounting is now, and the sides are the vehicle's.
-    let said = Hands::with(&flash).calibrates("accel", &Face::ALL);
+    // After the restart the mounting is the stored one, and the sides are the vehicle's.
+    let said = Builder::with(&flash).calibrates("accel", &Face::ALL);
     assert!(said.contains("scale 1.030 0.970 1.030"), "{said}");
-    let again = Hands::with(&flash).calibrates("mounting", &[Face::Belly, Face::Nose, Face::Right]);
+    let again = Builder::with(&flash).calibrates("mounting", &[Face::Belly, Face::Nose, Face::Right]);
     assert!(again.contains("mounted as the firmware has it"), "{again}");
 
     let found = stored(&flash);

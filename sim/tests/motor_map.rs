@@ -1,4 +1,4 @@
-//! Motors wired in another order than the rotors: flown by the map that says so, and without it.
+//! Motors wired in another order than the rotors, flown with the matching map and without it.
 
 use sophie_control::allocation::wrench::Configuration;
 use sophie_control::params::{MotorMap, Params};

@@ -1,4 +1,4 @@
-//! Motor controllers on pulses, by the ends that the parameters have and by those that they have in truth.
+//! Motor controllers on pulses whose true ends equal, or differ from, those of the parameters.
 
 use sophie_control::params::{MotorProtocol, Params};
 use sophie_sim::flight::fly;
@@ -13,7 +13,7 @@ const DJI: EscSpec = EscSpec {
     pulse_max: 1920.0,
 };
 
-/// Samples in which a rotor reaches what is asked, 0.5 s: ten time constants.
+/// Samples in which a rotor reaches its command, 0.5 s: ten time constants.
 const SETTLED: usize = 50;
 
 /// Up by two metres, and down.
@@ -76,7 +76,7 @@ fn no_rotor_stands_still_between_arming_and_disarming_by_the_controllers_own_end
         assert!(record.outcome.accomplished, "{:?}", record.outcome);
         assert!(least(record) > 0.1, "{} N", least(record));
     }
-    // The slope is that of the ends: what hovers is what is asked.
+    // The slope follows from the ends, so the hover thrust equals the command.
     let [usual, dji] = [given(&usual), given(&dji)];
     assert!((dji / usual - 1.0).abs() < 0.01, "{dji} {usual}");
 }

@@ -76,7 +76,7 @@ fn frames_split_anywhere_are_understood_and_stamped_when_they_are_whole() {
 
 #[test]
 fn a_flipped_bit_anywhere_is_never_obeyed() {
-    // Every bit behind the address, which CRSF does not protect.
+    // Every bit after the address, which CRSF does not protect.
     for bit in 8..26 * 8 {
         let mut line = Line::new();
         line.send(&frame(0.0), 10_000);

@@ -14,9 +14,9 @@ use sophie_sim::test_stands::arm_bench::{BenchArm, Closing, try_grip};
 
 /// True response over the assumed one.
 const RESPONSES: [f32; 5] = [0.5, 0.71, 1.0, 1.41, 2.0];
-/// Largest pressure of an arm that is felt, Pa.
+/// Largest pressure of an arm with a sound sensor, Pa.
 const PEAK: f64 = 1300.0;
-/// Of an arm whose sensor is open, Pa: as an open arm that bumps the pipe.
+/// Largest pressure of an arm with an open sensor, Pa: as an open arm that bumps the pipe.
 const BLIND_PEAK: f64 = 3000.0;
 
 #[derive(Clone, Copy, Debug)]

@@ -1,4 +1,4 @@
-//! Restarts of the board: what resumes, what stays stopped, what the pilot sees.
+//! Restarts of the board: functions that resume, functions that stay stopped, and the pilot's display.
 
 use std::cell::Cell;
 use std::rc::Rc;
@@ -411,7 +411,7 @@ fn the_grip_on_the_pipe_hardly_notices_a_reset() {
     }
 }
 
-/// What the closing has learnt of each arm's bending is used again.
+/// The bending that the closing has learnt for each arm is used again.
 #[test]
 fn a_reset_on_the_pipe_keeps_the_learnt_grip() {
     for file in ["reset-clamping", "reset-perched"] {
@@ -437,8 +437,8 @@ fn a_reset_on_the_pipe_keeps_the_learnt_grip() {
             .map(|arm| arm.response);
         for (kept, used) in kept.iter().zip(used) {
             let (kept, used) = (kept.unwrap(), used.unwrap());
-            // The loaded arm of the plant bends 1 to 1.3 times as the parameters have it unloaded; a closing that goes on may
-            // learn more of it.
+            // The loaded arm of the plant bends 1 to 1.3 times as much as the parameters state unloaded; a longer
+            // closing may learn more of it.
             assert!(
                 (0.8..1.6).contains(&kept) && used >= kept - 1e-6,
                 "{file}: {kept}, then {used}"

@@ -11,12 +11,12 @@ fn flown(text: &str) -> FlightRecord {
     fly(&scenario, &mut Silent)
 }
 
-/// When the display first said `text`, s.
+/// Time at which the display first showed `text`, s.
 fn said(record: &FlightRecord, text: &str) -> Option<f64> {
     record.events.iter().find(|e| e.text == text).map(|e| e.t)
 }
 
-/// What the simulated divider reads of the true voltage.
+/// Reading of the simulated divider over the true voltage.
 fn gain(seed: u64) -> f64 {
     1.0 + Streams::new(seed).within("battery.servos", -0.01, 0.01)
 }
@@ -40,7 +40,7 @@ fn a_perched_vehicle_warns_in_time_to_let_go() {
         let mode = |t: f64| record.samples.iter().find(|s| s.t >= t).unwrap().mode;
         assert_eq!((mode(near_end), mode(low)), (Mode::Perched, Mode::Perched));
         assert!(low - near_end > 60.0, "{near_end} to {low} s");
-        // Who does not let go then finds servos without power, and arms that do not open.
+        // A pilot who does not release then has servos without power, and the arms do not open.
         let late = text.replace("seconds = 200", "seconds = 260");
         let record = flown(&format!("seed = {seed}\n{late}"));
         println!("seed {seed}: {}", record.outcome.reason);
@@ -50,7 +50,7 @@ fn a_perched_vehicle_warns_in_time_to_let_go() {
 
 #[test]
 fn no_perch_begins_on_a_low_servo_battery_and_nothing_is_said_of_one_that_no_one_measures() {
-    // In the air it falls below its low voltage by what idle servos draw.
+    // In the air the idle servos draw it below its low voltage.
     let low = format!("servo_batt_div = 11\nservo_batt_low = {}", 6.815 * gain(1));
     let flight = |params: &str| {
         flown(&format!(

@@ -174,7 +174,7 @@ impl Emulator {
         match self.pins.recv() {
             Ok(pins) => Ok(pins),
             Err(_) => Err(match self.finish() {
-                Ok(_) => "emulator: the run ended by itself".to_owned(),
+                Ok(_) => "emulator: the run ended early".to_owned(),
                 Err(why) => why,
             }),
         }

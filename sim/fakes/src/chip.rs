@@ -1,4 +1,4 @@
-//! A chip without silicon.
+//! A fake chip for the console's commands.
 
 use std::cell::Cell;
 use std::rc::Rc;
@@ -15,9 +15,9 @@ pub struct FakeChip {
     pub level: Rc<Cell<u8>>,
     /// The level cannot be set.
     pub refuses: bool,
-    /// What the start-up looked at.
+    /// Results of the start-up checks.
     pub looks: Vec<Look>,
-    /// How deep its stack has been.
+    /// Greatest depth of its stack.
     pub stack: Option<StackUse>,
 }
 

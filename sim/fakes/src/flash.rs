@@ -7,7 +7,7 @@ use embedded_storage_async::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };
 
-/// What the flash remembers.
+/// Contents and history of the flash.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Cells {
     /// Contents.

@@ -1,4 +1,4 @@
-//! Scripted ports: they give, fail, or never answer.
+//! Scripted ports: they answer, fail or never answer.
 
 use std::cell::{Cell, RefCell};
 use std::future::pending;
@@ -21,29 +21,29 @@ use sophie_ports::retained::{Retain, WORDS, Words};
 use sophie_ports::sensors::{Analog, AnalogFrame, ArmImus, Barometer, IMU_BATCH, Imu};
 use sophie_ports::serial::SerialInput;
 
-/// How a port answers.
+/// Answer of a port.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Answer {
-    /// As it should.
+    /// A correct answer.
     #[default]
     Sound,
-    /// With an error, after the time that a reading takes.
+    /// An error after the time of a reading.
     Fails,
-    /// With an error at once, as a part that was never set up.
+    /// An error at once, as from a part without set-up.
     Refuses,
-    /// With this error, after the time that a reading takes.
+    /// This error after the time of a reading.
     Errs(PortError),
-    /// Never.
+    /// No answer.
     Hangs,
 }
 
-/// Port calls without any time between them that no sound task makes.
+/// Number of port calls in a row, without time between them, that only a faulty task makes.
 const SPIN: u32 = 1000;
 
-/// A part: how it answers now, and whether a task asked it without ever waiting.
+/// A part with its present answer, and a check for tasks that ask it without waiting.
 #[derive(Clone, Default)]
 pub struct Part {
-    /// How it answers.
+    /// Present answer.
     pub answer: Rc<Cell<Answer>>,
     /// A task asked it again and again without ever waiting.
     pub spun: Rc<Cell<bool>>,
@@ -83,8 +83,8 @@ impl Part {
     }
 }
 
-/// An inertial sensor of 1 kHz at rest, level; its data-ready line may be silent, and what it reads beyond level gravity
-/// is the test's.
+/// A level inertial sensor of 1 kHz at rest; the test may silence its data-ready line and set its reading besides
+/// gravity.
 #[derive(Clone, Default)]
 pub struct FakeImu(pub Part, pub Rc<Cell<bool>>, pub Rc<Cell<ImuReading>>);
 
@@ -152,7 +152,7 @@ pub struct FakeAnalog {
     pub part: Part,
     /// Time that a conversion takes beyond the usual 30 µs, µs.
     pub delay_us: Rc<Cell<u64>>,
-    /// What it gives.
+    /// The frame of the next conversion.
     pub frame: Rc<Cell<AnalogFrame>>,
 }
 
@@ -193,7 +193,7 @@ impl Motors for FakeMotors {
 pub struct FakeServos {
     /// The timer.
     pub part: Part,
-    /// What is left of the frame in which widths are written, µs.
+    /// Remaining time of the frame in which widths are written, µs.
     pub frame_us: Rc<Cell<u64>>,
     /// Every pulse so far, µs.
     pub pulses: Rc<RefCell<Vec<PerArm<f32>>>>,
@@ -214,7 +214,7 @@ impl Servos for FakeServos {
     }
 }
 
-/// A receiver's line: what the test puts on it is there at once.
+/// A receiver's line: bytes that the test puts on it arrive at once.
 #[derive(Clone, Default)]
 pub struct FakeLine {
     bytes: Rc<RefCell<Vec<u8>>>,
@@ -256,7 +256,7 @@ impl SerialInput for FakeLine {
     }
 }
 
-/// A receiver whose line breaks: nothing but errors, or reads without a byte.
+/// A receiver with a broken line: only errors, or reads without a byte.
 #[derive(Clone, Default)]
 pub struct BrokenLine(pub Part);
 
@@ -295,7 +295,7 @@ impl Default for FakeMemory {
 }
 
 impl FakeMemory {
-    /// What is in it.
+    /// Present contents.
     pub fn copies(&self) -> [Words; 2] {
         self.0.get().0
     }

@@ -83,7 +83,7 @@ fn a_mission_without_a_pipe_has_no_rows_of_it() {
 }
 
 /// Samples about half of the vehicle's and world's numbers and `params` parameters from their ranges.
-fn draw(rng: &mut Pcg64Mcg, params: f64) -> String {
+fn sample(rng: &mut Pcg64Mcg, params: f64) -> String {
     let mut text = String::new();
     for table in ["vehicle", "world"] {
         text += &format!("[{table}]\n");
@@ -136,7 +136,7 @@ fn no_accepted_scenario_makes_it_panic_or_take_long() {
     let (mut checked, mut longest) = (0, 0);
     while checked < DRAWS {
         let params = [0.05, 0.5][checked % 2];
-        let Ok(scenario) = Scenario::parse(&draw(&mut rng, params), "test.toml", &Overrides::default())
+        let Ok(scenario) = Scenario::parse(&sample(&mut rng, params), "test.toml", &Overrides::default())
         else {
             continue;
         };

@@ -1,4 +1,4 @@
-//! Perching by itself, and leaving again.
+//! Autonomous perching and departure.
 
 use sophie_control::navigation::external_pose::PoseFault as Called;
 use sophie_control::pilot::rc::ArmChoice;
@@ -6,7 +6,8 @@ use sophie_sim::sensors::pose::PoseFault;
 
 use super::*;
 
-/// Holds near the pipe, perches by itself and leaves, with `sensors`, in gusts and wind as [`held`] unless `calm`.
+/// Mission that holds near the pipe, perches autonomously and departs, with `sensors`, in gusts and wind as [`held`]
+/// unless `calm`.
 pub(super) fn mission(seed: u64, sensors: PositionSensor, calm: bool) -> Scenario {
     let mut s = held(seed, 0.0);
     s.steps = vec![
@@ -48,7 +49,8 @@ pub(super) fn touches(record: &FlightRecord) -> Vec<f64> {
         .collect()
 }
 
-/// Seeds of a campaign, 1 to 100 unless `SOPHIE_SEEDS` says how many, or which: `20`, `101-200`, `41,366,421`.
+/// Seeds of a campaign: 1 to 100, or those of `SOPHIE_SEEDS` as a count (`20`), a range (`101-200`) or a list
+/// (`41,366,421`).
 pub(super) fn campaign() -> Vec<u64> {
     let asked = std::env::var("SOPHIE_SEEDS").unwrap_or_else(|_| "100".to_owned());
     let number = |n: &str| n.parse::<u64>().expect("SOPHIE_SEEDS: numbers");
@@ -79,12 +81,12 @@ fn flown_on(
     })
 }
 
-/// The same of other missions.
+/// The same for other missions.
 pub(super) fn flown_of(seeds: &[u64], mission: impl Fn(u64) -> Scenario + Sync) -> (usize, usize, Vec<f64>) {
     let flights = sophie_sim::parallel::each(seeds, |&seed| {
         let record = fly(&mission(seed), &mut Silent);
         let touches = touches(&record);
-        // By hand the pilot does not always come to the pipe in this wind.
+        // In this wind the pilot does not always reach the pipe by hand.
         let begun = record.samples.iter().any(|s| s.mode == Mode::Approach);
         println!("{seed}: {}, touches {touches:.3?} m", record.outcome.reason);
         (begun, begun && record.outcome.accomplished, touches)
@@ -103,7 +105,7 @@ fn in_still_air_it_perches_by_flow_and_leaves_again() {
     assert!(record.outcome.accomplished, "{}", record.outcome.reason);
     let offsets = touches(&record);
     assert!(offsets.len() == 1 && offsets[0].abs() < 0.045, "{offsets:?}");
-    // Only the switch was turned: no stick has moved from its centre since.
+    // Only the switch was turned; every stick stayed at its centre.
     let alone = record.samples.iter().skip_while(|s| s.mode != Mode::Approach);
     let mut alone = alone.take_while(|s| s.mode != Mode::Perched);
     assert!(alone.all(|s| (s.throttle - 0.5).abs() < 1e-3));
@@ -254,7 +256,7 @@ fn a_pose_or_target_that_fails_during_the_approach_ends_it_by_name() {
             .filter(|s| (from..from + 8.0).contains(&s.t));
         let low = low.map(|s| -s.position[2]).fold(f64::INFINITY, f64::min);
         println!("{fault:?}: {why}, lowest {low:.2} m");
-        // It is handed back in the air, or has perched before it was found.
+        // The pilot gets the vehicle back in the air, or it perched before the fault was found.
         if !said || !(why.contains("handed back") || record.outcome.accomplished) {
             wrong.push(format!("{fault:?} {why} {low:.2}"));
         }

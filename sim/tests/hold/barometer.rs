@@ -1,4 +1,4 @@
-//! The height of last resort: range or poses end, and the pressure of the air goes on.
+//! Barometric height as the last source: range or poses end, the air pressure continues.
 
 use sophie_control::mode::{Mode, Reason};
 use sophie_control::navigation::baro_height::PressureFault;
@@ -9,11 +9,11 @@ use sophie_sim::sensors::barometer::BarometerFault;
 
 use super::{held, says, ways};
 
-/// When the source ends, s, and for how long.
+/// Begin of the source's failure, s, and its duration, s.
 const AT: f64 = 22.0;
 const FOR: f64 = 8.0;
 
-/// Held for 20 s at 1.2 m by `position`, which says nothing for 8 s in the middle.
+/// Scenario of a hold of 20 s at 1.2 m by `position`, which is silent for 8 s in the middle.
 fn alone(seed: u64, position: PositionSensor, barometer: bool) -> Scenario {
     let mut s = held(seed, 20.0);
     s.steps[1] = Step::TakeOff { height: 1.2 };
@@ -23,7 +23,7 @@ fn alone(seed: u64, position: PositionSensor, barometer: bool) -> Scenario {
     s
 }
 
-/// Flies it; the record, and the samples of the hold in `seconds` from the end of the source on.
+/// Flies it; returns the record and the samples of the hold within `seconds` from the source's failure.
 fn flown(s: &Scenario, seconds: f64) -> (FlightRecord, Vec<Sample>) {
     let record = fly(s, &mut Silent);
     let during = |s: &&Sample| (AT..AT + seconds).contains(&s.t);
@@ -31,7 +31,7 @@ fn flown(s: &Scenario, seconds: f64) -> (FlightRecord, Vec<Sample>) {
     (record, samples)
 }
 
-/// How long it was held from the end of the source on, s, and the largest way of the height meanwhile, m.
+/// Duration of the hold after the source's failure, s, and the largest change of the height meanwhile, m.
 fn kept(s: &Scenario) -> (f64, f64) {
     let (record, samples) = flown(s, FOR);
     let held: Vec<Sample> = samples.into_iter().take_while(|s| s.mode == Mode::Hold).collect();
@@ -92,7 +92,7 @@ fn a_barometer_that_fails_with_the_poses_is_named_or_silent_and_harms_less_than_
         let texts: Vec<&str> = record.events.iter().map(|e| e.text.as_str()).collect();
         println!("{fault:?}: {height:.2} m, {texts:?}");
         assert!(height < 1.0, "{fault:?}: {height:.2} m");
-        // What comes after the first may be its end: a drift that ends is a jump.
+        // A second report may be the end of the fault: a drift that ends is a jump.
         let said = |text: &&str| PressureFault::ALL.into_iter().find(|f| text.ends_with(f.text()));
         let found = texts.iter().find_map(said);
         assert_eq!(found, named, "{fault:?}");

@@ -1,4 +1,4 @@
-//! Flow, range, poses and the place of the pipe that fail at any moment of perching and leaving by themselves.
+//! Flow, range, poses and pipe position that fail at any moment of autonomous perching and departure.
 
 mod sample;
 
@@ -12,15 +12,15 @@ use sophie_sim::sensors::pose::PoseFault;
 use super::autonomous::mission;
 use super::*;
 
-/// For how long it fails, s.
+/// Duration of the fault, s.
 const FAILS: f64 = 8.0;
-/// Largest lean, rad, and speed, m/s, while the vehicle flies by itself, and the least height at any time, m: what is held
-/// level against a wrong wind is as fast after the four seconds until the pilot flies.
+/// Largest lean, rad, and speed, m/s, in autonomous flight, and least height at any time, m. A vehicle that is held
+/// level against a wrong wind estimate reaches this speed within the four seconds until the pilot flies.
 const LEAN: f64 = 0.36;
 const SPEED: f64 = 3.5;
 const LOW: f64 = 0.6;
 
-/// The part of a sound flight within which the fault begins.
+/// Part of a sound flight in which the fault begins.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Part {
     /// From the beginning of the approach until shortly before the touch.
@@ -65,8 +65,8 @@ const FAULTS: [Fault; 20] = [
 ];
 
 impl Fault {
-    /// What the pilot reads, and within which time if the vehicle still approaches then, s; `None` where a wrong scale is
-    /// found only once it has climbed or sunk over one surface (docs/hold.md).
+    /// Text that the pilot reads, and the time within which it must appear if the vehicle still approaches, s; `None`
+    /// for a wrong scale, found only after a climb or descent over one surface (docs/hold.md).
     fn named(self) -> Option<(&'static str, f64)> {
         let stale = Reason::PositionStale.text();
         let named = match self {
@@ -99,7 +99,7 @@ impl Fault {
     }
 }
 
-/// When each part begins and ends in a sound flight, s; `None` where that is not accomplished.
+/// Begin and end of each part in a sound flight, s; `None` if that flight fails.
 fn parts(seed: u64, sensor: PositionSensor) -> Option<[(f64, f64); 4]> {
     let sound = fly(&mission(seed, sensor, false), &mut Silent);
     if !sound.outcome.accomplished {
@@ -118,7 +118,7 @@ fn parts(seed: u64, sensor: PositionSensor) -> Option<[(f64, f64); 4]> {
     ])
 }
 
-/// Flies the mission of `seed` with `fault` from `at` s on; what is wrong with it.
+/// Flies the mission of `seed` with `fault` from `at` s on; returns the violated requirement, if any.
 fn flown(seed: u64, fault: Fault, part: Part, at: f64) -> Option<String> {
     let mut s = mission(seed, fault.sensor(), false);
     s.sensors.pose_fails_at = at;
@@ -143,7 +143,7 @@ fn flown(seed: u64, fault: Fault, part: Part, at: f64) -> Option<String> {
         "{seed} {fault:?} {part:?} at {at:.1} s: {why}; named after {named:.1?} s, {:.0} deg, {speed:.2} m/s, {low:.2} m",
         lean.to_degrees()
     );
-    // It has perched and left, or the pilot has it back in the air.
+    // The vehicle has perched and departed, or the pilot flies it.
     let ends_well = record.outcome.accomplished || (why.contains("handed back") && part != Part::Release);
     let bounded = lean < LEAN && speed < SPEED && low > LOW;
     let missed = fault.named().is_some_and(|(_, within)| {
@@ -164,7 +164,7 @@ fn a_fault_at_any_moment_is_named_and_harms_nothing() {
 }
 
 #[test]
-#[ignore = "two hundred missions: .ci/campaign flies them, docs/hold.md has what has come of them"]
+#[ignore = "two hundred missions: .ci/campaign flies them, docs/hold.md has the results"]
 fn a_fault_at_any_moment_is_named_and_harms_nothing_with_many_seeds() {
     let wrong = FaultSample::of(2, &[1, 2, 3, 4, 5, 6, 7, 8], 200).judge();
     println!("{} of 200: {wrong:#?}", wrong.len());
@@ -172,16 +172,16 @@ fn a_fault_at_any_moment_is_named_and_harms_nothing_with_many_seeds() {
 }
 
 #[test]
-#[ignore = "two hundred missions, or what the variables ask for: docs/hold.md has what has come of several draws"]
+#[ignore = "two hundred missions, or those of the variables: docs/hold.md has the results of several samples"]
 fn sampled_faults_are_named_and_harm_nothing() {
-    let draw = FaultSample::asked();
-    let wrong = draw.judge();
-    println!("{} of {}: {wrong:#?}", wrong.len(), draw.count);
+    let sample = FaultSample::asked();
+    let wrong = sample.judge();
+    println!("{} of {}: {wrong:#?}", wrong.len(), sample.count);
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-/// Pressed an arm onto the pipe by 1,600 to 4,000 N/m², or were not back within 45 s, while the vehicle rose and sank by the
-/// estimate alone.
+/// Seeds in which the vertical estimate must not act alone: it pressed an arm onto the pipe by 1,600 to 4,000 N/m², or
+/// delayed the return beyond 45 s.
 #[test]
 fn a_range_that_becomes_too_long_is_not_flown_by() {
     let long = Fault::Flow(FlowFault::RangeLong);
@@ -191,7 +191,7 @@ fn a_range_that_becomes_too_long_is_not_flown_by() {
         (15, Part::Release, 77.958),
         (27, Part::Release, 76.894),
         (23, Part::Release, 83.443),
-        // At the gate, where 10 cm read are 6 cm, and in another search.
+        // At the gate, with a reading of 10 cm at 6 cm, and in another search.
         (30, Part::Touch, 59.257),
         (77, Part::Touch, 67.543),
         (39, Part::Touch, 58.411),
@@ -205,8 +205,8 @@ fn a_range_that_becomes_too_long_is_not_flown_by() {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-/// Touched across the pipe, an arm pressed by 1,581 and 1,761 N/m², or were followed for six seconds, while the vehicle turned
-/// with the heading of the poses.
+/// Seeds in which the vehicle must not turn with the heading of the poses: it touched across the pipe with 1,581 and
+/// 1,761 N/m² on an arm, or followed for six seconds.
 #[test]
 fn a_heading_that_turns_is_not_flown_by() {
     let cases = [
@@ -222,8 +222,8 @@ fn a_heading_that_turns_is_not_flown_by() {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-/// Pressed an arm onto the pipe, or drifted with 3.7 to 4.4 m/s, while what had failed before the lift-off passed for a bias of
-/// the inertial sensor.
+/// Seeds in which a fault before the lift-off must not enter the accelerometer bias: it pressed an arm onto the pipe,
+/// or the vehicle drifted at 3.7 to 4.4 m/s.
 #[test]
 fn a_fault_before_the_lift_off_changes_no_bias() {
     let (jumps, mirrored) = (FlowFault::RangeJumps, FlowFault::Mirrored);
@@ -241,7 +241,8 @@ fn a_fault_before_the_lift_off_changes_no_bias() {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-/// Came within 0.06 and 0.04 m of the ground: what they had bent of the acceleration was flown by until the pilot had it.
+/// Seeds in which poses must not bend the estimated acceleration: the vehicle came within 0.06 and 0.04 m of the ground
+/// before the pilot took over.
 #[test]
 fn poses_scaled_from_the_lift_off_on_sink_nothing() {
     let cases = [(22, 45.803_724_506_577_75), (38, 45.755_855_610_382_05)];

@@ -1,4 +1,4 @@
-//! Held by optical flow and range alone.
+//! Position hold by optical flow and range alone.
 
 use glam::DVec3;
 use sophie_control::mode::Reason;
@@ -10,8 +10,8 @@ use sophie_sim::sensors::flow::FlowFault;
 
 use super::{NEVER_HELD, harmless, held, never_held, settled};
 
-/// What the hold may be: velocity, m/s RMS, level; drift within 10 s, m RMS over all flights; height, m RMS. Wanted are 0.05
-/// m/s: these gusts alone move a vehicle held by poses by 0.08 (docs/lab/2026-11-24-position-hold.md).
+/// Limits of the hold: level velocity, m/s RMS; drift within 10 s, m RMS over all flights; height, m RMS. In these
+/// gusts a vehicle held by poses moves at 0.08 m/s (docs/hold.md).
 pub(super) const SPEED_RMS: f64 = 0.14;
 pub(super) const DRIFT_RMS: f64 = 0.10;
 pub(super) const HEIGHT_RMS: f64 = 0.03;
@@ -91,7 +91,7 @@ fn by_flow_the_vehicle_is_slow_and_drifts_by_centimetres_with_every_seed() {
     judge(1..=50, 60.0);
 }
 
-/// Held for 20 s with `fault` for `seconds` in its middle; the record and the samples of that time.
+/// Flies a hold of 20 s with `fault` for `seconds` in its middle; returns the record and the samples of that time.
 fn with_a_fault(fault: FlowFault, seconds: f64) -> (FlightRecord, Vec<Sample>) {
     let mut s = by_flow(8, 20.0);
     s.sensors.flow_fault = fault;

@@ -1,4 +1,4 @@
-//! By a flow module whose lens is not at the centre of mass.
+//! Position hold by a flow module whose lens is off the centre of mass.
 
 use sophie_sim::parallel::each;
 
@@ -6,9 +6,9 @@ use super::autonomous::{campaign, flown_of, mission, touches};
 use super::flow::{DRIFT_RMS, HEIGHT_RMS, SPEED_RMS, blamed, by_flow, errors};
 use super::*;
 
-/// 8 cm behind, 6 cm to the right and 5 cm below, m, body.
+/// Lens 8 cm behind, 6 cm to the right and 5 cm below, m, body.
 const LENS: [f64; 3] = [-0.08, 0.06, 0.05];
-/// Below the vehicle without any, as every other flight has it, and where the stack takes that to be.
+/// Lens without a lever, as in every other flight, and its position in the stack's parameters, m, body.
 const BELOW: [f64; 3] = [0.0, 0.0, 0.02];
 const CENTRE: [f64; 3] = [0.0; 3];
 
@@ -20,7 +20,7 @@ fn with_lens(mut s: Scenario, lens: [f64; 3], known: [f64; 3]) -> Scenario {
     s
 }
 
-/// Level speed, drift and height as [`errors`] has them, in the mean of two seeds' squares.
+/// Level speed, drift and height as in [`errors`], RMS over two seeds.
 fn held_with(name: &str, lens: [f64; 3], known: [f64; 3]) -> [f64; 3] {
     let found = each(&[1, 3], |&seed| {
         let record = fly(&with_lens(by_flow(seed, 25.0), lens, known), &mut Silent);
@@ -65,7 +65,7 @@ fn by_flow_with_a_lever_that_is_known_it_perches_in_wind_and_gusts() {
     );
     assert!(record.outcome.accomplished, "{}", record.outcome.reason);
     let touches = touches(&record);
-    // As far as the campaign's: one touch in twenty is beyond 5 cm without a lever too.
+    // As in the campaign: one touch in twenty is beyond 5 cm without a lever as well.
     assert!(touches.iter().all(|y| y.abs() < 0.07), "{touches:?}");
 }
 
@@ -83,7 +83,7 @@ fn by_flow_with_a_lever_that_is_known_most_seeds_perch() {
     );
 }
 
-/// The touch goes as far to the left of the crown as the lens is farther to the right than was measured.
+/// An error of the measured lens position moves the touch by the same distance the other way.
 #[test]
 #[ignore = "twenty missions: docs/lab/2026-11-25-autonomous-perching.md has the figure"]
 fn by_flow_a_lever_that_is_off_moves_the_touch_by_as_much() {

@@ -18,14 +18,14 @@ use sophie_sim::flight::fly;
 use sophie_sim::record::{FlightRecord, Sample, Silent};
 use sophie_sim::scenario::{Assist, PositionSensor, Scenario, Step};
 
-/// What the hold may be off, m: RMS and at 95 %, level; RMS of the height.
+/// Limits of the hold's error, m: level RMS and 95 %; height RMS.
 const LEVEL_RMS: f64 = 0.04;
 const LEVEL_95: f64 = 0.08;
 const HEIGHT_RMS: f64 = 0.03;
-/// From the beginning of the hold until the speed of the hand-over is gone, s.
+/// Settling time from the beginning of the hold, s.
 const SETTLE: f64 = 4.0;
 
-/// Held for `seconds` in gusts of 0.30 N and 1 N of wind from a direction of the seed's.
+/// Scenario of a hold of `seconds` in gusts of 0.30 N and a wind of 1 N whose direction follows from the seed.
 fn held(seed: u64, seconds: f64) -> Scenario {
     let mut s = Scenario {
         seed,
@@ -62,7 +62,7 @@ fn settled(record: &FlightRecord) -> Vec<&Sample> {
     run.into_iter().filter(|s| s.t >= start).collect()
 }
 
-/// Distances from where it stays in the mean: level RMS, level at 95 %, height RMS, m.
+/// Distances from the mean position: level RMS, level at 95 %, height RMS, m.
 fn errors(samples: &[&Sample]) -> [f64; 3] {
     let place = |s: &&Sample| DVec3::from_array(s.position);
     let n = samples.len() as f64;
@@ -78,10 +78,10 @@ fn errors(samples: &[&Sample]) -> [f64; 3] {
     ]
 }
 
-/// Of 50 flights those that may end before the hold: by hand the pilot cannot always settle in this wind.
+/// Number of 50 flights that may end before the hold: by hand the pilot cannot always settle in this wind.
 const NEVER_HELD: usize = 3;
 
-/// The flight ended in the take-off, which is flown by hand: nothing of the hold was seen.
+/// The flight ended in the take-off, which is flown by hand, before the hold.
 fn never_held(seed: u64, record: &FlightRecord) -> bool {
     let never = record.outcome.reason.starts_with("take-off");
     if never {
@@ -169,7 +169,7 @@ fn the_pilot_flies_to_a_point_by_velocities_and_takes_over_by_the_switch() {
     );
 }
 
-/// Held for 20 s with the poses gone for `seconds` in its middle; the record, and the samples from then on for as long.
+/// Flies a hold of 20 s without poses for `seconds` in its middle; returns the record and the samples of that time.
 fn with_a_failure(seconds: f64) -> (FlightRecord, Vec<Sample>) {
     let mut s = held(8, 20.0);
     s.sensors.pose_fails_at = 22.0;
@@ -219,7 +219,7 @@ fn poses_that_stay_away_end_the_hold_and_the_pilot_flies_on_and_tries_again() {
     assert!((lost - 22.0 - 4.0).abs() < 0.1, "{lost}");
     let [level, height] = ways(&samples);
     assert!(level < 2.5 && height < 0.6, "{level:.3} {height:.3}");
-    // Once there are poses again the switch is turned, and it holds for the whole time.
+    // When the poses are back the pilot turns the switch, and the vehicle holds for the whole time.
     let again = record
         .samples
         .iter()
@@ -255,8 +255,9 @@ fn poses_change_nothing_without_a_hold() {
     );
 }
 
-/// What fails at 22 s is named by `text`, and leaves the vehicle level, slow and high in the `samples` that follow. It is held
-/// then: within `soon` s, and below `slow` m/s. Not to have found back into the hold in time ends the mission, and harms nothing.
+/// Requires that a fault at 22 s is named by `text` and that the vehicle stays level, slow and high in the `samples`
+/// after it: below `slow` m/s, and named within `soon` s. A mission that ends because the hold did not resume is
+/// allowed.
 fn harmless(
     name: &str,
     text: &str,

@@ -1,4 +1,4 @@
-//! Sources of poses that fail, in the middle of a hold.
+//! Sources of poses that fail in the middle of a hold.
 
 use sophie_control::mode::{Mode, Reason};
 use sophie_control::navigation::external_pose::PoseFault as Called;

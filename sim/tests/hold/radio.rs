@@ -1,10 +1,10 @@
-//! The radio lost for good, with a position: straight down, and beside the pipe, not onto it.
+//! Permanent loss of the radio with a position estimate: the vehicle descends straight down, and beside the pipe.
 
 use super::autonomous::mission;
 use super::*;
 
-/// Lost `seconds` after the first sample in `mode`; the record of the whole flight is that of the same one with a radio
-/// until then.
+/// Flight that loses the radio `seconds` after the first sample in `mode`; until then it equals the flight with a
+/// radio.
 fn lost_in(mode: Mode, seconds: f64, mut s: Scenario) -> Option<FlightRecord> {
     let begun = fly(&s, &mut Silent).samples.iter().find(|x| x.mode == mode)?.t;
     s.faults.radio_at = Some(begun + seconds);
@@ -13,19 +13,19 @@ fn lost_in(mode: Mode, seconds: f64, mut s: Scenario) -> Option<FlightRecord> {
     Some(fly(&s, &mut Silent))
 }
 
-/// How it came down.
+/// Result of the descent.
 struct Down {
-    /// From where the failsafe began to where it lies, level, m.
+    /// Level distance from the begin of the failsafe to the landing, m.
     way: f64,
-    /// Level, from the pipe's axis, m.
+    /// Level distance from the pipe's axis, m.
     beside: f64,
-    /// Largest, deg and m/s.
+    /// Largest tilt, deg, and speed, m/s.
     lean: f64,
     sink: f64,
 }
 
 /// # Errors
-/// What ended it elsewhere than standing on the ground, or tilted or fast.
+/// One line: the flight did not end upright on the ground, or was tilted or fast.
 fn down(record: &FlightRecord) -> Result<Down, String> {
     let begun = record.samples.iter().position(|s| s.mode == Mode::Failsafe);
     let samples = &record.samples[begun.ok_or("no failsafe")?..];
@@ -68,7 +68,7 @@ fn a_radio_lost_in_the_hold_ends_straight_below() {
     }
 }
 
-/// By hand, with poses that nothing was held by: 1 N of wind carries a vehicle without a position metres away.
+/// Flight by hand with poses available: without a position, 1 N of wind would carry the vehicle metres away.
 #[test]
 fn a_radio_lost_by_hand_ends_straight_below_where_there_are_poses() {
     for (sensor, least, most) in [
@@ -85,12 +85,12 @@ fn a_radio_lost_by_hand_ends_straight_below_where_there_are_poses() {
     }
 }
 
-/// Lost `after` s of the approach; what went wrong, if anything did.
+/// Loses the radio `after` s into the approach; returns the violated requirement, if any.
 fn lost_in_approach(seed: u64, sensor: PositionSensor, after: f64) -> Option<String> {
     let record = lost_in(Mode::Approach, after, mission(seed, sensor, false))?;
     let name = format!("{seed} {sensor:?} {after:.1} s");
     if !record.samples.iter().any(|s| s.mode == Mode::Failsafe) {
-        // Already on the pipe, where it stays.
+        // The vehicle is already on the pipe and stays there.
         println!("{name}: {}", record.outcome.reason);
         return None;
     }

@@ -1,4 +1,4 @@
-//! A range that is 1.6 or 0.6 times what it should be: named where the vehicle climbs, and a sound one never.
+//! A range with a scale of 1.6 or 0.6: the stack names it in a climb, and never a sound range.
 
 use sophie_control::navigation::flow_range::SightFault;
 use sophie_sim::sensors::flow::FlowFault;
@@ -8,17 +8,17 @@ use super::flow::by_flow;
 use super::*;
 
 const FAULTS: [FlowFault; 2] = [FlowFault::RangeLong, FlowFault::RangeShort];
-/// When it begins in flight, and for how long it lasts, s.
+/// Begin of the fault in flight, and its duration, s.
 const AT: f64 = 20.0;
 const FOR: f64 = 30.0;
 
-/// When it was named, s; `None` where it was not.
+/// Time at which it was named, s; `None` if never.
 fn named(record: &FlightRecord) -> Option<f64> {
     let text = SightFault::RangeScaled.text();
     record.events.iter().find(|e| e.text.ends_with(text)).map(|e| e.t)
 }
 
-/// Held at 1 m, then half a metre higher 3.6 m away.
+/// Scenario: hold at 1 m, then half a metre higher 3.6 m away.
 fn climbs(seed: u64) -> Scenario {
     let mut s = by_flow(seed, 10.0);
     let up = Step::FlyTo {
@@ -36,7 +36,7 @@ fn fails(mut s: Scenario, fault: FlowFault, at: f64, seconds: f64) -> FlightReco
     fly(&s, &mut Silent)
 }
 
-/// Scaled since power-up it gives no hold: the take-off tells.
+/// A range scaled since power-up is found in the take-off and gives no hold.
 fn since_power_up(seed: u64) -> Result<f64, String> {
     let mut last = 0.0f64;
     for fault in FAULTS {
@@ -64,7 +64,7 @@ fn a_range_scaled_since_power_up_is_named_in_the_take_off_and_gives_no_hold() {
 }
 
 #[test]
-#[ignore = "120 flights: .ci/campaign flies them, docs/hold.md has what has come of them"]
+#[ignore = "120 flights: .ci/campaign flies them, docs/hold.md has the results"]
 fn a_scaled_range_is_named_in_a_climb_with_every_seed() {
     let seeds: Vec<u64> = (1..=20).collect();
     let flights = sophie_sim::parallel::each(&seeds, |&seed| {
@@ -104,7 +104,7 @@ fn a_sound_range_is_never_called_scaled() {
     let kinds: [Kind; 4] = [
         ("held", |seed| by_flow(seed, 60.0)),
         ("climbing", climbs),
-        ("by itself", |seed| mission(seed, PositionSensor::Flow, false)),
+        ("autonomous", |seed| mission(seed, PositionSensor::Flow, false)),
         ("by hand", by_hand),
     ];
     let seeds = campaign();

@@ -1,11 +1,11 @@
-//! The arms' buses on the bench: chips and interfaces as the manuals and errata have them.
+//! The arms' I2C buses on the emulated boards: chips and interfaces behave as manuals and errata state.
 
 use sophie_control::params::ArmBusSpeed;
 use sophie_emulator::wires::BoardFault;
 
 use super::*;
 
-/// What the driver writes to a BNO055: register numbers of reads, and settings.
+/// Writes of the driver to a BNO055: register numbers of reads, and settings.
 const WRITES: [&[u8]; 16] = [
     &[0x00],
     &[0x07],
@@ -24,14 +24,14 @@ const WRITES: [&[u8]; 16] = [
     &[0x41, 0x24],
     &[0x42, 0x00],
 ];
-/// Until every sensor is read, with a second start of one, s; the end of the run.
+/// Time until every sensor is read, with a second start of one, s; end of the run, s.
 const UP: f64 = 2.6;
 const END: f64 = 3.4;
 
 /// Readings a second of a sensor that is read in each round, as the window cuts them.
 const EACH_ROUND: std::ops::Range<f64> = 98.0..102.0;
 
-/// Disarmed, with `troubles`.
+/// Runs a disarmed board with `troubles`.
 fn stand(small: bool, speed: ArmBusSpeed, troubles: &[(f64, BoardFault)]) -> Flight {
     let mut scenario = Scenario {
         time_limit: END,
@@ -115,6 +115,6 @@ fn so_they_are_on_the_small_board() {
 #[test]
 fn chips_that_stretch_each_byte_are_read_at_sixty_hertz() {
     let troubles = [0, 1].map(|bus| (0.0, BoardFault::ClockHeld(bus, 180)));
-    // Four readings of 19 bytes and 202 us: 15.4 ms and what is between.
+    // Four readings of 19 bytes and 202 us each take 15.4 ms; the rest are pauses.
     read_at(&stand(true, ArmBusSpeed::Fast, &troubles), 58.0..65.0);
 }

@@ -1,5 +1,5 @@
-//! `sophie bringup` at the flashed image: its own code at the board's console, a builder's replies, and hands that turn
-//! the vehicle, bend its arms, press its sensors, swap wires and move sticks.
+//! `sophie bringup` with the flashed image: its own code at the board's console, a scripted builder's replies, and a
+//! bench operator who handles the vehicle.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -48,7 +48,7 @@ impl Drop for Folder {
     }
 }
 
-/// What came of a walk.
+/// Result of a bring-up.
 struct Walked {
     stood: Stood,
     log: String,
@@ -56,10 +56,10 @@ struct Walked {
     all_passed: Result<bool, sophie_board_link::Failure>,
 }
 
-/// A new H743 on the table, and `builder` at its console.
+/// A new H743 board with `builder` at its console.
 fn walk(folder: &Folder, builder: impl FnOnce(BenchOperator) -> Builder) -> Walked {
     let hands = BenchOperator::default();
-    // The motors of 2 and 3 hang at each other's output.
+    // Motors 2 and 3 are swapped.
     hands.change(|held| held.wiring = MotorMap::of([0, 2, 1, 3]).unwrap());
     let mut builder = builder(hands.clone());
     let (port, console) = terminal("--console");
@@ -137,7 +137,7 @@ fn a_new_board_is_brought_up_through_all_steps() {
     );
     let step = |id: &str| steps.iter().find(|step| step["id"].as_str() == Some(id)).unwrap();
     assert!(steps.iter().all(|step| step["result"].as_str() == Some("passed")));
-    // What was found is what the simulated parts are.
+    // The values found are those of the simulated parts.
     let parameter = |id: &str, name: &str| step(id)["parameters"][name].as_float().unwrap();
     for sensor in 1..=4 {
         let trim = parameter(&format!("fsr-{sensor}"), &format!("fsr_trim_{sensor}"));
@@ -150,7 +150,7 @@ fn a_new_board_is_brought_up_through_all_steps() {
         figures(step("final")).contains("all 17 passed\nnothing forbids arming\n"),
         "{said}"
     );
-    // Once to find the order of the wires, once to see it right.
+    // The motors turn twice: to find the wiring, and to confirm it.
     let turned = [Some(0), Some(2), Some(1), Some(3)].repeat(2);
     assert_eq!(builder.turned(), turned, "{said}");
     assert_eq!(parameter("rotors", "motor_map"), 1324.0, "{said}");
@@ -192,7 +192,7 @@ fn a_new_board_passes_its_first_steps_and_the_rest_is_left_for_later() {
     }
     assert!(figures(&steps[0]).contains("brown-out level: 3\n"), "{said}");
     assert!(figures(&steps[2]).contains("\n1 of 17 failed"), "{said}");
-    // What the driver makes of the emulated part's coefficients and counts is the pressure of the world.
+    // The driver converts the emulated part's counts to the true pressure.
     let air = figures(&steps[3]);
     let number = |begin: &str| {
         let line = air.lines().find_map(|line| line.strip_prefix(begin));

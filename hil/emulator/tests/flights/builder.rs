@@ -1,4 +1,4 @@
-//! The builder whom `sophie bringup` leads: replies, and what hands do before each.
+//! The scripted builder whom `sophie bringup` leads: replies, and the handling of the vehicle before each.
 
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
@@ -9,9 +9,9 @@ use sophie_control::params::Params;
 use sophie_control::pilot::rc::{ArmChoice, StickMode, Sticks};
 use sophie_emulator::bench_operator::{BenchOperator, Handling};
 
-/// Board's time in which what hands have changed has gone through turn and filters, ms.
+/// Time of the board until a change of handling has passed turn and filters, ms.
 const SETTLED: u64 = 800;
-/// Time on the wall after which the board stands still.
+/// Wall time after which the board counts as stopped.
 const STILL: Duration = Duration::from_secs(300);
 /// Weight on a pressure sensor, N, as the walk proposes it.
 const WEIGHT: f64 = 1.3;
@@ -20,7 +20,7 @@ const BENT: f64 = 0.3;
 /// On a pad under a thumb, Pa.
 const THUMB: f64 = 900.0;
 
-/// What hands do for so long, ms of the board's time.
+/// A change of handling and its duration, ms of the board's time.
 struct Move {
     ms: u64,
     hands: fn(&mut Handling),
@@ -31,10 +31,10 @@ pub(super) struct Builder {
     /// Stops at this step.
     until: Option<&'static str>,
     said: String,
-    /// Present step, and the line of it that was said last.
+    /// Present step, and its last printed line.
     step: String,
     last: String,
-    /// BenchOperator' moves of a live step that are still to be made, and the board's time at which the last is over.
+    /// Remaining moves of a live step, and the board's time at which the present one ends.
     moves: Option<VecDeque<Move>>,
     over: u64,
     /// Moves of the servos.
@@ -59,12 +59,12 @@ impl Builder {
         }
     }
 
-    /// All that was said and replied.
+    /// Transcript of prompts and replies.
     pub(super) fn said(&self) -> &str {
         &self.said
     }
 
-    /// What turned with each output, at `rotors`.
+    /// The rotor that turned with each output, at `rotors`.
     pub(super) fn turned(&self) -> &[Option<usize>] {
         &self.turned
     }
@@ -89,7 +89,7 @@ impl Builder {
         number.unwrap_or(1) - 1
     }
 
-    /// BenchOperator do that, and leave it so until it has gone through; what is so already takes no time.
+    /// Changes the handling and waits until it has passed the filters; an unchanged handling takes no time.
     fn does(&self, change: impl FnOnce(&mut Handling)) {
         let mut changed = false;
         self.hands.change(|held| {
@@ -114,7 +114,7 @@ impl Builder {
         }
     }
 
-    /// What hands do at a rest of the calibration.
+    /// Handling at one rest of the calibration.
     fn rest(&mut self) {
         let number = self.number();
         let side = Face::ALL.into_iter().find(|side| self.last.contains(side.text()));
@@ -135,7 +135,7 @@ impl Builder {
         }
     }
 
-    /// Begins the step: the vehicle as the step before has left it, and what its first lines ask for.
+    /// Begins the step: keeps the vehicle as the last step left it, then follows the first lines.
     fn begins(&mut self) -> &'static str {
         if self.until == Some(&*self.step) {
             return "q";
@@ -151,7 +151,7 @@ impl Builder {
         ""
     }
 
-    /// The next move of a servo; its pulse is noted where it is taken.
+    /// The next move of a servo; a mark records its pulse.
     fn moves_servo(&mut self) -> &'static str {
         let reply = self.marks.pop_front().unwrap_or_default();
         if reply.is_empty() {
@@ -160,7 +160,7 @@ impl Builder {
         reply
     }
 
-    /// The pulse at which the servo stands, µs: it is moved no faster than its reel turns.
+    /// The present pulse of the servo, µs; it moves no faster than the reel turns.
     fn standing_pulse(&self) -> f64 {
         let seen = || self.hands.look().servos[self.number()].round();
         let mut pulse = seen();
@@ -231,7 +231,7 @@ impl Builder {
     }
 }
 
-/// Sticks and switches at one of their ends, throttle up: nothing arms.
+/// Sticks and switches at one of their ends, throttle up: the board does not arm.
 fn ends(sign: f32, on: bool) -> Sticks {
     Sticks {
         roll: sign,
@@ -246,7 +246,7 @@ fn ends(sign: f32, on: bool) -> Sticks {
     }
 }
 
-/// What hands do in the live step `id`.
+/// Moves of the operator in the live step `id`.
 fn live(id: &str) -> VecDeque<Move> {
     let all: &[fn(&mut Handling)] = match id {
         "live-imu" => &[

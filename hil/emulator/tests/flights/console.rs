@@ -10,7 +10,7 @@ use sophie_emulator::wires::BoardFault;
 
 use super::*;
 
-/// Returns what is read until `answer`.
+/// Returns the text read up to `answer`.
 fn type_in(user: &mut TcpStream, command: &str, answer: &str) -> String {
     user.write_all(command.as_bytes()).unwrap();
     let mut said = String::new();

@@ -1,5 +1,5 @@
-//! Flights of the firmware images on the emulated boards. What they share is tested on one; flights of the F405 take
-//! half the time.
+//! Flights of the firmware images on the emulated boards. Common behaviour is tested on one board; flights of the F405
+//! take half the time.
 //!
 //! Images are named by `SOPHIE_ELF` (matek-h743) and `SOPHIE_ELF_F405`, or built.
 
@@ -79,7 +79,7 @@ fn scenario(name: &str) -> Scenario {
     Scenario::load(&path, &Overrides::default()).unwrap()
 }
 
-/// A hover has been in the air for a second by then, s.
+/// Time at which a hover has been in the air for a second, s.
 const AIRBORNE: f64 = 7.5;
 
 fn hover(seconds: f64) -> Scenario {

@@ -16,7 +16,7 @@ mod clients;
 
 /// Longest wait of a client, s: the board runs at half of real time, on a machine that is busy.
 const SECONDS: &str = "300";
-/// What the line carries, bytes each second: 57,600 baud, ten bits a byte.
+/// Capacity of the line, bytes per second: 57,600 baud, ten bits a byte.
 const LINE_RATE: f64 = 5760.0;
 /// Most by which a flood may make the mean time from data-ready to the motor frame longer, us.
 const MEAN_MOVED: f64 = 0.05;
@@ -121,8 +121,8 @@ fn nor_of_the_reference_board() {
     a_flood_moves_nothing("matek-h743", image());
 }
 
-/// A board of the reference kind that stands without a transmitter until `client` at its MAVLink line is done, and what
-/// that printed.
+/// Runs a reference board on the ground without a transmitter until `client` at its MAVLink line ends; returns the
+/// client's output.
 fn stand_with(client: impl FnOnce(u16) -> Value + Send + 'static) -> Value {
     clients::python();
     let firmware = Firmware::read(image(), board_kind::find("matek-h743").unwrap()).unwrap();

@@ -75,7 +75,7 @@ fn the_small_board_perches() {
     answers_contact_in_time(&flight, 60);
 }
 
-/// Held by the module's bytes on the board's line: outcome and phases are the host's.
+/// A hold by the flow module on the board's line: outcome and phases equal the host's.
 fn holds_by_flow(flight: &Flight) {
     accomplished(flight);
     let host = sophie_sim::flight::fly(&scenario("hold-flow.toml"), &mut Silent);
@@ -84,7 +84,7 @@ fn holds_by_flow(flight: &Flight) {
     let held = |record: &FlightRecord| record.samples.iter().filter(|s| s.mode == Mode::Hold).count();
     let (board, host) = (held(&flight.record), held(&host));
     println!("in HOLD for {board} samples, {host} on the host");
-    // The self-test shifts the pilot against the gusts, so that he is at the point sooner or later.
+    // The self-test shifts the pilot against the gusts, so the time to the point differs.
     assert!(4 * board > 3 * host && 4 * host > 3 * board, "{board} {host}");
     assert!(flight.board.overruns.is_empty(), "{:?}", flight.board.overruns);
 }
@@ -189,7 +189,7 @@ fn shares_its_bus(flight: &Flight) {
     }
     let named = logged_at(flight, missing, "DPS310: ");
     assert!(named.is_some_and(|t| t < missing + 0.3), "{}", log(flight));
-    // While the buses are sound nothing is late, whoever answers or does not.
+    // While the buses are sound no measurement is late, whichever chip is missing.
     let late = flight
         .board
         .lines

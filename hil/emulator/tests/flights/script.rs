@@ -76,7 +76,7 @@ fn longest(pattern: &str) -> &str {
     parts.max_by_key(|part| part.len()).unwrap_or_default()
 }
 
-/// How `said` (command echo to next prompt) differs from the page's answer; `None` if it does not.
+/// Difference between `said` (command echo to next prompt) and the page's answer; `None` if equal.
 pub(super) fn differs(step: &Typed, said: &str) -> Option<String> {
     let echoed = said.split_once(&step.command).map_or(said, |(_, rest)| rest);
     let lines: Vec<&str> = echoed.lines().map(str::trim).collect();

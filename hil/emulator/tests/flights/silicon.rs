@@ -155,7 +155,7 @@ fn a_start_by_the_chips_loader_begins_with_one_reset() {
 
 #[test]
 fn clocks_that_outlive_a_reset_are_reset_once() {
-    // The F405 stops its PLL before it sets it: it flies all the same.
+    // The F405 stops its PLL before it sets it, so it flies.
     let flight = on_the_bench("f405", 1.5, Some(BoardFault::LoaderClocks(true)));
     assert_eq!(flight.board.resets.len(), 1, "{:?}", flight.board.resets);
     assert!(

@@ -1,4 +1,4 @@
-//! How deep the stack goes while everything that moves bytes is busy, in flight and over a restart on the pipe.
+//! Depth of the stack while every line is busy, in flight and over a restart on the pipe.
 
 use std::io::{ErrorKind, Read, Write};
 use std::net::{Ipv4Addr, TcpStream};
@@ -45,7 +45,7 @@ fn onto_the_pipe() -> Scenario {
     }
 }
 
-/// Commands with the longest answers and the most to work out; what may be refused in the air is.
+/// Commands with the longest answers and computations; the board refuses some of them in the air.
 const COMMANDS: [&str; 10] = [
     "list",
     "status",
@@ -119,7 +119,7 @@ fn frames(heard: &mut Vec<u8>) -> Vec<u32> {
     }
 }
 
-/// A ground station on the line, and what it has heard.
+/// A ground station on the line with the bytes received.
 struct Station {
     line: TcpStream,
     encoder: Encoder,
@@ -212,7 +212,7 @@ struct Ceiling {
     stack: u32,
 }
 
-/// Flies `board`, with whom its lines are full, onto the pipe and over a restart there.
+/// Flies `board` with full lines onto the pipe and over a restart there.
 fn leaves_a_quarter(board: &str, image: &Path) {
     let firmware = Firmware::read(image, board_kind::find(board).unwrap()).unwrap();
     let (typed, console) = terminal("--console");

@@ -1,11 +1,12 @@
-//! Faults of which seed, part and moment are drawn: the same ones from the same number, or those that variables ask for.
+//! Random samples of faults: seed, part of the flight and moment follow from the sample's number, or from environment
+//! variables.
 
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 use super::*;
 
-/// Missions of which seed, part and moment are drawn.
+/// A random sample of faulty missions.
 pub(super) struct FaultSample {
     number: u64,
     seeds: Vec<u64>,
@@ -26,8 +27,8 @@ impl FaultSample {
         }
     }
 
-    /// What `SOPHIE_DRAW`, `SOPHIE_SEEDS`, `SOPHIE_COUNT`, `SOPHIE_FAULTS` and `SOPHIE_PARTS` ask for: two hundred of draw 1
-    /// with seeds 1 to 100 and every fault in every part where they say nothing.
+    /// The sample set by `SOPHIE_DRAW`, `SOPHIE_SEEDS`, `SOPHIE_COUNT`, `SOPHIE_FAULTS` and `SOPHIE_PARTS`; by default
+    /// 200 missions of sample 1, seeds 1 to 100, every fault and part.
     pub(super) fn asked() -> Self {
         let number = |name: &str, or: u64| {
             let asked = std::env::var(name).ok();
@@ -44,7 +45,7 @@ impl FaultSample {
         }
     }
 
-    /// Flies them: what is wrong with them.
+    /// Flies them; returns the violated requirements.
     pub(super) fn judge(&self) -> Vec<String> {
         let mut rng = Pcg64Mcg::seed_from_u64(self.number);
         let times = |sensor| -> Vec<_> {
@@ -60,7 +61,7 @@ impl FaultSample {
         let by = [times(PositionSensor::Flow), times(PositionSensor::Pose)];
         let mut cases = vec![];
         for i in 0..self.count {
-            // Every fault comes before one comes again; seed, part and moment are drawn.
+            // The faults take turns; seed, part and moment are random.
             let fault = self.faults[i % self.faults.len()];
             let known = &by[usize::from(fault.sensor() == PositionSensor::Pose)];
             let (seed, times) = known[rng.random_range(0..known.len())];
@@ -74,7 +75,7 @@ impl FaultSample {
     }
 }
 
-/// Those of `all` that the variable `name` lists by their names in this file; all of them where it is not set.
+/// The items of `all` that the variable `name` lists; all of them without the variable.
 fn named_in<T: Copy + std::fmt::Debug>(name: &str, all: &[T]) -> Vec<T> {
     let Ok(asked) = std::env::var(name) else {
         return all.to_vec();
