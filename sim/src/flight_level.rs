@@ -11,8 +11,9 @@ use crate::sensors::imu::Misfit;
 use embassy_time::Instant;
 use sophie_control::mixer::Allocation;
 use sophie_control::params::{MotorMap, Params};
+use sophie_control::setpoint::Setpoint;
 use sophie_control::wrench::Configuration;
-use sophie_tasks::links::{Links, Setpoint};
+use sophie_tasks::links::Links;
 
 /// Unjudged take-off, s.
 const SETTLE: f64 = 5.0;

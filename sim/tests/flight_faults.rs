@@ -10,10 +10,10 @@ use sophie_control::mixer::Flexible;
 use sophie_control::mode::{Mode, Reason};
 use sophie_control::params::Params;
 use sophie_control::rc::Sticks;
+use sophie_control::setpoint::Setpoint;
 use sophie_control::wrench::Configuration;
 use sophie_fakes::{Answer, FakeImu, FakeMotors};
 use sophie_sim::clock::VirtualTime;
-use sophie_tasks::links::Setpoint;
 use vehicle::Vehicle;
 
 /// Requires that a silent inertial sensor stops the motors permanently within the mix's limit, and a reset.

@@ -98,9 +98,9 @@ fn mismatched_arms_are_learnt_by_their_sensors() {
 
 #[test]
 fn rate_and_direct_setpoints_fly_and_hand_back_without_a_kick() {
+    use sophie_control::setpoint::Setpoint;
     use sophie_control::vector::Vec3;
     use sophie_control::wrench::Wrench;
-    use sophie_tasks::links::Setpoint;
 
     const WEIGHT: f32 = 17.7;
     let level = Setpoint::Angle {

@@ -4,6 +4,7 @@ use embassy_time::Instant;
 use sophie_control::chain::{
     ArmReading, Attitude, Command, Demand, FlightChain, ImuReading, MixOutput, Surroundings,
 };
+use sophie_control::grip::GripState;
 use sophie_control::mixer::Flexible;
 use sophie_control::setpoint::Setpoint;
 use sophie_control::wrench::PerArm;
@@ -14,7 +15,8 @@ use sophie_sim::flight::stack::Stack;
 use sophie_sim::plant::Plant;
 use sophie_sim::record::Silent;
 use sophie_sim::scenario::Scenario;
-use sophie_tasks::links::{ArmAngles, GripState, Links};
+use sophie_tasks::links::Links;
+use sophie_tasks::links::messages::ArmAngles;
 
 struct Step {
     at_us: u64,

@@ -9,11 +9,14 @@ use sophie_control::grip::{ArmState, GripState};
 use sophie_control::grip_fault::GripFault;
 use sophie_control::params::Params;
 use sophie_control::rc::ArmChoice;
+use sophie_control::setpoint::ClampCommand;
 use sophie_control::tendon::{ForceLimit, REFERENCE_TILT, Reel};
 use sophie_control::wrench::PerArm;
 use sophie_fakes::{Answer, FakeAnalog, FakeServos};
 use sophie_sim::clock::VirtualTime;
-use sophie_tasks::links::{ArmAngles, ClampCommand, Links, TendonForce, TendonForces, TendonOrder};
+use sophie_tasks::links::Links;
+use sophie_tasks::links::messages::ArmAngles;
+use sophie_tasks::links::tendon_order::{TendonForce, TendonForces, TendonOrder};
 use sophie_tasks::schedule::timing::Quantity;
 
 /// Tilt without tendon force, and at the touch, rad.
@@ -456,10 +459,10 @@ fn a_slow_converter_shows_in_the_time_from_pressure_to_pulse() {
         b.converter.delay_us.set(delay_us);
         b.command = Some(CLOSE);
         b.run(1.0);
-        let timing = b.links.contact_timing();
+        let timing = b.links.timing.contact();
         let missed = if in_time { 0 } else { timing.runs };
         assert!(timing.runs >= 45 && timing.overruns == missed, "{timing:?}");
-        let us = b.links.take_contact_histogram(Quantity::Response).min();
+        let us = b.links.timing.take_contact_histogram(Quantity::Response).min();
         assert!(u64::from(us) >= delay_us, "{us}");
         us
     };

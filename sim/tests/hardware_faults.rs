@@ -275,7 +275,7 @@ fn what_breaks_in_flight_does_not_end_it() {
     for (breaks, reasons) in breaks {
         let mut v = Vehicle::flying();
         let overruns = |v: &Vehicle| {
-            use sophie_tasks::deadline::TaskId;
+            use sophie_tasks::schedule::TaskId;
             [
                 TaskId::Imu,
                 TaskId::Estimator,
@@ -283,7 +283,7 @@ fn what_breaks_in_flight_does_not_end_it() {
                 TaskId::Mixer,
                 TaskId::Motors,
             ]
-            .map(|task| v.links.timing(task).overruns)
+            .map(|task| v.links.timing.task(task).overruns)
         };
         let before = overruns(&v);
         breaks(&v);

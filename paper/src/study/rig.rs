@@ -1,13 +1,13 @@
 //! Experiments on the flight level alone: take-off, `wish`, the truth every millisecond.
 
 use glam::DVec3;
+use sophie_control::setpoint::Setpoint;
 use sophie_control::wrench::PerArm;
 use sophie_sim::aim;
 use sophie_sim::flight_level::{HeightHold, Rig};
 use sophie_sim::mixers::Mixer;
 use sophie_sim::plant::GRAVITY;
 use sophie_sim::scenario::Scenario;
-use sophie_tasks::links::Setpoint;
 
 use super::allocation::Studied;
 

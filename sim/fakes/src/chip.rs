@@ -3,7 +3,8 @@
 use std::cell::Cell;
 use std::rc::Rc;
 
-use sophie_ports::chip::{Chip, Look, NotSet};
+use sophie_ports::chip::{Chip, NotSet};
+use sophie_ports::chip_check::ChipCheck;
 use sophie_ports::stack_use::StackUse;
 
 /// A chip that counts its restarts and may refuse its brown-out level.
@@ -15,8 +16,8 @@ pub struct FakeChip {
     pub level: Rc<Cell<u8>>,
     /// The level cannot be set.
     pub refuses: bool,
-    /// What the start-up looked at.
-    pub looks: Vec<Look>,
+    /// Checks of the start-up.
+    pub checks: Vec<ChipCheck>,
     /// How deep its stack has been.
     pub stack: Option<StackUse>,
 }
@@ -36,8 +37,8 @@ impl Chip for FakeChip {
         0x1234_ABCD
     }
 
-    fn looks(&self) -> &[Look] {
-        &self.looks
+    fn checks(&self) -> &[ChipCheck] {
+        &self.checks
     }
 
     fn stack(&self) -> Option<StackUse> {

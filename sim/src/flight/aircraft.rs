@@ -1,9 +1,9 @@
 //! Interface of a flight to what is flown: the tasks in virtual time, or a board with the flashed image.
 
+use sophie_control::grip::GripState;
 use sophie_control::mode::Mode;
 use sophie_control::wrench::PerArm;
 use sophie_ports::retained::StartCause;
-use sophie_tasks::links::GripState;
 
 use crate::plant::Plant;
 

@@ -15,7 +15,8 @@ use sophie_control::motor_pulses::least_command;
 use sophie_control::tendon::Reel;
 
 use super::Console;
-use crate::deadline::{FixedRate, TaskId};
+use crate::deadline::FixedRate;
+use crate::schedule::TaskId;
 use sophie_control::decimal::{self, Decimal};
 use sophie_ports::chip::Chip;
 use sophie_ports::serial::{SerialInput, SerialOutput};

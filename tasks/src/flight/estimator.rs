@@ -5,8 +5,9 @@ use sophie_control::chain::Attitude;
 use sophie_control::estimator::Estimator;
 use sophie_control::mounting::Mounting;
 
-use crate::deadline::{TaskId, note_run};
+use crate::deadline::note_run;
 use crate::links::Links;
+use crate::schedule::TaskId;
 
 /// Time from data-ready to the estimate.
 pub const DEADLINE: Duration = TaskId::Estimator.deadline();

@@ -5,8 +5,9 @@ use sophie_control::chain::{ArmReading, MixOutput, Mixing, Surroundings};
 use sophie_control::mixer::Allocation;
 use sophie_control::params::Params;
 
-use crate::deadline::{TaskId, note_run};
+use crate::deadline::note_run;
 use crate::links::Links;
+use crate::schedule::TaskId;
 
 /// Time from data-ready to the motor commands.
 pub const DEADLINE: Duration = TaskId::Mixer.deadline();

@@ -8,8 +8,9 @@ use sophie_control::chain;
 use sophie_control::position::{Fix, Inertial, PositionEstimator};
 use sophie_control::vector::{Quat, Vec3};
 
-use crate::deadline::{FixedRate, TaskId};
+use crate::deadline::FixedRate;
 use crate::links::Links;
+use crate::schedule::TaskId;
 use sophie_ports::external_pose::ExternalPose;
 
 /// Estimates the position; never returns.

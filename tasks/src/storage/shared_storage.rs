@@ -4,7 +4,7 @@ use embassy_sync::mutex::Mutex;
 use sophie_control::params::Params;
 use sophie_ports::signing::Record;
 
-use crate::links::Raw;
+use crate::links::last_value::Raw;
 use sophie_ports::storage::{Loaded, Storage, StorageError};
 
 /// The storage of parameters for console and MAVLink: who comes second waits until the first is through.

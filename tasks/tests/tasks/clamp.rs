@@ -1,17 +1,19 @@
 //! The clamp task's response to commands and stale inputs.
 
 use embassy_time::Instant;
+use sophie_control::chain::MixOutput;
 use sophie_control::fsr::FsrFault;
 use sophie_control::grip::ArmState;
 use sophie_control::grip_fault::GripFault;
 use sophie_control::grip_memory::GripMemory;
 use sophie_control::params::Params;
 use sophie_control::rc::ArmChoice;
+use sophie_control::setpoint::ClampCommand;
 use sophie_control::wrench::PerArm;
 use sophie_ports::retained::StartCause;
-use sophie_tasks::links::{
-    ArmAngles, ClampCommand, Contact, Links, MixOutput, TendonForce, TendonForces, TendonOrder,
-};
+use sophie_tasks::links::Links;
+use sophie_tasks::links::messages::{ArmAngles, Contact};
+use sophie_tasks::links::tendon_order::{TendonForce, TendonForces, TendonOrder};
 use sophie_tasks::perching::clamp;
 use sophie_tasks::start::Start;
 use sophie_tasks::start::retained_state::RetainedState;

@@ -1,11 +1,13 @@
 //! The control task's demand for each kind of setpoint.
 
 use embassy_time::Instant;
+use sophie_control::chain::{Attitude, Demand, MixOutput};
 use sophie_control::desaturation::Given;
+use sophie_control::setpoint::Setpoint;
 use sophie_control::vector::{Quat, Vec3};
 use sophie_control::wrench::Wrench;
 use sophie_tasks::flight::control;
-use sophie_tasks::links::{Attitude, Demand, Links, MixOutput, Setpoint};
+use sophie_tasks::links::Links;
 
 use crate::rig::Rig;
 

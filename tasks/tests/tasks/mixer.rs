@@ -1,10 +1,13 @@
 //! The mixer task's use of demands, voltage and the arms' sensors.
 
 use embassy_time::Instant;
+use sophie_control::battery::Battery;
+use sophie_control::chain::{Demand, MixOutput};
 use sophie_control::mixer::Flexible;
+use sophie_control::setpoint::Setpoint;
 use sophie_control::wrench::{Configuration, PerArm, Wrench};
 use sophie_tasks::flight::mixer;
-use sophie_tasks::links::{ArmAngles, Battery, Demand, MixOutput, Setpoint};
+use sophie_tasks::links::messages::ArmAngles;
 
 use crate::rig::Rig;
 
