@@ -4,11 +4,7 @@ use std::fs;
 
 use serde_json::Value;
 
-#[allow(dead_code, reason = "shared with the tests of the command line")]
-#[path = "common/command.rs"]
-mod command;
-
-use self::command::{Temp, refused, sophie, text};
+use sophie_test_support::command::{Temp, refused, sophie, text};
 
 /// Enough for one careful touch on each pipe, and some from anywhere.
 const SMALL: [&str; 5] = ["capture", "--touches", "20", "--seed", "1"];

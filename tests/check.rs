@@ -1,13 +1,10 @@
 //! `sophie check`, and `sophie fly` for a vehicle that fails it.
 
-#[path = "common/command.rs"]
-mod command;
-
 use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
-use self::command::{Temp, command, refused, sophie, text};
+use sophie_test_support::command::{Temp, command, refused, sophie, text};
 
 /// Explains rows and JSON fields.
 const DOCS: &str = include_str!("../docs/design-check.md");

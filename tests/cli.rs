@@ -5,10 +5,7 @@ use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-#[path = "common/command.rs"]
-mod command;
-
-use self::command::{Temp, command, refused, sophie, text};
+use sophie_test_support::command::{Temp, command, refused, sophie, text};
 
 fn names(temp: &Temp) -> Vec<String> {
     let mut names: Vec<String> = fs::read_dir(&temp.0)

@@ -1,17 +1,12 @@
 //! `sophie fly --live` as a user and his MAVLink clients meet it.
 
+use sophie_test_support::clients;
 use std::net::{Ipv4Addr, UdpSocket};
 use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Output, Stdio};
 use std::time::{Duration, Instant};
 
-#[path = "common/clients.rs"]
-mod clients;
-#[allow(dead_code, reason = "shared with the tests of the command line")]
-#[path = "common/command.rs"]
-mod command;
-
-use self::command::{Temp, command, text};
+use sophie_test_support::command::{Temp, command, text};
 
 /// A flight of 21 s.
 const HOP: &[u8] =

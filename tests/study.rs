@@ -4,11 +4,7 @@ use std::fs;
 
 use serde_json::Value;
 
-#[allow(dead_code, reason = "shared with the tests of the command line")]
-#[path = "common/command.rs"]
-mod command;
-
-use self::command::{Temp, refused, sophie, text};
+use sophie_test_support::command::{Temp, refused, sophie, text};
 
 #[test]
 fn each_vehicle_is_counted_once_and_its_scenario_flies_again_to_the_same_end() {

@@ -1,33 +1,7 @@
 //! The chip: restart, silicon checks, brown-out level, watchdog.
 
-use heapless::{String, Vec};
-use sophie_control::arming::ArmingInhibit;
-
+use crate::chip_check::ChipCheck;
 use crate::stack_use::StackUse;
-
-/// Longest text of what was read, bytes.
-pub const READ: usize = 28;
-
-/// One thing that the start-up looked at in the chip.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Look {
-    /// What.
-    pub name: &'static str,
-    /// What was read.
-    pub read: String<READ>,
-    /// What the firmware is made for.
-    pub expected: &'static str,
-    /// They go together.
-    pub ok: bool,
-    /// What this refuses where they do not; `None` where it can be flown with.
-    pub inhibits: Option<ArmingInhibit>,
-}
-
-/// Most things that a start-up looks at.
-pub const LOOKS: usize = 12;
-
-/// What a start-up looked at.
-pub type Looks = Vec<Look, LOOKS>;
 
 /// The brown-out level could not be set: the chip keeps what it had.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,8 +21,8 @@ pub trait Chip {
     /// What tells this image from every other: `sophie_image_id` of its words.
     fn build(&self) -> u32;
 
-    /// What the start-up looked at.
-    fn looks(&self) -> &[Look];
+    /// Checks of the start-up.
+    fn checks(&self) -> &[ChipCheck];
 
     /// How deep its stack has been; `None` where that is not known.
     fn stack(&self) -> Option<StackUse> {

@@ -17,6 +17,7 @@
 
 pub mod actuators;
 pub mod chip;
+pub mod chip_check;
 pub mod data_ready;
 pub mod error;
 pub mod external_pose;

@@ -5,7 +5,7 @@ use core::fmt::Write;
 
 use heapless::String;
 
-use crate::chip::{Look, READ};
+use crate::chip_check::{ChipCheck, READ};
 
 /// Least share of the stack that is to stay unused, parts of it: what no test has reached, such as every level at its
 /// deepest at once or a driver's handler of errors, has this room.
@@ -34,12 +34,12 @@ impl StackUse {
     }
 
     /// As a row of what is looked at in the chip.
-    pub fn at_start(&self) -> Look {
+    pub fn at_start(&self) -> ChipCheck {
         self.look(AT_START, self.start)
     }
 
     /// See [`Self::at_start`].
-    pub fn in_flight(&self) -> Look {
+    pub fn in_flight(&self) -> ChipCheck {
         self.look(SINCE, self.flight)
     }
 
@@ -47,10 +47,10 @@ impl StackUse {
         used <= self.bytes - self.bytes / RESERVE
     }
 
-    fn look(&self, name: &'static str, used: u32) -> Look {
+    fn look(&self, name: &'static str, used: u32) -> ChipCheck {
         let mut read = String::<READ>::new();
         let _ = write!(read, "{used} of {} bytes", self.bytes);
-        Look {
+        ChipCheck {
             name,
             read,
             expected: "a quarter left",
@@ -78,10 +78,10 @@ mod tests {
                 start,
                 flight,
             };
-            let looks = [used.at_start(), used.in_flight()];
-            assert_eq!(looks.each_ref().map(|look| look.ok), marks, "{used:?}");
+            let checks = [used.at_start(), used.in_flight()];
+            assert_eq!(checks.each_ref().map(|look| look.ok), marks, "{used:?}");
             assert_eq!(used.is_scarce(), marks != [true, true], "{used:?}");
-            let read = looks[0].read.strip_suffix(" of 65536 bytes");
+            let read = checks[0].read.strip_suffix(" of 65536 bytes");
             assert_eq!(read.map(str::parse), Some(Ok(start)));
         }
     }

@@ -19,7 +19,7 @@ use sophie_ports::error::PortError;
 use sophie_ports::retained::{self, WORDS, Words};
 use sophie_ports::sensors::{self, AnalogFrame, IMU_BATCH};
 use sophie_ports::{actuators, chip, serial};
-use sophie_tasks::links::Raw;
+use sophie_tasks::links::last_value::Raw;
 
 use crate::plant::esc::{EscSpec, ONESHOT125};
 use crate::plant::{Actuators, Plant, STEP};

@@ -10,7 +10,7 @@ use sophie_control::mode::{Mode, Reason};
 use sophie_control::params::{Params, ServoMarks};
 use sophie_drivers::param_store::ParamStore;
 use sophie_fakes::{Answer, BrokenLine, FakeAnalog, FakeChip, FakeImu, FakeLine, FakeServos, Flash, Part};
-use sophie_ports::chip::Look;
+use sophie_ports::chip_check::ChipCheck;
 use sophie_ports::error::PortError;
 use sophie_ports::sensors::AnalogFrame;
 use sophie_ports::serial::SerialOutput;
@@ -19,11 +19,12 @@ use sophie_ports::stack_use::StackUse;
 use sophie_ports::storage::{Loaded, Storage, StorageError};
 use sophie_sim::clock::VirtualTime;
 use sophie_tasks::console;
-use sophie_tasks::deadline::TaskId;
 use sophie_tasks::flight::{estimator, imu};
-use sophie_tasks::links::{Links, Status};
+use sophie_tasks::links::Links;
+use sophie_tasks::links::messages::Status;
 use sophie_tasks::perching::{analog, clamp, servos};
 use sophie_tasks::pilot::commander;
+use sophie_tasks::schedule::TaskId;
 use sophie_tasks::storage::parameters;
 
 /// A terminal at 115,200 baud, or one that accepts no bytes.
@@ -45,8 +46,8 @@ impl SerialOutput for Screen {
 }
 
 /// Brown-out checks of a start-up with `level` of 3.
-fn looks(level: u8) -> [Look; 2] {
-    let look = |name, read: String, expected, ok, refuses| Look {
+fn checks(level: u8) -> [ChipCheck; 2] {
+    let look = |name, read: String, expected, ok, refuses| ChipCheck {
         name,
         read: read.as_str().try_into().unwrap(),
         expected,
@@ -74,7 +75,7 @@ fn looks(level: u8) -> [Look; 2] {
 /// A chip at brown-out `level`, with its start-up checks.
 fn chip_at(level: u8) -> FakeChip {
     let chip = FakeChip {
-        looks: looks(level).into(),
+        checks: checks(level).into(),
         ..FakeChip::default()
     };
     chip.level.set(level);
@@ -285,7 +286,7 @@ fn status_lists_every_reason_against_arming() {
         let [rate, late, response, execution, overruns] = numbers[..] else {
             panic!("{numbers:?}")
         };
-        let t = links.timing(task);
+        let t = links.timing.task(task);
         assert_eq!(
             (late, response, execution, overruns),
             (

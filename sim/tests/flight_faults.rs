@@ -8,12 +8,12 @@ use embassy_time::Instant;
 use links::links_with;
 use sophie_control::allocation::mixer::Flexible;
 use sophie_control::allocation::wrench::Configuration;
+use sophie_control::chain::setpoint::Setpoint;
 use sophie_control::mode::{Mode, Reason};
 use sophie_control::params::Params;
 use sophie_control::pilot::rc::Sticks;
 use sophie_fakes::{Answer, FakeImu, FakeMotors};
 use sophie_sim::clock::VirtualTime;
-use sophie_tasks::links::Setpoint;
 use vehicle::Vehicle;
 
 /// Requires that a silent inertial sensor stops the motors permanently within the mix's limit, and a reset.

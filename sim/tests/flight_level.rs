@@ -99,8 +99,8 @@ fn mismatched_arms_are_learnt_by_their_sensors() {
 #[test]
 fn rate_and_direct_setpoints_fly_and_hand_back_without_a_kick() {
     use sophie_control::allocation::wrench::Wrench;
+    use sophie_control::chain::setpoint::Setpoint;
     use sophie_control::maths::vector::Vec3;
-    use sophie_tasks::links::Setpoint;
 
     const WEIGHT: f32 = 17.7;
     let level = Setpoint::Angle {

@@ -7,6 +7,7 @@ use sophie_control::chain::setpoint::Setpoint;
 use sophie_control::chain::{
     ArmReading, Attitude, Command, Demand, FlightChain, ImuReading, MixOutput, Surroundings,
 };
+use sophie_control::gripper::grip::GripState;
 use sophie_ports::retained::StartCause;
 use sophie_sim::flight::aircraft::{Aircraft, ReportedStatus, Reset, StackEstimate};
 use sophie_sim::flight::fly_with;
@@ -14,7 +15,8 @@ use sophie_sim::flight::stack::Stack;
 use sophie_sim::plant::Plant;
 use sophie_sim::record::Silent;
 use sophie_sim::scenario::Scenario;
-use sophie_tasks::links::{ArmAngles, GripState, Links};
+use sophie_tasks::links::Links;
+use sophie_tasks::links::messages::ArmAngles;
 
 struct Step {
     at_us: u64,

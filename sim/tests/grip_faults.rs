@@ -1,6 +1,7 @@
 //! Tasks analog, clamp and servos on four simple arms with faults: reactions, and no force beyond the limit.
 
 use embassy_time::Instant;
+use sophie_control::chain::setpoint::ClampCommand;
 mod links;
 
 use links::links_with;
@@ -13,7 +14,9 @@ use sophie_control::params::Params;
 use sophie_control::pilot::rc::ArmChoice;
 use sophie_fakes::{Answer, FakeAnalog, FakeServos};
 use sophie_sim::clock::VirtualTime;
-use sophie_tasks::links::{ArmAngles, ClampCommand, Links, TendonForce, TendonForces, TendonOrder};
+use sophie_tasks::links::Links;
+use sophie_tasks::links::messages::ArmAngles;
+use sophie_tasks::links::tendon_order::{TendonForce, TendonForces, TendonOrder};
 use sophie_tasks::schedule::timing::Quantity;
 
 /// Tilt without tendon force, and at the touch, rad.
@@ -456,10 +459,10 @@ fn a_slow_converter_shows_in_the_time_from_pressure_to_pulse() {
         b.converter.delay_us.set(delay_us);
         b.command = Some(CLOSE);
         b.run(1.0);
-        let timing = b.links.contact_timing();
+        let timing = b.links.timing.contact();
         let missed = if in_time { 0 } else { timing.runs };
         assert!(timing.runs >= 45 && timing.overruns == missed, "{timing:?}");
-        let us = b.links.take_contact_histogram(Quantity::Response).min();
+        let us = b.links.timing.take_contact_histogram(Quantity::Response).min();
         assert!(u64::from(us) >= delay_us, "{us}");
         us
     };

@@ -275,7 +275,7 @@ fn a_broken_part_does_not_end_the_flight() {
     for (breaks, reasons) in breaks {
         let mut v = Vehicle::flying();
         let overruns = |v: &Vehicle| {
-            use sophie_tasks::deadline::TaskId;
+            use sophie_tasks::schedule::TaskId;
             [
                 TaskId::Imu,
                 TaskId::Estimator,
@@ -283,7 +283,7 @@ fn a_broken_part_does_not_end_the_flight() {
                 TaskId::Mixer,
                 TaskId::Motors,
             ]
-            .map(|task| v.links.timing(task).overruns)
+            .map(|task| v.links.timing.task(task).overruns)
         };
         let before = overruns(&v);
         breaks(&v);

@@ -4,7 +4,7 @@ use sophie_control::allocation::mixer::Flexible;
 use sophie_control::allocation::wrench::Configuration;
 use sophie_sim::mixers::Variant;
 use sophie_sim::test_stands::flight_level::{Maneuver, Rig, vehicle};
-use sophie_tasks::deadline::TaskId;
+use sophie_tasks::schedule::TaskId;
 
 /// 10° to the right for 2 s, and back.
 fn lean(t: f64) -> Maneuver {
@@ -30,7 +30,7 @@ fn every_rate_flies_alike_and_hands_on_at_1_khz() {
         let mut rig = Rig::calibrated(&scenario, |p| Flexible::new(Configuration::B, p));
         let e = rig.fly(16.0, lean);
         println!("{rate} Hz: {e:?}");
-        let runs = rig.links.timing(TaskId::Imu).runs;
+        let runs = rig.links.timing.task(TaskId::Imu).runs;
         assert!((19_990..=20_000).contains(&runs), "{rate} Hz: {runs} samples");
         assert!(e.worst_pitch < 1.0 && e.worst_yaw < 3.0, "{rate} Hz: {e:?}");
         // The rates differ by one sample of delay in the part.

@@ -174,7 +174,7 @@ fn telemetry_keeps_off_a_line_that_has_no_way_back() {
     use sophie_sim::board::{Board, Port};
     use sophie_sim::clock::VirtualTime;
     use sophie_sim::streams::Streams;
-    use sophie_tasks::links::Status;
+    use sophie_tasks::links::messages::Status;
 
     for (params, silent) in [(Params::default(), false), (sbus(), true)] {
         let (time, links) = (VirtualTime::new(), links_with(params));

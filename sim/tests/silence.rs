@@ -1,11 +1,12 @@
 //! A link that falls silent stops the motors.
 
 use embassy_time::Instant;
+use sophie_control::chain::MixOutput;
 use sophie_control::params::Params;
 use sophie_sim::board::{Board, Port};
 use sophie_sim::clock::VirtualTime;
 use sophie_sim::streams::Streams;
-use sophie_tasks::links::{Links, MixOutput};
+use sophie_tasks::links::Links;
 
 fn rig() -> (VirtualTime, &'static Links, &'static Board) {
     let time = VirtualTime::new();

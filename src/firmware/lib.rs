@@ -19,7 +19,7 @@ mod trace;
 use embassy_executor::Spawner;
 use sophie_control::gripper::retained_grip::GripMemory;
 use sophie_control::params::Params;
-use sophie_ports::chip::Look;
+use sophie_ports::chip_check::ChipCheck;
 use sophie_ports::storage::Loaded;
 use sophie_tasks::links::Links;
 use sophie_tasks::start::Start;
@@ -44,7 +44,7 @@ async fn main(background: Spawner) {
     let board = sophie_boards::take().await;
     let links = links(board.params, beginning.start);
     loaded(links, board.loaded);
-    looked(links, board.chip.looks);
+    looked(links, board.chip.checks);
     let at_rest = beginning.cause == ResetCause::PowerOn;
     let levels = Levels::new(background);
 
@@ -133,8 +133,8 @@ fn loaded(links: &Links, loaded: Loaded) {
 }
 
 /// Inhibits arming for failed checks of the chip.
-fn looked(links: &Links, looks: &[Look]) {
-    for look in looks {
+fn looked(links: &Links, checks: &[ChipCheck]) {
+    for look in checks {
         if let (Some(inhibit), false) = (look.inhibits, look.ok) {
             links.report(inhibit, true);
         }

@@ -7,8 +7,9 @@
 use embassy_futures::select::{Either, select};
 use embassy_time::{Duration, Instant, Ticker};
 use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
-use sophie_ports::chip::Look;
-use sophie_tasks::links::{Links, Status};
+use sophie_ports::chip_check::ChipCheck;
+use sophie_tasks::links::Links;
+use sophie_tasks::links::messages::Status;
 
 use super::grip::GripReport;
 use super::timing::TimingReport;
@@ -18,7 +19,7 @@ const PERIOD: Duration = Duration::from_millis(50);
 const SECOND: u32 = 20;
 
 /// Logs each second and at each change; never returns.
-pub async fn run(links: &Links, looks: &[Look]) -> ! {
+pub async fn run(links: &Links, checks: &[ChipCheck]) -> ! {
     // The clock starts some milliseconds after the reset, with the chip's clocks.
     defmt::info!("started in {=u64} ms", Instant::now().as_millis());
     let mut ticker = Ticker::every(PERIOD);
@@ -30,12 +31,12 @@ pub async fn run(links: &Links, looks: &[Look]) -> ! {
     let mut round = 0u32;
     loop {
         // A missed deadline of the flight level is logged at once, but only one per poll.
-        if let Either::Second(()) = select(ticker.next(), links.missed.wait()).await {
+        if let Either::Second(()) = select(ticker.next(), links.timing.missed.wait()).await {
             timing.missed(links);
             ticker.next().await;
         }
         // One per round: the log's buffer is short.
-        if let Some(look) = looks.get(round as usize) {
+        if let Some(look) = checks.get(round as usize) {
             silicon(look);
         }
         round = round.saturating_add(1);
@@ -83,9 +84,9 @@ fn state(now: Status, before: Option<Status>) {
     }
 }
 
-fn silicon(look: &Look) {
+fn silicon(look: &ChipCheck) {
     let read = look.read.as_str();
-    let Look { name, expected, .. } = look;
+    let ChipCheck { name, expected, .. } = look;
     if look.ok {
         defmt::info!(
             "silicon: {=str}: {=str}, expected {=str}: ok",

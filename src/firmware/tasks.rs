@@ -5,7 +5,7 @@ use embassy_executor::SpawnError;
 use sophie_boards::retained::Memory;
 use sophie_boards::{BarometerPort, Board, BufferedInput, BufferedOutput, StoragePort, ThisChip, UsbDriver};
 use sophie_flight::tasks as flight;
-use sophie_ports::chip::Look;
+use sophie_ports::chip_check::ChipCheck;
 use sophie_ports::sensors::Barometer;
 use sophie_ports::signing::Stored;
 use sophie_tasks::console::one_of::OneOf;
@@ -67,7 +67,7 @@ pub fn spawn(
         levels.spawn(TaskId::Barometer, barometer(links, board.barometer)?);
     }
     levels.spawn(TaskId::Telemetry, telemetry(links, board.telemetry)?);
-    let looks = board.chip.looks;
+    let checks = board.chip.checks;
     let port: &'static Port = USB_PORT.init_with(Port::new);
     let served: &'static Served = SERVED.init(Served::default());
     let (usb_input, usb_output) = port.console();
@@ -106,7 +106,7 @@ pub fn spawn(
         None => defmt::warn!("USB: the core does not answer, or has no supply"),
     }
     levels.spawn_unmeasured("lights", lights(links, board.lights)?);
-    levels.spawn_unmeasured("report", report(links, looks)?);
+    levels.spawn_unmeasured("report", report(links, checks)?);
     #[cfg(feature = "trace")]
     levels.spawn_unmeasured("trace", super::trace::trace()?);
     Ok(())
@@ -172,6 +172,6 @@ async fn lights(links: &'static Links, lights: sophie_boards::LightsPort) -> ! {
 }
 
 #[embassy_executor::task]
-async fn report(links: &'static Links, looks: &'static [Look]) -> ! {
-    super::report::run(links, looks).await
+async fn report(links: &'static Links, checks: &'static [ChipCheck]) -> ! {
+    super::report::run(links, checks).await
 }

@@ -9,8 +9,8 @@
 //! Times are half, 99 % and all of the second's runs (too large by less than a quarter; the last is exact); of four
 //! times the first is the shortest. docs/timing.md defines them.
 
-use sophie_tasks::deadline::TaskId;
 use sophie_tasks::links::Links;
+use sophie_tasks::schedule::TaskId;
 use sophie_tasks::schedule::histogram::Histogram;
 use sophie_tasks::schedule::timing::{Quantity, Timing};
 
@@ -39,16 +39,16 @@ impl TimingReport {
     /// Logs every task with new missed deadlines, with its worst times since the start.
     pub fn missed(&mut self, links: &Links) {
         for (task, reported) in TaskId::ALL.into_iter().zip(&mut self.reported) {
-            report(task.name(), &links.timing(task), reported);
+            report(task.name(), &links.timing.task(task), reported);
         }
-        report("contact", &links.contact_timing(), &mut self.contact_reported);
+        report("contact", &links.timing.contact(), &mut self.contact_reported);
     }
 
     /// The chain from pressure conversion to the resulting pulse.
     fn contact(&mut self, links: &Links) {
-        let [command, pulse] =
-            [Quantity::Lateness, Quantity::Response].map(|quantity| links.take_contact_histogram(quantity));
-        let totals = links.contact_timing();
+        let [command, pulse] = [Quantity::Lateness, Quantity::Response]
+            .map(|quantity| links.timing.take_contact_histogram(quantity));
+        let totals = links.timing.contact();
         let missed = totals
             .overruns
             .wrapping_sub(core::mem::replace(&mut self.contact_recorded, totals.overruns));
@@ -74,8 +74,8 @@ impl TimingReport {
 
     fn record(&mut self, links: &Links, task: TaskId) {
         let [late, run, response] = [Quantity::Lateness, Quantity::Execution, Quantity::Response]
-            .map(|quantity| links.take_histogram(task, quantity));
-        let totals = links.timing(task);
+            .map(|quantity| links.timing.take_histogram(task, quantity));
+        let totals = links.timing.task(task);
         let Some(recorded) = self.recorded.get_mut(task as usize) else {
             return;
         };

@@ -15,8 +15,8 @@ use embassy_executor::SpawnToken;
 use embassy_sync::blocking_mutex::Mutex;
 use embassy_time::{Duration, Ticker};
 use heapless::Vec;
-use sophie_tasks::deadline::Level;
-use sophie_tasks::links::Raw;
+use sophie_tasks::links::last_value::Raw;
+use sophie_tasks::schedule::Level;
 
 use sophie_boards::trace;
 

@@ -23,12 +23,12 @@ pub mod terminals;
 mod watch;
 
 use embassy_futures::yield_now;
-use embassy_time::{Duration, Timer};
+use embassy_time::Timer;
 use sophie_control::params::Params;
 
 use self::command::{Command, HELP, parse};
 pub use self::keys::CANCEL;
-use self::keys::Keys;
+use self::keys::{Keys, PAUSE};
 pub use self::line::NOT_TEXT;
 use self::line::{Echo, Line, LineError};
 pub use self::nearest::edits;
@@ -40,8 +40,6 @@ use sophie_ports::chip::Chip;
 use sophie_ports::serial::{SerialInput, SerialOutput};
 use sophie_ports::storage::Storage;
 
-/// Pause after a line error or an empty read, so that a dead line cannot take the processor.
-const PAUSE: Duration = Duration::from_millis(1);
 /// What asks for a line.
 const PROMPT: &[u8] = b"> ";
 

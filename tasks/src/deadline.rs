@@ -3,19 +3,18 @@
 use embassy_time::{Duration, Instant, Timer};
 
 use crate::links::Links;
+use crate::schedule::TaskId;
 use crate::schedule::timing::Run;
-pub use crate::schedule::timing::Timing;
-pub use crate::schedule::{Level, TaskId};
 
 /// Records a run of an event-driven task, released by its input's measurement, until now.
 pub fn record_run(links: &Links, task: TaskId, released: Instant, started: Instant, deadline: Duration) {
     record_run_until(links, task, released, started, Instant::now(), deadline);
 }
 
-/// Notes such a run ahead of the motor frame; [`Links::settle`] adds it later.
+/// Notes such a run ahead of the motor frame; [`TimingRecords::settle`](crate::links::timing_records::TimingRecords::settle) adds it later.
 #[inline]
 pub fn note_run(links: &Links, task: TaskId, released: Instant, started: Instant, deadline: Duration) {
-    links.note(
+    links.timing.note(
         task,
         &Run {
             released,
@@ -36,7 +35,7 @@ pub fn record_run_until(
     ended: Instant,
     deadline: Duration,
 ) {
-    links.record(
+    links.timing.record(
         task,
         &Run {
             released,
@@ -106,7 +105,7 @@ impl<'a> FixedRate<'a> {
         let period_s = self.period.as_micros() as f32 * 1e-6;
         let previous = self.current.take();
         if let Some(tick) = previous {
-            self.links.record(
+            self.links.timing.record(
                 self.task,
                 &Run {
                     released: tick.released,

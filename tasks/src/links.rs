@@ -14,291 +14,46 @@
 //! ```
 
 pub mod last_value;
+pub mod link;
+pub mod mavlink_line;
+pub mod messages;
+pub mod tendon_order;
+pub mod timing_records;
 
-use core::cell::{Cell, RefCell};
+use core::cell::Cell;
 use core::sync::atomic::{AtomicBool, Ordering};
-use sophie_ports::receiver::RcState;
 
 use embassy_sync::blocking_mutex::Mutex;
-use embassy_sync::signal::Signal;
 use embassy_time::{Duration, Instant};
 use sophie_control::allocation::wrench::PerArm;
-pub use sophie_control::approach::pipe_target::PipeTarget;
+use sophie_control::approach::pipe_target::PipeTarget;
 use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
 use sophie_control::attitude::attitude_loop::Target;
-use sophie_control::battery::ServoSupply;
-pub use sophie_control::battery::{Battery, ServoBattery};
-pub use sophie_control::chain::setpoint::{ClampCommand, Setpoint};
-pub use sophie_control::chain::{Attitude, Demand, ImuSample, MixOutput};
-use sophie_control::gripper::contact_pressure::FsrFault;
-pub use sophie_control::gripper::grip::GripState;
+use sophie_control::battery::{Battery, ServoBattery, ServoSupply};
+use sophie_control::chain::setpoint::{ClampCommand, Setpoint};
+use sophie_control::chain::{Attitude, Demand, ImuSample, MixOutput};
+use sophie_control::gripper::grip::GripState;
 use sophie_control::gripper::retained_grip::GripMemory;
-use sophie_control::mode::{Mode, Reason};
-pub use sophie_control::navigation::air_pressure::AirPressure;
-pub use sophie_control::navigation::estimate::Estimate;
-pub use sophie_control::navigation::flow_range_sample::GroundView;
-pub use sophie_control::navigation::position_estimator::Fault;
+use sophie_control::navigation::air_pressure::AirPressure;
+use sophie_control::navigation::estimate::Estimate;
+use sophie_control::navigation::flow_range_sample::GroundView;
+use sophie_control::navigation::position_estimator::Fault;
 use sophie_control::params::Params;
-use sophie_control::pilot::bench_orders::Place;
-pub use sophie_control::pilot::bench_orders::{BenchAnswer, BenchRequest, BenchView};
-pub use sophie_control::pilot::remote::{RemoteAnswer, RemoteRequest};
-use sophie_mavlink::inputs::Counts;
-use sophie_mavlink::wire::signing::{Refused, Signing};
-pub use sophie_ports::external_pose::ExternalPose;
-use sophie_ports::signing::Stored;
-
-use crate::links::last_value::{LastValue, Receiver};
-pub use crate::links::last_value::{RECEIVERS, Raw};
-use crate::schedule::histogram::Histogram;
-use crate::schedule::timing::{Quantity, Record, Run, Timing};
-use crate::schedule::{Level, TaskId};
-use crate::start::Start;
+use sophie_control::pilot::bench_orders::{BenchAnswer, BenchRequest, BenchView};
+use sophie_control::pilot::remote::{RemoteAnswer, RemoteRequest};
+use sophie_ports::external_pose::ExternalPose;
+use sophie_ports::receiver::RcState;
 use sophie_ports::retained::StartCause;
 use sophie_ports::sensors::AnalogFrame;
 
-/// A value and the time at which what it describes was measured.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stamped<T> {
-    /// When it was measured.
-    pub at: Instant,
-    /// What was measured.
-    pub value: T,
-}
-
-impl<T> Stamped<T> {
-    /// The value, unless it is older than `limit` now.
-    pub fn fresh(self, limit: Duration) -> Option<T> {
-        self.fresh_at(Instant::now(), limit)
-    }
-
-    /// The value, unless it is older than `limit` at `now`.
-    #[inline]
-    pub fn fresh_at(self, now: Instant, limit: Duration) -> Option<T> {
-        self.is_fresh(now, limit).then_some(self.value)
-    }
-
-    /// True unless it is older than `limit` at `now`.
-    #[inline]
-    pub fn is_fresh(&self, now: Instant, limit: Duration) -> bool {
-        now.saturating_duration_since(self.at) <= limit
-    }
-}
-
-/// The newest message of a link as a reader that has a use for old ones sees it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Newest<T> {
-    /// Measured within the link's limit.
-    Fresh(Stamped<T>),
-    /// Measured longer ago: the last that is known, not what is.
-    Held(Stamped<T>),
-}
-
-/// A link that keeps the newest message.
-pub struct Link<T: Clone> {
-    newest: LastValue<Stamped<T>>,
-    /// Age beyond which a reader must not use the message.
-    pub stale_after: Duration,
-}
-
-impl<T: Clone> Link<T> {
-    const fn new(stale_after: Duration) -> Self {
-        Self {
-            newest: LastValue::new(),
-            stale_after,
-        }
-    }
-
-    /// Publishes `value`, measured at `at`.
-    pub fn send(&self, at: Instant, value: T) {
-        self.newest.send(Stamped { at, value });
-    }
-
-    /// The newest message, however old.
-    pub fn latest(&self) -> Option<Stamped<T>> {
-        self.newest.look(Clone::clone)
-    }
-
-    /// What `f` makes of the newest message, however old.
-    #[inline]
-    pub fn look<R>(&self, f: impl FnOnce(&Stamped<T>) -> R) -> Option<R> {
-        self.newest.look(f)
-    }
-
-    /// The newest message, unless it is stale.
-    pub fn fresh(&self) -> Option<T> {
-        self.fresh_to(Instant::now(), T::clone)
-    }
-
-    /// What `f` makes of the newest message, unless it is stale at `now`.
-    #[inline]
-    pub fn fresh_to<R>(&self, now: Instant, f: impl FnOnce(&T) -> R) -> Option<R> {
-        self.look(|m| m.is_fresh(now, self.stale_after).then(|| f(&m.value)))
-            .flatten()
-    }
-
-    /// The newest message, marked as fresh or held.
-    pub fn newest(&self) -> Option<Newest<T>> {
-        self.latest().map(|m| match m.clone().fresh(self.stale_after) {
-            Some(_) => Newest::Fresh(m),
-            None => Newest::Held(m),
-        })
-    }
-
-    /// A receiver that can wait for the next message; `None` when all [`RECEIVERS`] are taken.
-    pub fn receiver(&self) -> Option<Receiver<'_, Stamped<T>>> {
-        self.newest.receiver()
-    }
-}
-
-/// Contact pressures.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Contact {
-    /// Pressure at each arm's sensor, Pa, or what is wrong with the sensor.
-    pub arms: PerArm<Result<f32, FsrFault>>,
-}
-
-impl Default for Contact {
-    /// Sound sensors that feel nothing.
-    fn default() -> Self {
-        Self { arms: [Ok(0.0); 4] }
-    }
-}
-
-/// Tilt of the arms as their own sensors see it; the message's time is that of the oldest.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ArmAngles {
-    /// Tilt of each arm, rad, tip up positive, with the time at which its sensor was asked; `None` when it gave nothing.
-    pub tilt: PerArm<Option<Stamped<f32>>>,
-}
-
-impl ArmAngles {
-    /// Angles that were all measured at `at`, rad.
-    pub fn at(at: Instant, tilt: PerArm<Option<f32>>) -> Self {
-        Self {
-            tilt: tilt.map(|tilt| tilt.map(|value| Stamped { at, value })),
-        }
-    }
-
-    /// When the oldest of them was measured.
-    pub fn oldest(&self) -> Option<Instant> {
-        self.tilt.iter().flatten().map(|tilt| tilt.at).min()
-    }
-
-    /// Those that are not older than `limit` now.
-    pub fn within(self, limit: Duration) -> Self {
-        Self {
-            tilt: self.tilt.map(|tilt| tilt.filter(|t| t.fresh(limit).is_some())),
-        }
-    }
-
-    /// The angles alone, rad.
-    pub fn values(&self) -> PerArm<Option<f32>> {
-        self.tilt.map(|tilt| tilt.map(|t| t.value))
-    }
-}
-
-/// Forces asked of the tendons, by what they follow from. The message's time is that of it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum TendonOrder {
-    /// From the pressures that were converted at the message's time.
-    Measured(TendonForces),
-    /// From the command of the message's time alone, since no pressure is fresh: closed arms keep their force, those
-    /// that are to be released lose it.
-    Blind(TendonForces),
-    /// From before a restart, sent once at the start: the servos stay where they are until a command comes.
-    Resumed(TendonForces),
-    /// On the bench: one servo at a pulse, the others by their forces, which are none.
-    Placed {
-        /// Of each one.
-        forces: TendonForces,
-        /// The one servo.
-        place: Place,
-    },
-}
-
-impl TendonOrder {
-    /// The forces, whatever they follow from.
-    pub const fn forces(&self) -> &TendonForces {
-        match self {
-            Self::Measured(forces)
-            | Self::Blind(forces)
-            | Self::Resumed(forces)
-            | Self::Placed { forces, .. } => forces,
-        }
-    }
-}
-
-/// What is asked of the tendons.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct TendonForces {
-    /// Of each one.
-    pub arms: PerArm<TendonForce>,
-    /// The tendons were found wound when the power came on: where their servos stand is to be taken from the tilt.
-    pub found: bool,
-}
-
-/// What is asked of one tendon.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct TendonForce {
-    /// Tension, N; 0 is slack.
-    pub force: f32,
-    /// The servo is to stay where it is, whatever the force.
-    pub stay: bool,
-}
-
-/// The commander's view, for telemetry, log and lights.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Status {
-    /// State of the vehicle.
-    pub mode: Mode,
-    /// Why arming is refused or the failsafe acts; `None` when nothing does.
-    pub reason: Option<Reason>,
-    /// What does not stop the flight but must be known; empty when there is nothing.
-    pub warning: &'static str,
-    /// Everything that forbids arming now.
-    pub inhibits: ArmingInhibits,
-}
-
-/// Whether frames of MAVLink are signed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum SigningState {
-    /// No key is stored.
-    #[default]
-    Off,
-    /// A key is in force.
-    On,
-    /// The storage cannot be read: nothing is obeyed.
-    Unknown,
-    /// It could not be read and was erased: nothing is obeyed until a key is set, or none.
-    Lost,
-}
-
-/// What the MAVLink line is like.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct LineState {
-    /// Whether frames are signed.
-    pub signing: SigningState,
-    /// Frames that were refused for their signature since the start.
-    pub refused: Refused,
-    /// Inputs from outside since the start.
-    pub inputs: Counts,
-}
-
-impl LineState {
-    /// As `signing` has it, with what came in.
-    pub const fn of(signing: &Signing, inputs: Counts) -> Self {
-        Self {
-            signing: match signing.stored() {
-                Stored::None => SigningState::Off,
-                Stored::Key(_) => SigningState::On,
-                Stored::Unreadable => SigningState::Unknown,
-                Stored::Lost => SigningState::Lost,
-            },
-            refused: signing.refused(),
-            inputs,
-        }
-    }
-}
+use self::last_value::Raw;
+use self::link::Link;
+use self::mavlink_line::LineState;
+use self::messages::{ArmAngles, Contact, Status};
+use self::tendon_order::TendonOrder;
+use self::timing_records::TimingRecords;
+use crate::schedule::TaskId;
+use crate::start::Start;
 
 /// What is declared of a link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -333,10 +88,8 @@ macro_rules! links {
                 #[doc = concat!("\n\nFrom [`TaskId::", stringify!($from), "`] to ", $to, ", stale after ", $stale, " ms.")]
                 pub $name: Link<$message>,
             )*
-            /// every task of the flight level -> log. When one misses its deadline.
-            pub missed: Signal<Raw, ()>,
-            timing: [Mutex<Raw, RefCell<Record>>; TaskId::COUNT],
-            contact_chain: Mutex<Raw, RefCell<Record>>,
+            /// Timing of every task. every task -> console, log, supervisor, commander.
+            pub timing: TimingRecords,
             hardware: Mutex<Raw, Cell<ArmingInhibits>>,
             stack_scarce: AtomicBool,
         }
@@ -358,9 +111,7 @@ macro_rules! links {
                     params,
                     start,
                     $($name: Link::new(Duration::from_millis($stale)),)*
-                    missed: Signal::new(),
-                    timing: [const { Mutex::new(RefCell::new(Record::new())) }; TaskId::COUNT],
-                    contact_chain: Mutex::new(RefCell::new(Record::new())),
+                    timing: TimingRecords::new(),
                     hardware: Mutex::new(Cell::new(match start.cause {
                         StartCause::BrownOut => ArmingInhibits::NONE.with(ArmingInhibit::BrownOut),
                         _ => ArmingInhibits::NONE,
@@ -498,78 +249,4 @@ impl Links {
         let newest = self.arms.latest().map(|m| m.value).unwrap_or_default();
         newest.within(self.arms.stale_after)
     }
-
-    /// Records one answer to pressures: released when they were converted, started when the compare values were written,
-    /// ended when the pulse of these begins.
-    pub fn record_contact(&self, run: &Run) {
-        with(&self.contact_chain, |record| record.add(run));
-    }
-
-    /// Timing from the conversion of pressures to the servos' pulse, since power-up.
-    pub fn contact_timing(&self) -> Timing {
-        with(&self.contact_chain, |record| record.totals()).unwrap_or_default()
-    }
-
-    /// Histogram of the same since it was taken last.
-    pub fn take_contact_histogram(&self, quantity: Quantity) -> Histogram {
-        with(&self.contact_chain, |record| record.take(quantity)).unwrap_or(Histogram::EMPTY)
-    }
-
-    /// Timing of a task since power-up.
-    pub fn timing(&self, task: TaskId) -> Timing {
-        self.with_record(task, |record| record.totals())
-            .unwrap_or_default()
-    }
-
-    /// Longest response of a task that was added, µs, without adding the one that was noted last.
-    pub fn worst_response(&self, task: TaskId) -> u32 {
-        self.with_record(task, |record| record.worst_response())
-            .unwrap_or(0)
-    }
-
-    /// Histogram of a task's times since it was taken last.
-    pub fn take_histogram(&self, task: TaskId, quantity: Quantity) -> Histogram {
-        self.with_record(task, |record| record.take(quantity))
-            .unwrap_or(Histogram::EMPTY)
-    }
-
-    /// Records one run of a task.
-    pub fn record(&self, task: TaskId, run: &Run) {
-        let missed = self.with_record(task, |record| record.add(run));
-        self.tell_missed(task, missed);
-    }
-
-    /// Records one run of a task on the way to the motor frame: noted here, added by [`Self::settle`].
-    #[inline]
-    pub fn note(&self, task: TaskId, run: &Run) {
-        let missed = self.with_record(task, |record| record.note(run));
-        self.tell_missed(task, missed);
-    }
-
-    /// Adds what the flight level has noted. Called when the motor frame is out; each task has its own lock, so that
-    /// interrupts are masked for no longer than one run takes.
-    pub fn settle(&self) {
-        for task in TaskId::ALL
-            .into_iter()
-            .filter(|task| task.level() == Level::Flight)
-        {
-            self.with_record(task, Record::settle);
-        }
-    }
-
-    #[inline]
-    fn tell_missed(&self, task: TaskId, missed: Option<bool>) {
-        if missed == Some(true) && task.level() == Level::Flight {
-            self.missed.signal(());
-        }
-    }
-
-    fn with_record<T>(&self, task: TaskId, f: impl FnOnce(&mut Record) -> T) -> Option<T> {
-        with(self.timing.get(task as usize)?, f)
-    }
-}
-
-fn with<T>(slot: &Mutex<Raw, RefCell<Record>>, f: impl FnOnce(&mut Record) -> T) -> Option<T> {
-    // Borrowed nowhere else: the lock is held for as long.
-    slot.lock(|cell| cell.try_borrow_mut().ok().map(|mut record| f(&mut record)))
 }

@@ -5,7 +5,7 @@
 //! of their own.
 
 mod guard;
-mod port;
+pub mod port;
 
 use embassy_futures::join::join4;
 use embassy_time::{Duration, Timer, with_timeout};
@@ -14,13 +14,11 @@ use embassy_usb::driver::{Driver, EndpointError};
 use embassy_usb::{Builder, Config, UsbVersion};
 
 use self::guard::Guarded;
-pub use self::port::{Port, UsbInput, UsbOutput};
+use self::port::{PACKET, Port};
 
 /// ST's own numbers of a virtual serial port, which its chips' other firmwares use and every system knows.
 const VENDOR: u16 = 0x0483;
 const PRODUCT: u16 = 0x5740;
-/// Bytes of a packet at full speed.
-pub const PACKET: u16 = 64;
 /// What is sent at once: a packet that is not full ends a transfer, so that nothing waits for one that does.
 const CHUNK: usize = PACKET as usize - 1;
 /// What the board may draw, mA: the most there is, since sensors and receiver hang on it.

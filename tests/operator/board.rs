@@ -21,7 +21,8 @@ use sophie_control::maths::vector::Vec3;
 use sophie_control::params::{MotorMap, Params};
 use sophie_control::pilot::rc::Sticks;
 use sophie_fakes::{FakeAnalog, FakeBarometer, FakeImu, FakeLine, FakeMotors, FakeServos};
-use sophie_ports::chip::{Chip, Look, NotSet};
+use sophie_ports::chip::{Chip, NotSet};
+use sophie_ports::chip_check::ChipCheck;
 use sophie_ports::error::PortError;
 use sophie_ports::receiver::RcState;
 use sophie_ports::sensors::{AnalogFrame, ArmImus};
@@ -353,7 +354,7 @@ impl Run {
             chip: ThisChip {
                 hands: hands.clone(),
                 stored: stored.clone(),
-                looks: looks(now.brown_out_set),
+                checks: checks(now.brown_out_set),
                 restarted,
             },
         };
@@ -476,16 +477,16 @@ impl Run {
     }
 }
 
-fn looks(brown_out_set: bool) -> [Look; 2] {
+fn checks(brown_out_set: bool) -> [ChipCheck; 2] {
     [
-        Look {
+        ChipCheck {
             name: "revision",
             read: heapless::String::try_from("0x450 0x2003").unwrap(),
             expected: "0x2001 (X) or later",
             ok: true,
             inhibits: None,
         },
-        Look {
+        ChipCheck {
             name: "brown-out level",
             read: heapless::String::try_from(if brown_out_set { "3" } else { "0" }).unwrap(),
             expected: "3",
@@ -568,7 +569,7 @@ impl SerialOutput for Frames {
 struct ThisChip {
     hands: Arc<Mutex<Hands>>,
     stored: Arc<Mutex<Params>>,
-    looks: [Look; 2],
+    checks: [ChipCheck; 2],
     restarted: Rc<Cell<bool>>,
 }
 
@@ -616,8 +617,8 @@ impl Chip for ThisChip {
         self.hands.lock().unwrap().build
     }
 
-    fn looks(&self) -> &[Look] {
-        &self.looks
+    fn checks(&self) -> &[ChipCheck] {
+        &self.checks
     }
 
     fn brown_out_volts(&self) -> f32 {

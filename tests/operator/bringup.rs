@@ -14,8 +14,8 @@ use sophie_control::pilot::rc::{ArmChoice, StickMode, Sticks};
 use sophie_sim::live::Key;
 
 use super::board::{Board, Hands};
-use super::command::{Temp, command, refused};
 use super::run;
+use sophie_test_support::command::{Temp, command, refused};
 
 /// What the accelerometer reads beyond gravity.
 const BIAS: Vec3 = Vec3::new(0.11, -0.04, 0.08);

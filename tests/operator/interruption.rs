@@ -9,8 +9,8 @@ use sophie_control::params::{ParamInfo, Params};
 
 use super::board::{Board, Hands, Outputs};
 use super::bringup::Builder;
-use super::command::{Temp, command, text};
 use super::{interrupt, run};
+use sophie_test_support::command::{Temp, command, text};
 
 /// Steps up to `id`, skipped.
 fn skips_to(builder: &mut Builder, id: &str) {

@@ -2,8 +2,6 @@
 
 mod board;
 mod bringup;
-#[path = "../common/command.rs"]
-mod command;
 mod interruption;
 mod mavlink;
 mod params;
@@ -13,7 +11,7 @@ mod wire;
 
 use std::process::{Child, Command};
 
-use self::command::{Temp, sophie, text};
+use sophie_test_support::command::{Temp, sophie, text};
 
 /// Ctrl-C at `child`.
 fn interrupt(child: &Child) {

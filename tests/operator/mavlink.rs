@@ -7,8 +7,8 @@ use sophie_sim::live::Key;
 
 use super::board::{Board, Hands};
 use super::bringup::KEY;
-use super::command::Temp;
 use super::{Done, run};
+use sophie_test_support::command::Temp;
 
 fn params(temp: &Temp, board: &Board, verb: &str, more: &[&str]) -> Done {
     let (name, patience) = (board.name(), ["--patience", "2"]);

@@ -7,8 +7,8 @@ use sophie_control::params::Params;
 use sophie_control::pilot::rc::Sticks;
 
 use super::board::{Board, Hands};
-use super::command::{Temp, refused};
 use super::{Done, run};
+use sophie_test_support::command::{Temp, refused};
 
 /// `params VERB FILE` at the board.
 fn params(temp: &Temp, board: &Board, verb: &str, file: &str) -> Done {

@@ -8,8 +8,8 @@ use std::time::{Duration, Instant};
 
 use super::board::{Board, Hands};
 use super::bringup::Builder;
-use super::command::{Temp, command, text};
 use super::{Done, run};
+use sophie_test_support::command::{Temp, command, text};
 
 fn params(temp: &Temp, board: &Board, verb: &str) -> Done {
     let name = board.name();

@@ -1,6 +1,7 @@
 //! The chip: restart, option bytes, results of start-up checks.
 
-use sophie_ports::chip::{Chip, Look, Looks, NotSet};
+use sophie_ports::chip::{Chip, NotSet};
+use sophie_ports::chip_check::{ChipCheck, ChipChecks};
 use sophie_ports::stack_use::StackUse;
 use static_cell::StaticCell;
 
@@ -10,19 +11,19 @@ use crate::cortex_m::restart::reset;
 use crate::cortex_m::{image, stack};
 use crate::{NAME, stop_motors};
 
-static LOOKS: StaticCell<Looks> = StaticCell::new();
+static CHECKS: StaticCell<ChipChecks> = StaticCell::new();
 
 /// The chip.
 pub struct ThisChip {
     /// Results of the start-up checks.
-    pub looks: &'static [Look],
+    pub checks: &'static [ChipCheck],
 }
 
 impl ThisChip {
     /// The chip with the check results `looks`. Called once.
-    pub fn new(looks: Looks) -> Self {
+    pub fn new(checks: ChipChecks) -> Self {
         Self {
-            looks: LOOKS.init(looks),
+            checks: CHECKS.init(checks),
         }
     }
 }
@@ -50,8 +51,8 @@ impl Chip for ThisChip {
         image::id()
     }
 
-    fn looks(&self) -> &[Look] {
-        self.looks
+    fn checks(&self) -> &[ChipCheck] {
+        self.checks
     }
 
     fn stack(&self) -> Option<StackUse> {

@@ -6,7 +6,7 @@ use core::fmt::{self, Write};
 use embassy_stm32::{pac, rcc};
 use heapless::String;
 use sophie_control::arming::ArmingInhibit;
-use sophie_ports::chip::{Look, Looks, READ};
+use sophie_ports::chip_check::{ChipCheck, ChipChecks, READ};
 use sophie_ports::storage::Loaded;
 
 use super::clock::bus_hz;
@@ -14,10 +14,10 @@ use super::options;
 
 /// Checks the chip. `stored` is the result of reading the parameters, `sectors` a bit for each of their flash sectors.
 /// Called once, with clocks and caches set.
-pub fn look(stored: Loaded, sectors: u32) -> Looks {
-    let mut looks = Looks::new();
+pub fn look(stored: Loaded, sectors: u32) -> ChipChecks {
+    let mut checks = ChipChecks::new();
     let mut add = |look| {
-        let _ = looks.push(look);
+        let _ = checks.push(look);
     };
     add(revision());
     add(clocks());
@@ -26,7 +26,7 @@ pub fn look(stored: Loaded, sectors: u32) -> Looks {
     #[cfg(not(family = "f4"))]
     add(memory_protection());
     let level = options::brown_out_level();
-    add(Look {
+    add(ChipCheck {
         inhibits: Some(ArmingInhibit::BrownOutLevel),
         ..row("brown-out level", format_args!("{level}"), "3", level == 3)
     });
@@ -55,14 +55,14 @@ pub fn look(stored: Loaded, sectors: u32) -> Looks {
         "nobody else: 'save' replaces it",
         stored.foreign.is_none() && !stored.unreadable,
     ));
-    looks
+    checks
 }
 
 /// A check that permits flight.
-fn row(name: &'static str, read: fmt::Arguments<'_>, expected: &'static str, ok: bool) -> Look {
+fn row(name: &'static str, read: fmt::Arguments<'_>, expected: &'static str, ok: bool) -> ChipCheck {
     let mut text = String::<READ>::new();
     let _ = text.write_fmt(read);
-    Look {
+    ChipCheck {
         name,
         read: text,
         expected,
@@ -72,8 +72,8 @@ fn row(name: &'static str, read: fmt::Arguments<'_>, expected: &'static str, ok:
 }
 
 /// A check that forbids arming on failure.
-fn needed(name: &'static str, read: fmt::Arguments<'_>, expected: &'static str, ok: bool) -> Look {
-    Look {
+fn needed(name: &'static str, read: fmt::Arguments<'_>, expected: &'static str, ok: bool) -> ChipCheck {
+    ChipCheck {
         inhibits: Some(ArmingInhibit::Silicon),
         ..row(name, read, expected, ok)
     }
@@ -82,7 +82,7 @@ fn needed(name: &'static str, read: fmt::Arguments<'_>, expected: &'static str, 
 /// Before revision X the H7's converter must run slower than here, with its clocks set differently (STM32H743 errata,
 /// RM0433 §60.5.8).
 #[cfg(family = "h7")]
-fn revision() -> Look {
+fn revision() -> ChipCheck {
     let id = pac::DBGMCU.idc().read();
     let (part, revision) = (id.dev_id(), id.rev_id());
     needed(
@@ -94,14 +94,14 @@ fn revision() -> Look {
 }
 
 #[cfg(not(family = "h7"))]
-fn revision() -> Look {
+fn revision() -> ChipCheck {
     let id = pac::DBGMCU.idcode().read();
     let (part, revision) = (id.dev_id(), id.rev_id());
     needed("revision", format_args!("{part:#x} {revision:#x}"), "any", true)
 }
 
 /// Core clock in MHz, from the PLL on the crystal, not the fallback oscillator.
-fn clocks() -> Look {
+fn clocks() -> ChipCheck {
     let mhz = bus_hz() / 1_000_000;
     let r = pac::RCC;
     let by_pll = r.cfgr().read().sws() == rcc::Sysclk::PLL1_P;
@@ -121,7 +121,7 @@ fn clocks() -> Look {
 
 /// At 2.7 V or more: one for each 30 MHz beyond the first on F4 and F7 (RM0090 table 10, RM0410 table 7), two from 140
 /// to 210 MHz on the H7 (RM0433 table 17, VOS1).
-fn wait_states() -> Look {
+fn wait_states() -> ChipCheck {
     #[cfg(family = "h7")]
     let read = pac::FLASH.acr().read().latency();
     #[cfg(not(family = "h7"))]
@@ -141,7 +141,7 @@ fn wait_states() -> Look {
 }
 
 #[cfg(family = "f4")]
-fn acceleration() -> Look {
+fn acceleration() -> ChipCheck {
     let [prefetch, instructions, data] = super::accelerator::enabled();
     let mark = |on| if on { "+" } else { "-" };
     needed(
@@ -158,7 +158,7 @@ fn acceleration() -> Look {
 }
 
 #[cfg(not(family = "f4"))]
-fn acceleration() -> Look {
+fn acceleration() -> ChipCheck {
     let [instructions, data] = crate::cortex_m::caches();
     let mark = |on| if on { "+" } else { "-" };
     needed(
@@ -170,7 +170,7 @@ fn acceleration() -> Look {
 }
 
 #[cfg(not(family = "f4"))]
-fn memory_protection() -> Look {
+fn memory_protection() -> ChipCheck {
     let on = crate::cortex_m::protected();
     let read = if on { "external memories shut" } else { "off" };
     needed(

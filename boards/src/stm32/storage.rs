@@ -7,7 +7,7 @@ use sophie_control::params::Params;
 use sophie_drivers::param_store::ParamStore;
 use sophie_ports::signing::Record;
 use sophie_ports::storage::{Loaded, Storage, StorageError};
-use sophie_tasks::links::Raw;
+use sophie_tasks::links::last_value::Raw;
 use sophie_tasks::storage::parameters;
 use static_cell::StaticCell;
 

@@ -7,7 +7,8 @@ use embassy_stm32::interrupt::typelevel::{Binding, Interrupt};
 use embassy_stm32::peripherals::USB_OTG_FS;
 use embassy_stm32::usb::{Config, DmPin, DpPin, Driver, Instance, InterruptHandler};
 use embassy_stm32::{Peri, pac, uid};
-use sophie_tasks::usb::{Identity, PACKET};
+use sophie_tasks::usb::Identity;
+use sophie_tasks::usb::port::PACKET;
 use static_cell::ConstStaticCell;
 
 use crate::cortex_m::BELOW_FLIGHT;

@@ -2,12 +2,12 @@
 
 use glam::DVec3;
 use sophie_control::allocation::wrench::PerArm;
+use sophie_control::chain::setpoint::Setpoint;
 use sophie_sim::mixers::Mixer;
 use sophie_sim::plant::GRAVITY;
 use sophie_sim::scenario::Scenario;
 use sophie_sim::target_angles;
 use sophie_sim::test_stands::flight_level::{HeightHold, Rig};
-use sophie_tasks::links::Setpoint;
 
 use super::allocation::Studied;
 

@@ -3,7 +3,8 @@
 use std::cell::Cell;
 use std::rc::Rc;
 
-use sophie_ports::chip::{Chip, Look, NotSet};
+use sophie_ports::chip::{Chip, NotSet};
+use sophie_ports::chip_check::ChipCheck;
 use sophie_ports::stack_use::StackUse;
 
 /// A chip that counts its restarts and may refuse its brown-out level.
@@ -16,7 +17,7 @@ pub struct FakeChip {
     /// The level cannot be set.
     pub refuses: bool,
     /// Results of the start-up checks.
-    pub looks: Vec<Look>,
+    pub checks: Vec<ChipCheck>,
     /// Greatest depth of its stack.
     pub stack: Option<StackUse>,
 }
@@ -36,8 +37,8 @@ impl Chip for FakeChip {
         0x1234_ABCD
     }
 
-    fn looks(&self) -> &[Look] {
-        &self.looks
+    fn checks(&self) -> &[ChipCheck] {
+        &self.checks
     }
 
     fn stack(&self) -> Option<StackUse> {

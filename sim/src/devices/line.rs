@@ -6,7 +6,7 @@ use std::collections::VecDeque;
 use embassy_sync::pipe::Pipe;
 use sophie_ports::error::PortError;
 use sophie_ports::serial::{SerialInput, SerialOutput};
-use sophie_tasks::links::Raw;
+use sophie_tasks::links::last_value::Raw;
 
 /// Bytes towards the board that wait for its task: more than a fast client sends within a millisecond.
 const INPUT: usize = 4096;

@@ -1,9 +1,9 @@
 //! Interface of a flight to the electronics: the tasks in virtual time, or an emulated board with the flashed image.
 
 use sophie_control::allocation::wrench::PerArm;
+use sophie_control::gripper::grip::GripState;
 use sophie_control::mode::Mode;
 use sophie_ports::retained::StartCause;
-use sophie_tasks::links::GripState;
 
 use crate::plant::Plant;
 

@@ -4,6 +4,7 @@ use glam::DVec3;
 use rand::Rng;
 use rand_pcg::Pcg64Mcg;
 use sophie_control::allocation::wrench::{Configuration, PerArm};
+use sophie_control::gripper::grip::GripState;
 use sophie_control::maths::scalar;
 use sophie_control::maths::vector::Vec3;
 use sophie_control::mode::Reason;
@@ -12,8 +13,10 @@ use sophie_control::params::{FlowPort, Params};
 use sophie_drivers::rc_decoder::Decoder;
 use sophie_mixers::{Mixer, Variant};
 use sophie_ports::retained::{StartCause, Words};
-use sophie_tasks::deadline::TaskId;
-use sophie_tasks::links::{GripState, Links, Newest, Stamped, Status};
+use sophie_tasks::links::Links;
+use sophie_tasks::links::link::{Newest, Stamped};
+use sophie_tasks::links::messages::Status;
+use sophie_tasks::schedule::TaskId;
 use sophie_tasks::start::Start;
 
 use super::aircraft::{Aircraft, ReportedStatus, Reset, StackEstimate};
@@ -333,9 +336,9 @@ impl Aircraft for Stack {
     fn overruns(&self) -> u32 {
         let now: u32 = TaskId::ALL
             .iter()
-            .map(|&task| self.links.timing(task).overruns)
+            .map(|&task| self.links.timing.task(task).overruns)
             .sum();
-        self.overruns + now + self.links.contact_timing().overruns
+        self.overruns + now + self.links.timing.contact().overruns
     }
 }
 

@@ -1,6 +1,7 @@
 //! The simulated board's chip, as its console shows it.
 
-use sophie_ports::chip::{Chip, Look, NotSet};
+use sophie_ports::chip::{Chip, NotSet};
+use sophie_ports::chip_check::ChipCheck;
 use sophie_tasks::storage::parameters::table_id;
 
 use crate::devices::line::Line;
@@ -28,7 +29,7 @@ impl Chip for ThisChip {
         sophie_image_id::of([table_id()])
     }
 
-    fn looks(&self) -> &[Look] {
+    fn checks(&self) -> &[ChipCheck] {
         &[]
     }
 

@@ -11,8 +11,9 @@ use crate::target_angles;
 use embassy_time::Instant;
 use sophie_control::allocation::wrench::Configuration;
 use sophie_control::chain::MixingStep;
+use sophie_control::chain::setpoint::Setpoint;
 use sophie_control::params::{MotorMap, Params};
-use sophie_tasks::links::{Links, Setpoint};
+use sophie_tasks::links::Links;
 
 /// Unjudged take-off, s.
 const SETTLE: f64 = 5.0;

@@ -15,7 +15,8 @@ use sophie_control::pilot::bench_orders::{
 };
 
 use super::Console;
-use crate::deadline::{FixedRate, TaskId};
+use crate::deadline::FixedRate;
+use crate::schedule::TaskId;
 use sophie_control::maths::decimal::{self, Decimal};
 use sophie_ports::chip::Chip;
 use sophie_ports::serial::{SerialInput, SerialOutput};

@@ -4,7 +4,8 @@ use sophie_control::arming::ArmingInhibit;
 
 use super::Console;
 use sophie_control::maths::decimal::Decimal;
-use sophie_ports::chip::{Chip, Look};
+use sophie_ports::chip::Chip;
+use sophie_ports::chip_check::ChipCheck;
 use sophie_ports::serial::{SerialInput, SerialOutput};
 use sophie_ports::storage::Storage;
 
@@ -12,13 +13,13 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
     /// What the start-up looked at, and how deep the stack has been: name, what was read, what is expected.
     pub(super) async fn silicon(&mut self) {
         let stack = self.chip.stack().map(|used| [used.at_start(), used.in_flight()]);
-        for Look {
+        for ChipCheck {
             name,
             read,
             expected,
             ok,
             ..
-        } in self.chip.looks().iter().chain(stack.iter().flatten())
+        } in self.chip.checks().iter().chain(stack.iter().flatten())
         {
             let mark = if *ok { ' ' } else { '*' };
             self.out
@@ -41,15 +42,15 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
     }
 
     /// The level, as the start-up read it.
-    fn brown_out_level(&self) -> Option<&Look> {
-        let mut looks = self.chip.looks().iter();
-        looks.find(|look| look.inhibits == Some(ArmingInhibit::BrownOutLevel))
+    fn brown_out_level(&self) -> Option<&ChipCheck> {
+        let mut checks = self.chip.checks().iter();
+        checks.find(|look| look.inhibits == Some(ArmingInhibit::BrownOutLevel))
     }
 
     /// What the level is and what setting it does, before anyone sets it.
     pub(super) async fn brown_out(&mut self) {
         let volts = Decimal(self.chip.brown_out_volts());
-        let Some(Look {
+        let Some(ChipCheck {
             read, expected, ok, ..
         }) = self.brown_out_level()
         else {

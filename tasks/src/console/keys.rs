@@ -5,13 +5,15 @@ use core::task::Poll;
 use embassy_futures::poll_once;
 use embassy_time::{Duration, Instant, Timer, with_deadline};
 
-use super::PAUSE;
-use super::line::CHUNK;
 use sophie_ports::error::PortError;
 use sophie_ports::serial::SerialInput;
 
 /// Most keys that one look at them takes: a line that is full of noise must not hold its reader.
 const KEYS: usize = 256;
+/// Bytes taken at once.
+pub(super) const CHUNK: usize = 32;
+/// Pause after a line error or an empty read, so that a dead line cannot take the processor.
+pub(super) const PAUSE: Duration = Duration::from_millis(1);
 /// Ctrl-C: every command ends with it, and a line that was begun is dropped. Stands for a broken line as well.
 pub const CANCEL: u8 = 0x03;
 

@@ -2,12 +2,10 @@
 
 use heapless::{String, Vec};
 
-use super::keys::CANCEL;
+use super::keys::{CANCEL, CHUNK};
 
 /// Longest line, characters.
 pub(super) const LENGTH: usize = 80;
-/// Bytes taken at once.
-pub(super) const CHUNK: usize = 32;
 /// Echo of one chunk: at most three bytes for each.
 pub(super) type Echo = Vec<u8, { 3 * CHUNK }>;
 

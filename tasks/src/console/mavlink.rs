@@ -6,7 +6,7 @@ use sophie_mavlink::wire::signing::Refused;
 use sophie_ports::signing::{Key, Record, Stored};
 
 use super::Console;
-use crate::links::{LineState, SigningState};
+use crate::links::mavlink_line::{LineState, SigningState};
 use crate::storage::storing;
 use sophie_ports::chip::Chip;
 use sophie_ports::serial::{SerialInput, SerialOutput};

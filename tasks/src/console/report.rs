@@ -4,7 +4,7 @@ use embassy_time::Instant;
 use sophie_control::mode::{Mode, Reason};
 
 use super::Console;
-use crate::deadline::TaskId;
+use crate::schedule::TaskId;
 use sophie_control::maths::decimal::Decimal;
 use sophie_ports::chip::Chip;
 use sophie_ports::serial::{SerialInput, SerialOutput};
@@ -88,8 +88,8 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         // In milliseconds, so that a young start does not divide by zero.
         let up = Instant::now().as_millis().max(1);
         // After the tasks the chain from contact pressure to servo pulse: late at the command, response at the pulse.
-        let chain = [("contact", self.links.contact_timing())];
-        let tasks = TaskId::ALL.map(|task| (task.name(), self.links.timing(task)));
+        let chain = [("contact", self.links.timing.contact())];
+        let tasks = TaskId::ALL.map(|task| (task.name(), self.links.timing.task(task)));
         for (name, t) in tasks.into_iter().chain(chain) {
             let rate = u64::from(t.runs) * 1000 / up;
             self.out

@@ -3,7 +3,7 @@
 use sophie_control::arming::ArmingInhibit;
 
 use super::Console;
-use crate::links::SigningState;
+use crate::links::mavlink_line::SigningState;
 use crate::storage::storing;
 use sophie_ports::chip::Chip;
 use sophie_ports::serial::{SerialInput, SerialOutput};

@@ -8,7 +8,7 @@ use sophie_control::gripper::contact_pressure::FsrFault;
 use sophie_control::maths::scalar::to_deg;
 
 use super::Console;
-use crate::deadline::{Level, TaskId};
+use crate::schedule::{Level, TaskId};
 use sophie_control::maths::decimal::Decimal;
 use sophie_ports::chip::Chip;
 use sophie_ports::serial::{SerialInput, SerialOutput};
@@ -107,9 +107,9 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
             .into_iter()
             .filter(|task| task.level() == Level::Flight);
         Counted {
-            motors: self.links.timing(TaskId::Motors).runs,
-            servos: self.links.timing(TaskId::Servos).runs,
-            missed: flight.fold(0, |n, task| n.wrapping_add(self.links.timing(task).overruns)),
+            motors: self.links.timing.task(TaskId::Motors).runs,
+            servos: self.links.timing.task(TaskId::Servos).runs,
+            missed: flight.fold(0, |n, task| n.wrapping_add(self.links.timing.task(task).overruns)),
         }
     }
 

@@ -6,8 +6,11 @@ use embassy_time::{Duration, Instant};
 use sophie_control::attitude::rate_loop::Feedback;
 use sophie_control::chain::{Command, Control};
 
-use crate::deadline::{TaskId, note_run};
-use crate::links::{Links, MixOutput, Setpoint};
+use crate::deadline::note_run;
+use crate::links::Links;
+use crate::schedule::TaskId;
+use sophie_control::chain::MixOutput;
+use sophie_control::chain::setpoint::Setpoint;
 
 /// Time from data-ready to the demand.
 pub const DEADLINE: Duration = TaskId::Control.deadline();

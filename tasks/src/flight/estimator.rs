@@ -5,8 +5,9 @@ use sophie_control::attitude::estimator::Estimator;
 use sophie_control::attitude::mounting::Mounting;
 use sophie_control::chain::Attitude;
 
-use crate::deadline::{TaskId, note_run};
+use crate::deadline::note_run;
 use crate::links::Links;
+use crate::schedule::TaskId;
 
 /// Time from data-ready to the estimate.
 pub const DEADLINE: Duration = TaskId::Estimator.deadline();

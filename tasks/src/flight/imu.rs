@@ -8,8 +8,9 @@ use sophie_control::arming::ArmingInhibit;
 use sophie_control::chain::{ImuSample, Sensing};
 use sophie_ports::sensors::IMU_SILENCE;
 
-use crate::deadline::{TaskId, note_run};
+use crate::deadline::note_run;
 use crate::links::Links;
+use crate::schedule::TaskId;
 use sophie_ports::error::PortError;
 use sophie_ports::sensors::Imu;
 

@@ -4,8 +4,9 @@ use embassy_time::{Duration, Instant};
 use sophie_control::chain::{ArmReading, MixOutput, Mixing, MixingStep, Surroundings};
 use sophie_control::params::Params;
 
-use crate::deadline::{TaskId, note_run};
+use crate::deadline::note_run;
 use crate::links::Links;
+use crate::schedule::TaskId;
 
 /// Time from data-ready to the motor commands.
 pub const DEADLINE: Duration = TaskId::Mixer.deadline();

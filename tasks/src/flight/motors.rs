@@ -4,8 +4,10 @@
 
 use embassy_time::{Duration, Instant, with_deadline, with_timeout};
 
-use crate::deadline::{TaskId, record_run_until};
-use crate::links::{Links, Stamped};
+use crate::deadline::record_run_until;
+use crate::links::Links;
+use crate::links::link::Stamped;
+use crate::schedule::TaskId;
 use sophie_control::allocation::motor_map::at_outputs;
 use sophie_control::allocation::wrench::PerArm;
 use sophie_ports::actuators::Motors;
@@ -40,7 +42,7 @@ pub async fn run(links: &Links, mut port: impl Motors) {
                 let began = began.unwrap_or_else(Instant::now);
                 record_run_until(links, TaskId::Motors, message.at, started, began, DEADLINE);
                 // The frame is out: adds what the earlier stages noted.
-                links.settle();
+                links.timing.settle();
             }
             Err(_) => {
                 write(&mut port, [0.0; 4], Instant::now()).await;

@@ -4,7 +4,7 @@ use embassy_sync::pipe::Pipe;
 use heapless::Vec;
 use sophie_mavlink::services::shell::CHUNK;
 
-use crate::links::Raw;
+use crate::links::last_value::Raw;
 use sophie_ports::error::PortError;
 use sophie_ports::serial::{SerialInput, SerialOutput};
 

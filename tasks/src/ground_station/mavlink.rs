@@ -25,9 +25,11 @@ pub use sophie_mavlink::wire::signing;
 use sophie_mavlink::{Answers, CommanderRequests, Condition, Order, Server, Signing, Vehicle};
 use sophie_ports::signing::Stored;
 
-use crate::deadline::{FixedRate, TaskId, Tick};
+use crate::deadline::{FixedRate, Tick};
 use crate::ground_station::console_pipe::Shell;
-use crate::links::{LineState, Links};
+use crate::links::Links;
+use crate::links::mavlink_line::LineState;
+use crate::schedule::TaskId;
 use crate::storage::storing::{self, NotNow};
 use sophie_ports::serial::{SerialInput, SerialOutput};
 use sophie_ports::storage::Storage;
@@ -440,6 +442,6 @@ fn answers(links: &Links) -> Answers {
 /// Longest time from data-ready to the motor frame since the start, thousandths of its period.
 fn load(links: &Links) -> u16 {
     let period = TaskId::Motors.period().as_micros().max(1);
-    let worst = u64::from(links.worst_response(TaskId::Motors));
+    let worst = u64::from(links.timing.worst_response(TaskId::Motors));
     u16::try_from(worst * 1000 / period).unwrap_or(u16::MAX)
 }

@@ -6,8 +6,10 @@
 use embassy_time::{Instant, with_timeout};
 use sophie_ports::sensors::BAROMETER_READING;
 
-use crate::deadline::{FixedRate, TaskId};
-use crate::links::{AirPressure, Links};
+use crate::deadline::FixedRate;
+use crate::links::Links;
+use crate::schedule::TaskId;
+use sophie_control::navigation::air_pressure::AirPressure;
 use sophie_ports::sensors::Barometer;
 
 /// Reads the barometer; never returns. A failing one sends nothing.

@@ -10,8 +10,9 @@ use sophie_control::navigation::fix::Fix;
 use sophie_control::navigation::inertial::Inertial;
 use sophie_control::navigation::position_estimator::PositionEstimator;
 
-use crate::deadline::{FixedRate, TaskId};
+use crate::deadline::FixedRate;
 use crate::links::Links;
+use crate::schedule::TaskId;
 use sophie_ports::external_pose::ExternalPose;
 
 /// Estimates the position; never returns.

@@ -11,8 +11,10 @@ use sophie_control::arming::ArmingInhibit;
 use sophie_control::battery::{Monitor, ServoMonitor, reading};
 use sophie_control::gripper::contact_pressure::{Fsr, FsrScale};
 
-use crate::deadline::{FixedRate, TaskId};
-use crate::links::{Contact, Links};
+use crate::deadline::FixedRate;
+use crate::links::Links;
+use crate::links::messages::Contact;
+use crate::schedule::TaskId;
 use crate::supervision::silence::SilenceWatch;
 use sophie_ports::sensors::Analog;
 

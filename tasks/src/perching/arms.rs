@@ -13,8 +13,11 @@ use sophie_control::maths::scalar;
 use sophie_control::maths::vector::{Quat, Vec3};
 use sophie_control::params::Params;
 
-use crate::deadline::{FixedRate, TaskId};
-use crate::links::{ArmAngles, Links, Stamped};
+use crate::deadline::FixedRate;
+use crate::links::Links;
+use crate::links::link::Stamped;
+use crate::links::messages::ArmAngles;
+use crate::schedule::TaskId;
 use crate::supervision::silence::SilenceWatch;
 use sophie_ports::sensors::ArmImus;
 

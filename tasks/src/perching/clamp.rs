@@ -19,10 +19,14 @@ use sophie_control::allocation::wrench::PerArm;
 use sophie_control::gripper::retained_grip::GripMemory;
 use sophie_control::gripper::{ArmInput, Config, Gripper, Pressure};
 
-use crate::deadline::{FixedRate, TaskId};
-use crate::links::{
-    ClampCommand, Contact, GripState, Links, Newest, Stamped, TendonForce, TendonForces, TendonOrder,
-};
+use crate::deadline::FixedRate;
+use crate::links::Links;
+use crate::links::link::{Newest, Stamped};
+use crate::links::messages::Contact;
+use crate::links::tendon_order::{TendonForce, TendonForces, TendonOrder};
+use crate::schedule::TaskId;
+use sophie_control::chain::setpoint::ClampCommand;
+use sophie_control::gripper::grip::GripState;
 
 /// Runs the gripper; never returns.
 pub async fn run(links: &Links) -> ! {

@@ -15,8 +15,11 @@ use sophie_control::arming::ArmingInhibit;
 use sophie_control::gripper::retained_grip::GripMemory;
 use sophie_control::gripper::tendon::{Drive, Reel, TendonDrive};
 
-use crate::deadline::{FixedRate, TaskId};
-use crate::links::{Links, Newest, Stamped, TendonForce, TendonOrder};
+use crate::deadline::FixedRate;
+use crate::links::Links;
+use crate::links::link::{Newest, Stamped};
+use crate::links::tendon_order::{TendonForce, TendonOrder};
+use crate::schedule::TaskId;
 use crate::schedule::timing::Run;
 use sophie_ports::actuators::Servos;
 
@@ -207,7 +210,7 @@ impl ChainWatch {
             return;
         }
         self.last = Some(order.at);
-        links.record_contact(&Run {
+        links.timing.record_contact(&Run {
             released: order.at,
             started: written,
             ended: began,

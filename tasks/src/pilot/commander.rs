@@ -8,10 +8,12 @@ use sophie_control::gripper::tendon::ForceLimit;
 use sophie_control::mode::{Inputs, Mode, ModeLogic, Outputs};
 use sophie_control::navigation::flow_range::SightLimit;
 
-use crate::deadline::{FixedRate, Level, TaskId};
-use crate::links::{Links, Status};
+use crate::deadline::FixedRate;
+use crate::links::Links;
+use crate::links::messages::Status;
 use crate::navigation::flow_limit::FlowLimit;
 use crate::pilot::warning::Warning;
+use crate::schedule::{Level, TaskId};
 
 /// Smallest infill flown in the paper, %.
 const INFILL_FLOWN: f32 = 6.0;
@@ -140,7 +142,7 @@ impl Lateness {
         let count = TaskId::ALL
             .into_iter()
             .filter(|task| task.level() == Level::Flight)
-            .fold(0u32, |n, task| n.wrapping_add(links.timing(task).overruns));
+            .fold(0u32, |n, task| n.wrapping_add(links.timing.task(task).overruns));
         let many = count.wrapping_sub(self.count_at_start) > LATE_MAX;
         self.late |= many;
         if now.saturating_duration_since(self.window_start) >= LATE_WINDOW {

@@ -5,8 +5,9 @@
 
 use embassy_time::{Duration, Instant, Timer};
 
-use crate::deadline::{TaskId, record_run};
+use crate::deadline::record_run;
 use crate::links::Links;
+use crate::schedule::TaskId;
 use sophie_ports::receiver::RcDecoder;
 use sophie_ports::serial::SerialInput;
 

@@ -16,8 +16,11 @@ use sophie_control::params::RcProtocol;
 use uf_crsf::packets::{self, CrsfPacket, PacketAddress};
 use uf_crsf::write_packet_to_buffer;
 
-use crate::deadline::{FixedRate, TaskId};
-use crate::links::{Battery, Links, Status};
+use crate::deadline::FixedRate;
+use crate::links::Links;
+use crate::links::messages::Status;
+use crate::schedule::TaskId;
+use sophie_control::battery::Battery;
 use sophie_ports::serial::SerialOutput;
 
 const CYCLE: u8 = 10;

@@ -8,7 +8,8 @@ use sophie_control::allocation::wrench::PerArm;
 use sophie_control::attitude::mounting::Mounting;
 use sophie_control::gripper::force_per_thrust;
 
-use crate::links::{Links, TendonOrder};
+use crate::links::Links;
+use crate::links::tendon_order::TendonOrder;
 use sophie_ports::retained::Retain;
 
 /// Writer of the retained state.

@@ -6,9 +6,9 @@
 
 use embassy_time::{Duration, Instant};
 
-use crate::deadline::{FixedRate, Level, TaskId};
+use crate::deadline::FixedRate;
 use crate::links::Links;
-use crate::schedule::Watch;
+use crate::schedule::{Level, TaskId, Watch};
 use crate::supervision::retained_store::RetainedStore;
 use sophie_ports::chip::Watchdog;
 use sophie_ports::retained::Retain;
@@ -86,5 +86,5 @@ impl Health {
 }
 
 fn runs(links: &Links) -> [u32; TaskId::COUNT] {
-    TaskId::ALL.map(|task| links.timing(task).runs)
+    TaskId::ALL.map(|task| links.timing.task(task).runs)
 }

@@ -16,7 +16,7 @@ use embassy_usb::driver::{
     EndpointType, Event, Unsupported,
 };
 
-use super::Port;
+use super::port::Port;
 
 /// Time that a host has for a stage of a control transfer: it sends a device all of them at once (USB 2.0 §9.2.6.4 gives
 /// the device as long for each).

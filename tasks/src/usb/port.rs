@@ -8,9 +8,8 @@ use embassy_time::{Duration, Instant, with_timeout};
 use heapless::Vec;
 use sophie_mavlink::wire::protocol_detector::{Protocol, ProtocolDetector, Route};
 
-use super::PACKET;
 use crate::console::CANCEL;
-use crate::links::Raw;
+use crate::links::last_value::Raw;
 use sophie_ports::error::PortError;
 use sophie_ports::serial::{SerialInput, SerialOutput};
 
@@ -23,6 +22,8 @@ const LONGEST_WRITE: Duration = Duration::from_millis(200);
 /// Stands for what cannot be read, so that the console refuses the line.
 const UNREADABLE: u8 = 0x80;
 
+/// Bytes of a packet at full speed.
+pub const PACKET: u16 = 64;
 /// Bytes of a packet for one user: each may stand for two.
 type Sorted = Vec<u8, { 2 * PACKET as usize }>;
 

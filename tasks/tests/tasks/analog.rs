@@ -5,7 +5,7 @@ use sophie_control::battery::ServoSupply;
 use sophie_control::gripper::contact_pressure::FsrFault;
 use sophie_control::params::Params;
 use sophie_ports::sensors::AnalogFrame;
-use sophie_tasks::links::Contact;
+use sophie_tasks::links::messages::Contact;
 use sophie_tasks::perching::analog;
 
 use crate::rig::Rig;

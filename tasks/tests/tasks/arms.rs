@@ -1,8 +1,9 @@
 //! Age of the arms' tilts.
 
 use embassy_time::Instant;
+use sophie_control::chain::Attitude;
 use sophie_control::params::{ArmSign, Params};
-use sophie_tasks::links::{Attitude, Links};
+use sophie_tasks::links::Links;
 use sophie_tasks::perching::arms;
 
 use crate::rig::Rig;

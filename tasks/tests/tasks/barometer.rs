@@ -22,7 +22,7 @@ fn pressures_come_at_25_hz_with_the_time_of_their_middle() {
     let air = rig.links.air_pressure.latest().unwrap();
     assert_eq!((air.at.as_micros(), air.value.at_us), (972_500, 972_500));
     assert_eq!(air.value.pascal, 101_325.0);
-    let timing = rig.links.timing(TaskId::Barometer);
+    let timing = rig.links.timing.task(TaskId::Barometer);
     assert!(
         (24..=26).contains(&timing.runs) && timing.overruns == 0,
         "{timing:?}"
@@ -40,7 +40,7 @@ fn a_part_that_hangs_or_fails_turns_stale_and_comes_back_without_a_spin() {
             rig.links.air_pressure.fresh().is_none() && !port.0.spun.get(),
             "{answer:?}"
         );
-        assert_eq!(rig.links.timing(TaskId::Barometer).overruns, 0, "{answer:?}");
+        assert_eq!(rig.links.timing.task(TaskId::Barometer).overruns, 0, "{answer:?}");
         port.0.answer.set(Answer::Sound);
         rig.time.run_until(2_200_000);
         assert!(rig.links.air_pressure.fresh().is_some(), "{answer:?}");

@@ -2,6 +2,8 @@
 
 use embassy_time::Instant;
 use sophie_control::allocation::wrench::PerArm;
+use sophie_control::chain::MixOutput;
+use sophie_control::chain::setpoint::ClampCommand;
 use sophie_control::gripper::contact_pressure::FsrFault;
 use sophie_control::gripper::grip::ArmState;
 use sophie_control::gripper::grip_fault::GripFault;
@@ -9,9 +11,9 @@ use sophie_control::gripper::retained_grip::GripMemory;
 use sophie_control::params::Params;
 use sophie_control::pilot::rc::ArmChoice;
 use sophie_ports::retained::StartCause;
-use sophie_tasks::links::{
-    ArmAngles, ClampCommand, Contact, Links, MixOutput, TendonForce, TendonForces, TendonOrder,
-};
+use sophie_tasks::links::Links;
+use sophie_tasks::links::messages::{ArmAngles, Contact};
+use sophie_tasks::links::tendon_order::{TendonForce, TendonForces, TendonOrder};
 use sophie_tasks::perching::clamp;
 use sophie_tasks::start::Start;
 use sophie_tasks::start::retained_state::RetainedState;

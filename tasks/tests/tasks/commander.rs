@@ -2,6 +2,8 @@
 
 use embassy_time::{Duration, Instant};
 use sophie_control::arming::ArmingInhibit;
+use sophie_control::battery::Battery;
+use sophie_control::chain::{Attitude, MixOutput};
 use sophie_control::gripper::grip::GripState;
 use sophie_control::maths::scalar::GRAVITY;
 use sophie_control::maths::vector::Vec3;
@@ -10,9 +12,10 @@ use sophie_control::params::Params;
 use sophie_control::pilot::rc::Sticks;
 use sophie_ports::receiver::RcState;
 use sophie_ports::retained::StartCause;
-use sophie_tasks::deadline::TaskId;
-use sophie_tasks::links::{Attitude, Battery, Contact, Links, MixOutput};
+use sophie_tasks::links::Links;
+use sophie_tasks::links::messages::Contact;
 use sophie_tasks::pilot::commander;
+use sophie_tasks::schedule::TaskId;
 use sophie_tasks::schedule::timing::Run;
 use sophie_tasks::start::Start;
 
@@ -131,7 +134,7 @@ impl Bench {
             deadline: Duration::from_micros(500),
             skipped: misses,
         };
-        self.rig.links.record(task, &run);
+        self.rig.links.timing.record(task, &run);
     }
 }
 

@@ -5,19 +5,23 @@ use std::rc::Rc;
 
 use embassy_time::{Duration, Instant};
 use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
+use sophie_control::battery::Battery;
 use sophie_control::mode::{Mode, Reason};
 use sophie_control::params::Params;
 use sophie_mavlink::inputs::Counts;
 use sophie_mavlink::wire::signing::Refused;
-use sophie_ports::chip::{Chip, Look, NotSet};
+use sophie_ports::chip::{Chip, NotSet};
+use sophie_ports::chip_check::ChipCheck;
 use sophie_ports::error::PortError;
 use sophie_ports::receiver::RcState;
 use sophie_ports::serial::SerialOutput;
 use sophie_ports::signing::{Key, Record, Stored};
 use sophie_ports::storage::{Loaded, Storage, StorageError};
 use sophie_tasks::console;
-use sophie_tasks::deadline::TaskId;
-use sophie_tasks::links::{Battery, LineState, Links, SigningState, Status};
+use sophie_tasks::links::Links;
+use sophie_tasks::links::mavlink_line::{LineState, SigningState};
+use sophie_tasks::links::messages::Status;
+use sophie_tasks::schedule::TaskId;
 use sophie_tasks::schedule::timing::Run;
 
 use crate::rig::Rig;
@@ -87,7 +91,7 @@ impl Chip for Board {
         0x1234_ABCD
     }
 
-    fn looks(&self) -> &[Look] {
+    fn checks(&self) -> &[ChipCheck] {
         &[]
     }
 
@@ -366,7 +370,7 @@ fn timing_has_a_line_for_every_task_and_the_contact_chain() {
             deadline: Duration::from_micros(240),
             skipped: 0,
         };
-        bench.rig.links.record(TaskId::Clamp, &run);
+        bench.rig.links.timing.record(TaskId::Clamp, &run);
     }
     // 500 runs in 5.00 s; every one late.
     let said = bench.says("timing");

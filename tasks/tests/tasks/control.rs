@@ -3,9 +3,11 @@
 use embassy_time::Instant;
 use sophie_control::allocation::desaturation::Given;
 use sophie_control::allocation::wrench::Wrench;
+use sophie_control::chain::setpoint::Setpoint;
+use sophie_control::chain::{Attitude, Demand, MixOutput};
 use sophie_control::maths::vector::{Quat, Vec3};
 use sophie_tasks::flight::control;
-use sophie_tasks::links::{Attitude, Demand, Links, MixOutput, Setpoint};
+use sophie_tasks::links::Links;
 
 use crate::rig::Rig;
 

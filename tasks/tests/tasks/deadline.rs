@@ -6,8 +6,9 @@ use std::rc::Rc;
 use embassy_time::{Duration, Instant, Timer};
 use sophie_clock::VirtualTime;
 use sophie_control::params::Params;
-use sophie_tasks::deadline::{FixedRate, TaskId, Tick, begins_next};
+use sophie_tasks::deadline::{FixedRate, Tick, begins_next};
 use sophie_tasks::links::Links;
+use sophie_tasks::schedule::TaskId;
 
 const PERIOD: Duration = Duration::from_millis(1);
 const DEADLINE: Duration = Duration::from_micros(400);
@@ -42,7 +43,7 @@ fn an_idle_loop_keeps_its_rate_exactly() {
             .all(|(i, t)| t.started == Instant::from_millis(i as u64))
     );
     assert!(ticks.iter().all(|t| (t.dt - 1e-3).abs() < 1e-9));
-    let timing = links.timing(TaskId::Analog);
+    let timing = links.timing.task(TaskId::Analog);
     assert_eq!(
         (
             timing.overruns,
@@ -61,7 +62,7 @@ fn a_stall_is_counted_and_never_made_up_for_by_a_burst() {
     assert!(starts.windows(2).all(|w| w[1] - w[0] >= 500), "burst: {starts:?}");
     // Served late at 14.5 ms, then in phase again.
     assert_eq!(&starts[10..13], &[10_000, 14_500, 15_000]);
-    let timing = links.timing(TaskId::Analog);
+    let timing = links.timing.task(TaskId::Analog);
     // The long run, three skipped releases, and the late run.
     assert_eq!(timing.overruns, 1 + 3 + 1);
     assert_eq!(timing.worst_response_us, 4500);
@@ -71,14 +72,14 @@ fn a_stall_is_counted_and_never_made_up_for_by_a_burst() {
 #[test]
 fn a_run_that_ends_after_its_deadline_is_an_overrun() {
     let (_, links) = run(100, |n| if n % 10 == 0 { 500 } else { 50 });
-    assert_eq!(links.timing(TaskId::Analog).overruns, 10);
+    assert_eq!(links.timing.task(TaskId::Analog).overruns, 10);
 }
 
 #[test]
 fn a_loop_that_is_always_too_slow_settles_at_a_divided_rate() {
     let (ticks, links) = run(100, |_| 1500);
     assert!((60..=70).contains(&ticks.len()), "{}", ticks.len());
-    assert!(links.timing(TaskId::Analog).overruns as usize >= ticks.len() - 1);
+    assert!(links.timing.task(TaskId::Analog).overruns as usize >= ticks.len() - 1);
 }
 
 #[test]

@@ -1,13 +1,14 @@
 //! The task of the flow and range module on scripted lines, and flow through to the position.
 
 use embassy_time::{Duration, Instant};
+use sophie_control::chain::Attitude;
 use sophie_control::maths::vector::Vec3;
 use sophie_control::navigation::flow_range_sample::{Flow, GroundView, Range};
 use sophie_fakes::{BrokenLine, FakeLine};
 use sophie_ports::sensors::GroundDecoder;
-use sophie_tasks::deadline::TaskId;
-use sophie_tasks::links::{Attitude, Links};
+use sophie_tasks::links::Links;
 use sophie_tasks::navigation::{flow_range, position};
+use sophie_tasks::schedule::TaskId;
 
 use crate::rig::Rig;
 
@@ -51,7 +52,7 @@ fn what_the_module_says_is_published_at_once_and_what_is_no_frame_is_not() {
     let seen = rig.links.ground.latest().unwrap();
     let range = seen.value.range.unwrap();
     assert_eq!((range.distance, range.at_us), (Some(1.2), seen.at.as_micros()));
-    assert!(rig.links.timing(TaskId::Ground).runs >= 2);
+    assert!(rig.links.timing.task(TaskId::Ground).runs >= 2);
     rig.run(250);
     assert!(rig.links.ground.fresh().is_none());
 }
@@ -63,7 +64,7 @@ fn a_dead_line_does_not_take_the_processor() {
     rig.time
         .spawn(flow_range::run(rig.links, line.clone(), Decimetres::default()));
     rig.run(1000);
-    assert_eq!(rig.links.timing(TaskId::Ground).runs, 0);
+    assert_eq!(rig.links.timing.task(TaskId::Ground).runs, 0);
     assert!(rig.links.ground.latest().is_none());
 }
 

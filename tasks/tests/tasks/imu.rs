@@ -12,8 +12,8 @@ use sophie_control::maths::vector::Vec3;
 use sophie_control::params::Params;
 use sophie_ports::error::PortError;
 use sophie_ports::sensors::{IMU_BATCH, Imu};
-use sophie_tasks::deadline::TaskId;
 use sophie_tasks::flight::imu;
+use sophie_tasks::schedule::TaskId;
 
 use crate::rig::Rig;
 
@@ -98,7 +98,7 @@ fn samples_come_at_1_khz_from_every_rate_and_batch_stamped_with_their_data_ready
     ] {
         let mut rig = started(Params::default(), &Part::new(rate_hz, batch));
         rig.run(10);
-        let before = rig.links.timing(TaskId::Imu).runs;
+        let before = rig.links.timing.task(TaskId::Imu).runs;
         rig.run_with(1000, |links, at| {
             let sample = links.imu.latest().unwrap();
             assert!(
@@ -110,11 +110,11 @@ fn samples_come_at_1_khz_from_every_rate_and_batch_stamped_with_their_data_ready
             assert_eq!((at - sample.at).as_micros(), 1000);
         });
         assert_eq!(
-            rig.links.timing(TaskId::Imu).runs - before,
+            rig.links.timing.task(TaskId::Imu).runs - before,
             1000,
             "{rate_hz} {batch}"
         );
-        let timing = rig.links.timing(TaskId::Imu);
+        let timing = rig.links.timing.task(TaskId::Imu);
         assert_eq!(
             (timing.worst_lateness_us, timing.overruns),
             (TRANSFER_US as u32, 0)

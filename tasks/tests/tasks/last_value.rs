@@ -8,8 +8,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::task::{Wake, Waker};
 
 use embassy_futures::poll_once;
-use sophie_tasks::links::RECEIVERS;
-use sophie_tasks::links::last_value::LastValue;
+use sophie_tasks::links::last_value::{LastValue, RECEIVERS};
 
 #[test]
 fn each_value_is_seen_once_and_the_newest_of_several() {

@@ -2,11 +2,11 @@
 
 use embassy_time::{Duration, Instant};
 use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
+use sophie_control::chain::setpoint::Setpoint;
 use sophie_control::params::Params;
 use sophie_ports::retained::StartCause;
-use sophie_tasks::deadline::{Level, TaskId};
-use sophie_tasks::links::Setpoint;
 use sophie_tasks::schedule::timing::{Quantity, Run};
+use sophie_tasks::schedule::{Level, TaskId};
 use sophie_tasks::start::Start;
 
 use crate::rig::Rig;
@@ -110,12 +110,16 @@ fn a_miss_is_told_of_the_flight_level_alone_and_recorded_of_every_task() {
     };
     for task in TaskId::ALL {
         let links = Rig::new().links;
-        links.record(task, &punctual);
-        assert!(!links.missed.signaled(), "{task:?}");
-        links.record(task, &late);
-        assert_eq!(links.missed.signaled(), task.level() == Level::Flight, "{task:?}");
+        links.timing.record(task, &punctual);
+        assert!(!links.timing.missed.signaled(), "{task:?}");
+        links.timing.record(task, &late);
+        assert_eq!(
+            links.timing.missed.signaled(),
+            task.level() == Level::Flight,
+            "{task:?}"
+        );
         for other in TaskId::ALL {
-            let timing = links.timing(other);
+            let timing = links.timing.task(other);
             let own = u32::from(other == task);
             assert_eq!(
                 (timing.runs, timing.overruns),
@@ -123,7 +127,7 @@ fn a_miss_is_told_of_the_flight_level_alone_and_recorded_of_every_task() {
                 "{task:?} {other:?}"
             );
         }
-        assert_eq!(links.take_histogram(task, Quantity::Response).max(), 700);
-        assert_eq!(links.take_histogram(task, Quantity::Response).count(), 0);
+        assert_eq!(links.timing.take_histogram(task, Quantity::Response).max(), 700);
+        assert_eq!(links.timing.take_histogram(task, Quantity::Response).count(), 0);
     }
 }

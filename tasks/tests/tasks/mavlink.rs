@@ -17,7 +17,9 @@ use sophie_ports::signing::{Key, Record, Stored};
 use sophie_tasks::console;
 use sophie_tasks::ground_station::console_pipe::Shell;
 use sophie_tasks::ground_station::mavlink::{self, Lines};
-use sophie_tasks::links::{LineState, Links, SigningState, Status};
+use sophie_tasks::links::Links;
+use sophie_tasks::links::mavlink_line::{LineState, SigningState};
+use sophie_tasks::links::messages::Status;
 
 use crate::console::Board;
 use crate::rig::Rig;

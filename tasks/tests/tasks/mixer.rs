@@ -3,8 +3,11 @@
 use embassy_time::Instant;
 use sophie_control::allocation::mixer::Flexible;
 use sophie_control::allocation::wrench::{Configuration, PerArm, Wrench};
+use sophie_control::battery::Battery;
+use sophie_control::chain::setpoint::Setpoint;
+use sophie_control::chain::{Demand, MixOutput};
 use sophie_tasks::flight::mixer;
-use sophie_tasks::links::{ArmAngles, Battery, Demand, MixOutput, Setpoint};
+use sophie_tasks::links::messages::ArmAngles;
 
 use crate::rig::Rig;
 

@@ -1,11 +1,12 @@
 //! The position task between the links.
 
 use embassy_time::{Duration, Instant};
+use sophie_control::chain::Attitude;
 use sophie_control::maths::vector::{Quat, Vec3};
 use sophie_ports::external_pose::{ExternalPose, Pose};
-use sophie_tasks::deadline::TaskId;
-use sophie_tasks::links::{Attitude, Links};
+use sophie_tasks::links::Links;
 use sophie_tasks::navigation::position;
+use sophie_tasks::schedule::TaskId;
 
 use crate::rig::Rig;
 

@@ -1,6 +1,7 @@
 //! State retained over a reset.
 
 use embassy_time::Instant;
+use sophie_control::chain::{Attitude, MixOutput};
 use sophie_control::gripper::grip::{ArmGrip, GripState};
 use sophie_control::gripper::grip_fault::GripFault;
 use sophie_control::gripper::retained_grip::GripMemory;
@@ -8,7 +9,8 @@ use sophie_control::maths::vector::Vec3;
 use sophie_control::params::{ImuMounting, Params};
 use sophie_control::pilot::rc::ArmChoice;
 use sophie_ports::retained::StartCause;
-use sophie_tasks::links::{Attitude, Links, MixOutput, TendonForce, TendonForces, TendonOrder};
+use sophie_tasks::links::Links;
+use sophie_tasks::links::tendon_order::{TendonForce, TendonForces, TendonOrder};
 use sophie_tasks::start::Start;
 use sophie_tasks::start::retained_state::RetainedState;
 use sophie_tasks::supervision::retained_store::RetainedStore;

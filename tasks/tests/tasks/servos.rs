@@ -8,7 +8,10 @@ use sophie_control::params::{Params, ServoMarks};
 use sophie_control::pilot::bench_orders::Place;
 use sophie_control::pilot::rc::ArmChoice;
 use sophie_ports::retained::StartCause;
-use sophie_tasks::links::{ArmAngles, Links, Stamped, TendonForce, TendonForces, TendonOrder};
+use sophie_tasks::links::Links;
+use sophie_tasks::links::link::Stamped;
+use sophie_tasks::links::messages::ArmAngles;
+use sophie_tasks::links::tendon_order::{TendonForce, TendonForces, TendonOrder};
 use sophie_tasks::perching::servos;
 use sophie_tasks::schedule::timing::Quantity;
 use sophie_tasks::start::Start;
@@ -242,18 +245,18 @@ fn the_time_from_conversion_to_pulse_is_recorded_once_for_each_conversion_that_b
     // Each pulse begins 0.5 ms after the write, which takes 20 us.
     port.frame_us.set(500);
     ordered(&mut rig, 1000, 1, TendonOrder::Measured);
-    let timing = rig.links.contact_timing();
+    let timing = rig.links.timing.contact();
     // Frames of 20 ms to 980 ms overtake the orders in between.
     assert_eq!((timing.runs, timing.overruns), (49, 0));
     // To the frame after the clamp's step, for a just missed conversion.
     assert_eq!(timing.deadline_us, 3500);
-    let take = |quantity| rig.links.take_contact_histogram(quantity);
+    let take = |quantity| rig.links.timing.take_contact_histogram(quantity);
     let [late, frame, all] = [Quantity::Lateness, Quantity::Execution, Quantity::Response].map(take);
     assert_eq!((late.min(), late.max()), (1900, 1900));
     assert_eq!((frame.min(), frame.max()), (520, 520));
     assert_eq!((all.min(), all.max(), all.count()), (2420, 2420, 49));
     rig.run_with(100, |links, at| speak(links, at, None, CLOSED));
-    assert_eq!(rig.links.contact_timing().runs, 50);
+    assert_eq!(rig.links.timing.contact().runs, 50);
 }
 
 #[test]
@@ -280,7 +283,7 @@ fn a_pulse_that_comes_too_late_is_a_missed_deadline() {
         port.frame_us.set(480);
         rig.run(210);
         ordered(&mut rig, 20, age, TendonOrder::Measured);
-        let timing = rig.links.contact_timing();
+        let timing = rig.links.timing.contact();
         assert_eq!((timing.runs, timing.overruns), (1, missed), "{age} ms");
         assert_eq!(u64::from(timing.worst_response_us), 1000 * age + 1400);
     }
@@ -294,7 +297,7 @@ fn forces_that_follow_from_no_pressure_are_obeyed_and_not_measured() {
     ] {
         let (mut rig, port) = started(Start::COLD);
         ordered(&mut rig, 500, 4, order);
-        assert_eq!(rig.links.contact_timing().runs, 0);
+        assert_eq!(rig.links.timing.contact().runs, 0);
         assert_eq!(port.now()[0] > 1000.0, winds, "{:?}", port.now());
     }
 }
@@ -308,10 +311,10 @@ fn forces_of_old_pressures_hold_although_they_were_sent_just_now() {
     // Fresh orders for pressures 201 ms old.
     ordered(&mut rig, 20, 201, TendonOrder::Measured);
     let held = port.now();
-    let runs = rig.links.contact_timing().runs;
+    let runs = rig.links.timing.contact().runs;
     ordered(&mut rig, 300, 201, TendonOrder::Measured);
     assert_eq!(port.now(), held);
-    assert_eq!(rig.links.contact_timing().runs, runs);
+    assert_eq!(rig.links.timing.contact().runs, runs);
 }
 
 #[test]

@@ -1,8 +1,9 @@
 //! The watchdog is fed only while every task needed for flight runs.
 
 use embassy_time::{Duration, Instant};
-use sophie_tasks::deadline::TaskId;
-use sophie_tasks::links::{Attitude, Links, MixOutput};
+use sophie_control::chain::{Attitude, MixOutput};
+use sophie_tasks::links::Links;
+use sophie_tasks::schedule::TaskId;
 use sophie_tasks::schedule::timing::Run;
 use sophie_tasks::supervision::supervisor;
 
@@ -30,7 +31,7 @@ fn ran(links: &Links, task: TaskId, at: Instant) {
         deadline: Duration::from_millis(1),
         skipped: 0,
     };
-    links.record(task, &run);
+    links.timing.record(task, &run);
 }
 
 struct Bench {

@@ -9,11 +9,13 @@ use sophie_ports::signing::Stored;
 use sophie_tasks::console;
 use sophie_tasks::console::one_of::OneOf;
 use sophie_tasks::console::terminals::Served;
-use sophie_tasks::deadline::TaskId;
 use sophie_tasks::ground_station::console_pipe::Shell;
 use sophie_tasks::ground_station::mavlink::{self, Lines};
-use sophie_tasks::links::{Links, Status as Commander};
-use sophie_tasks::usb::{self, Identity, Memory, Port};
+use sophie_tasks::links::Links;
+use sophie_tasks::links::messages::Status as Commander;
+use sophie_tasks::schedule::TaskId;
+use sophie_tasks::usb::port::Port;
+use sophie_tasks::usb::{self, Identity, Memory};
 
 use crate::console::{Board, Screen};
 use crate::fake_bus::{FakeBus, Status};
@@ -433,7 +435,7 @@ fn a_host_that_does_not_read_delays_nothing() {
     // The other line has all that it has with USB unplugged.
     let beats = |wire: &Wire| wire.frames().iter().filter(|(id, _)| *id == 0).count();
     assert!((4..=6).contains(&beats(&bench.aired)), "{}", beats(&bench.aired));
-    assert_eq!(bench.rig.links.timing(TaskId::Mavlink).overruns, 0);
+    assert_eq!(bench.rig.links.timing.task(TaskId::Mavlink).overruns, 0);
     // What it gets when it reads again is of now, behind what was on its way.
     assert!(bench.bus.fetch(bench.bulk_in).is_some());
     let count = bench.frames();
@@ -687,7 +689,7 @@ fn a_suspended_bus_is_given_nothing_and_goes_on_where_it_resumes() {
     bench.run(20);
     bench.bus.fetch(bench.bulk_in);
     assert_eq!(bench.hear(3000), b"");
-    assert_eq!(bench.rig.links.timing(TaskId::Mavlink).overruns, 0);
+    assert_eq!(bench.rig.links.timing.task(TaskId::Mavlink).overruns, 0);
     bench.bus.event(Event::Resume);
     bench.send(&heartbeat());
     assert!(bench.frames() > STREAMED);
@@ -709,7 +711,7 @@ fn an_unplugged_port_costs_nothing() {
     bench.typed.put(b"watch imu\r");
     bench.run(10_000);
     assert_eq!(bench.bus.polls(), polls, "nothing wakes the device");
-    let timing = bench.rig.links.timing(TaskId::Mavlink);
+    let timing = bench.rig.links.timing.task(TaskId::Mavlink);
     assert_eq!(timing.overruns, 0);
     assert!((500..=505).contains(&timing.runs), "{}", timing.runs);
     assert!(bench.screen.0.take().len() > 1000);

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use sophie_tasks::deadline::{Level, TaskId};
+use sophie_tasks::schedule::{Level, TaskId};
 
 use crate::capture::Capture;
 use crate::replay::{Replay, Task};

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use sophie_tasks::deadline::Level;
+use sophie_tasks::schedule::Level;
 
 use crate::stats::Sorted;
 use crate::trace::{Event, Kind, Trace};

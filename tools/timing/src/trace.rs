@@ -3,7 +3,7 @@
 //! `trace task ADDRESS LEVEL NAME` names a task; `trace NUMBER: [bytes]` holds events from the NUMBERth since the
 //! start, eight bytes each (format: `boards/src/cortex_m/trace.rs`); `trace lost COUNT` counts lost ones.
 
-use sophie_tasks::deadline::Level;
+use sophie_tasks::schedule::Level;
 
 use crate::live::Garbled;
 

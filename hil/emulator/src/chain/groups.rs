@@ -10,7 +10,7 @@ const GROUPS: [(&str, &[&str]); 11] = [
             "sophie_tasks::schedule::timing::",
             "sophie_tasks::schedule::histogram::",
             "sophie_tasks::deadline::",
-            "Links>::record",
+            "TimingRecords>::record",
         ],
     ),
     (
@@ -113,9 +113,8 @@ mod tests {
                 "<sophie_tasks::schedule::timing::Record>::add",
                 "deadline records",
             ),
-            ("<sophie_tasks::links::Links>::record", "deadline records"),
             (
-                "<sophie_tasks::links::Link<sophie_control::chain::setpoint::Setpoint>>::latest",
+                "<sophie_tasks::links::link::Link<sophie_control::chain::setpoint::Setpoint>>::latest",
                 "links",
             ),
             ("<sophie_tasks::links::last_value::LastValue<u8>>::send", "links"),

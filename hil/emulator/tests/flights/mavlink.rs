@@ -1,5 +1,6 @@
 //! MAVLink clients at the emulated boards' line.
 
+use sophie_test_support::clients;
 use std::io::{Read, Write};
 use std::net::{Ipv4Addr, TcpStream};
 
@@ -10,9 +11,6 @@ use sophie_emulator::terminal::{Sockets, Terminal};
 
 use super::console::terminal;
 use super::*;
-
-#[path = "../../../../tests/common/clients.rs"]
-mod clients;
 
 /// Longest wait of a client, s: the board runs at half of real time, on a machine that is busy.
 const SECONDS: &str = "300";

@@ -14,7 +14,6 @@ pub fn listen(connection: &str, count: usize, messages: &[&str]) -> serde_json::
 }
 
 /// What the vehicle has answered to `steps` on `connection`: lists of command, parameters and the result that ends a step.
-#[allow(dead_code, reason = "of the host alone")]
 pub fn obey(connection: &str, steps: &serde_json::Value) -> serde_json::Value {
     run("obey.py", &[connection, SECONDS, &steps.to_string()])
 }

@@ -30,9 +30,18 @@ impl Drop for Temp {
     }
 }
 
+/// The command's file: cargo puts it beside the folder of the test binaries.
+fn executable() -> PathBuf {
+    let test = std::env::current_exe().unwrap();
+    let folder = test.ancestors().nth(2).unwrap();
+    folder
+        .join("sophie")
+        .with_extension(std::env::consts::EXE_EXTENSION)
+}
+
 /// The command with these arguments in `directory`.
 pub fn command(directory: &Path, args: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_sophie"));
+    let mut command = Command::new(executable());
     command.current_dir(directory).args(args).stdin(Stdio::null());
     command
 }
