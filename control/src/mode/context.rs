@@ -19,7 +19,7 @@ use crate::contact::lean::Lean;
 use crate::gripper::retained_grip::GripMemory;
 use crate::maths::hold_timer::HoldTimer;
 use crate::maths::scalar::clamp;
-use crate::navigation::vertical_fallback::Rise;
+use crate::navigation::vertical_fallback::VerticalFallback;
 use crate::params::Params;
 use crate::pilot::rc::Sticks;
 use crate::pilot::remote::RemoteOrder;
@@ -86,7 +86,7 @@ pub struct Context {
     /// Acceleration along world down, m/s².
     pub sinking: f32,
     /// The same summed, beside the estimate's speed.
-    pub rise: Rise,
+    pub vertical_fallback: VerticalFallback,
     pub collective: Collective,
     pub probe: Probe,
     /// How often the arms have tightened since they closed.
@@ -123,7 +123,7 @@ impl Context {
             fall: Fall::default(),
             crown: Crown::default(),
             sinking: 0.0,
-            rise: Rise::default(),
+            vertical_fallback: VerticalFallback::default(),
             collective: Collective::default(),
             probe: Probe::default(),
             tightened: 0,

@@ -45,8 +45,8 @@ impl ModeLogic {
     }
 
     #[cfg(test)]
-    pub(super) fn forget_rise(&mut self) {
-        self.context.rise = crate::navigation::vertical_fallback::Rise::default();
+    pub(super) fn forget_vertical_fallback(&mut self) {
+        self.context.vertical_fallback = crate::navigation::vertical_fallback::VerticalFallback::default();
     }
 
     /// One step, `dt` s after the last.
@@ -64,9 +64,11 @@ impl ModeLogic {
         self.context.observe(inputs, rotors_locked(before), dt);
         let sinking = self.context.sinking;
         let position = inputs.position.as_ref();
-        self.context.rise.step(flies_free(before), sinking, position, dt);
+        self.context
+            .vertical_fallback
+            .step(flies_free(before), sinking, position, dt);
         let inputs = &Inputs {
-            position: inputs.position.map(|e| self.context.rise.apply(e)),
+            position: inputs.position.map(|e| self.context.vertical_fallback.apply(e)),
             ..*inputs
         };
         let table = Table::new(

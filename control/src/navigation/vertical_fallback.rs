@@ -35,7 +35,7 @@ const JUMP: f32 = 0.12;
 
 /// The felt vertical speed, and the way flown by it.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Rise {
+pub struct VerticalFallback {
     /// Downwards, m/s, and the error of the felt acceleration, m/s².
     speed: f32,
     bias: f32,
@@ -53,7 +53,7 @@ pub struct Rise {
     jumps: u8,
 }
 
-impl Rise {
+impl VerticalFallback {
     /// One step of `dt` s at `down` m/s² along world down; it runs while the vehicle `flies` free.
     pub fn step(&mut self, flies: bool, down: f32, estimate: Option<&Estimate>, dt: f32) {
         let (bias, jumps) = (self.bias, self.jumps);

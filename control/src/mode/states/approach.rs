@@ -122,7 +122,7 @@ impl Approach {
 
     fn step(&mut self, estimate: &Estimate, step: &mut Step<'_>) {
         let seen = view(&self.law, estimate, step);
-        if step.context.rise.misfit() && !self.way.leaves() {
+        if step.context.vertical_fallback.misfit() && !self.way.leaves() {
             self.misfit(false, &seen, estimate, step);
         }
         let result = if self.way.jumped(estimate.jumps) {
@@ -135,7 +135,7 @@ impl Approach {
         }
         let crown = self.way.crown().map(|crown| (crown, estimate.jumps));
         step.context.by_itself.crown = crown.or(step.context.by_itself.crown);
-        step.context.rise.steady = self.way.near_crown(&seen);
+        step.context.vertical_fallback.steady = self.way.near_crown(&seen);
         let wish = result.unwrap_or_else(|doubt| {
             match doubt {
                 Doubt::RangeMisfit => self.misfit(false, &seen, estimate, step),

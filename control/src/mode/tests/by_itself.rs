@@ -93,7 +93,7 @@ impl World {
 
     fn see(&mut self) {
         if self.bent.is_none() {
-            self.r.logic.forget_rise();
+            self.r.logic.forget_vertical_fallback();
         }
         let y = self.at.y - RIGHT;
         let on = self.pipe && y.abs() < 0.15;

@@ -8,7 +8,7 @@ use crate::navigation::range_hit::Foot;
 const DT: f32 = 0.01;
 
 struct World {
-    rise: Rise,
+    vertical_fallback: VerticalFallback,
     estimate: Option<Estimate>,
     /// Down, m and m/s.
     at: f32,
@@ -29,7 +29,7 @@ struct World {
 impl World {
     fn new() -> Self {
         Self {
-            rise: Rise::default(),
+            vertical_fallback: VerticalFallback::default(),
             estimate: None,
             at: -2.0,
             speed: 0.0,
@@ -71,9 +71,10 @@ impl World {
                 ..Estimate::default()
             };
             self.estimate = Some(estimate);
-            self.rise.steady = self.steady;
-            self.rise.step(true, down, self.estimate.as_ref(), DT);
-            self.named |= self.rise.misfit();
+            self.vertical_fallback.steady = self.steady;
+            self.vertical_fallback
+                .step(true, down, self.estimate.as_ref(), DT);
+            self.named |= self.vertical_fallback.misfit();
         }
     }
 
@@ -84,7 +85,7 @@ impl World {
     }
 
     fn out(&self) -> Estimate {
-        self.rise.apply(self.estimate.unwrap())
+        self.vertical_fallback.apply(self.estimate.unwrap())
     }
 }
 
@@ -203,6 +204,6 @@ fn on_the_pipe_it_stands() {
     w.bent = 0.4;
     w.run(0.5);
     assert!(w.out() != w.estimate.unwrap());
-    w.rise.step(false, 0.5, w.estimate.as_ref(), DT);
+    w.vertical_fallback.step(false, 0.5, w.estimate.as_ref(), DT);
     assert!(w.out().velocity == w.estimate.unwrap().velocity);
 }
