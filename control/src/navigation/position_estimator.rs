@@ -13,7 +13,7 @@ use crate::maths::scalar::{self, GRAVITY};
 use crate::maths::vector::Vec3;
 use crate::navigation::air_pressure::AirPressure;
 use crate::navigation::axis_filter::{Axis, Change};
-use crate::navigation::baro_height::{Aloft, PressureFault};
+use crate::navigation::baro_height::{BaroHeight, PressureFault};
 use crate::navigation::estimate::Estimate;
 use crate::navigation::external_pose::{PoseFault, TURN_GAIN, TURN_STEP, Trust};
 use crate::navigation::fix::Fix;
@@ -81,7 +81,7 @@ pub struct PositionEstimator {
     track: Option<Track>,
     sight: Sight,
     trust: Trust,
-    aloft: Aloft,
+    baro_height: BaroHeight,
     /// When the last track by flow ended, µs, and its axes, of which the biases are good for the next.
     learnt: Option<(u64, [Axis; 3])>,
     /// When the newest fix and the newest flow that were looked at were measured, µs: each is taken once.
@@ -99,7 +99,7 @@ impl PositionEstimator {
             track: None,
             sight: Sight::new(p.pipe_diameter, p.flow_lens()),
             trust: Trust::default(),
-            aloft: Aloft::default(),
+            baro_height: BaroHeight::default(),
             learnt: None,
             seen_us: 0,
             flow_us: 0,
@@ -110,12 +110,12 @@ impl PositionEstimator {
     pub fn fault(&self) -> Option<Fault> {
         let pose = self.trust.fault().map(Fault::Pose);
         pose.or_else(|| self.sight.fault().map(Fault::Sight))
-            .or_else(|| self.aloft.fault().map(Fault::Pressure))
+            .or_else(|| self.baro_height.fault().map(Fault::Pressure))
     }
 
     /// Takes the newest pressure of the air, for the next step: the height of last resort. Without one nothing changes.
     pub fn hear(&mut self, air: &AirPressure) {
-        self.aloft.hear(air);
+        self.baro_height.hear(air);
     }
 
     /// One step with the inertial sensor, the thrust demanded along -z, N, the newest fix and the newest flow and range.
@@ -169,7 +169,7 @@ impl PositionEstimator {
             (Some(track), _) if track.follows(at_us) => track,
             (track, Some(fix)) => {
                 self.past.clear();
-                self.aloft.forget();
+                self.baro_height.forget();
                 *track = Some(Track::begin(at_us, felt.q.to_euler().2, fix));
                 return None;
             }
@@ -179,7 +179,7 @@ impl PositionEstimator {
                 self.learnt = track.as_ref().map_or(self.learnt, Track::learnt);
                 *track = height.map(|height| {
                     self.past.clear();
-                    self.aloft.forget();
+                    self.baro_height.forget();
                     Track::above(at_us, height, self.learnt.as_ref())
                 });
                 // Its own place: the next flow's interval may begin here.
@@ -198,7 +198,7 @@ impl PositionEstimator {
         if self.trust.fault() == Some(PoseFault::Disagrees) && !track.tainted {
             track.taint();
             track.tainted = true;
-            self.aloft.forget();
+            self.baro_height.forget();
         }
         if let Some(fix) = new {
             track.take(&mut self.past, &mut self.trust, fix);
@@ -220,14 +220,14 @@ impl PositionEstimator {
         }
         track.misled = misled;
         if track.jumps != jumps {
-            self.aloft.forget();
+            self.baro_height.forget();
         }
-        if let Some(at) = self.aloft.news(at_us)
+        if let Some(at) = self.baro_height.news(at_us)
             && flies
         {
-            track.take_pressure(&mut self.past, &mut self.aloft, at);
+            track.take_pressure(&mut self.past, &mut self.baro_height, at);
         }
-        track.estimate(self.aloft.carries(at_us))
+        track.estimate(self.baro_height.carries(at_us))
     }
 }
 
@@ -438,12 +438,12 @@ impl Track {
     }
 
     /// Compares the newest pressure, measured at `at` µs, with the height; beside range or pose it is only learnt from.
-    fn take_pressure(&mut self, past: &mut Past, aloft: &mut Aloft, at: u64) {
+    fn take_pressure(&mut self, past: &mut Past, baro_height: &mut BaroHeight, at: u64) {
         let Some(then) = past.at(at) else {
             return;
         };
         let known = seconds(self.height_us, at);
-        let Some((innovation, variance)) = aloft.height(then.position.z, known) else {
+        let Some((innovation, variance)) = baro_height.height(then.position.z, known) else {
             return;
         };
         let [_, _, axis] = &mut self.axes;
@@ -451,7 +451,7 @@ impl Track {
             let change = axis.correct(innovation, variance, seconds(at, self.at_us));
             past.change(at, &[Change::default(), Change::default(), change]);
         } else {
-            aloft.refuse();
+            baro_height.refuse();
         }
     }
 
