@@ -57,7 +57,7 @@ const UNSURE_TIME: u64 = 600_000;
 
 /// What is wrong with flow or range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SightFault {
+pub enum FlowRangeFault {
     /// The flow says the same whatever the vehicle does.
     FlowFrozen,
     /// The flow does not follow the vehicle's own turning: mirrored, turned, dead or of another scale.
@@ -70,7 +70,7 @@ pub enum SightFault {
     RangeScaled,
 }
 
-impl SightFault {
+impl FlowRangeFault {
     /// Every fault.
     pub const ALL: [Self; 5] = [
         Self::FlowFrozen,
@@ -94,7 +94,7 @@ impl SightFault {
 
 /// Why flow cannot be used where the vehicle is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SightLimit {
+pub enum FlowRangeLimit {
     /// Its lens sees no picture so near.
     TooLow,
     /// The error of its scale would swing the hold.
@@ -105,7 +105,7 @@ pub enum SightLimit {
     TooDark,
 }
 
-impl SightLimit {
+impl FlowRangeLimit {
     /// Every limit.
     pub const ALL: [Self; 4] = [Self::TooLow, Self::TooHigh, Self::NoRange, Self::TooDark];
 
@@ -143,7 +143,7 @@ pub struct Seen {
 
 /// What is known of the ground and of the module.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Sight {
+pub struct FlowRangeFusion {
     /// Half the width of what the vehicle perches on, m.
     radius: f32,
     /// Lens from the centre of mass, m, body. Both sensors look from there.
@@ -188,7 +188,7 @@ pub struct Sight {
     disagrees: bool,
 }
 
-impl Sight {
+impl FlowRangeFusion {
     /// Over pipes of `diameter` m, from a `lens` that lies so far from the centre of mass, m, body.
     pub fn new(diameter: f32, lens: Vec3) -> Self {
         Self {
@@ -199,13 +199,13 @@ impl Sight {
     }
 
     /// What is wrong at present.
-    pub fn fault(&self) -> Option<SightFault> {
+    pub fn fault(&self) -> Option<FlowRangeFault> {
         let faults = [
-            (self.frozen.holds(), SightFault::RangeFrozen),
-            (self.distrusted_us > self.range_us, SightFault::RangeJumps),
-            (self.scale.wrong(), SightFault::RangeScaled),
-            (self.same_flows >= FROZEN_FLOWS, SightFault::FlowFrozen),
-            (self.disagrees, SightFault::FlowDisagrees),
+            (self.frozen.holds(), FlowRangeFault::RangeFrozen),
+            (self.distrusted_us > self.range_us, FlowRangeFault::RangeJumps),
+            (self.scale.wrong(), FlowRangeFault::RangeScaled),
+            (self.same_flows >= FROZEN_FLOWS, FlowRangeFault::FlowFrozen),
+            (self.disagrees, FlowRangeFault::FlowDisagrees),
         ];
         faults.iter().find(|(holds, _)| *holds).map(|(_, fault)| *fault)
     }
@@ -435,7 +435,7 @@ impl Sight {
         let near = far(self.level);
         let foot = to.position + beam(to.q, near, turn);
         let seen = match self.band {
-            Some(band) => band.sight(to.position, foot, far(self.base)),
+            Some(band) => band.depth(to.position, foot, far(self.base)),
             None => Depth {
                 distance: near,
                 doubt: 0.0,
@@ -531,7 +531,7 @@ mod tests {
     /// judged.
     #[test]
     fn nothing_of_the_axes_before_is_left_where_an_estimate_begins() {
-        let mut sight = Sight::new(0.3, Vec3::ZERO);
+        let mut flow_range = FlowRangeFusion::new(0.3, Vec3::ZERO);
         let at = |us: u64, y: f32| Moment {
             at_us: us,
             position: Vec3::new(7.0, y, -1.9),
@@ -540,20 +540,23 @@ mod tests {
         };
         for (y, distance) in [(0.5, 1.9), (0.7, 0.4)] {
             for _ in 0..5 {
-                let _ = sight.height((&at(0, y - 0.02), &at(0, y)), distance, false, 0.0);
+                let _ = flow_range.height((&at(0, y - 0.02), &at(0, y)), distance, false, 0.0);
             }
         }
-        assert!(sight.flank > 0 && sight.unproven.is_some() && sight.foot.x > 6.9);
-        sight.range = Some((20_000, 1.0));
+        assert!(flow_range.flank > 0 && flow_range.unproven.is_some() && flow_range.foot.x > 6.9);
+        flow_range.range = Some((20_000, 1.0));
         let flow = Flow {
             until_us: 20_000,
             seconds: 0.02,
             angle: [0.0; 2],
             quality: 100,
         };
-        assert_eq!(sight.begin(&flow, Quat::IDENTITY), Some(1.0));
-        assert_eq!((sight.flank, sight.agreed, sight.step), (0, 0, 0.0));
-        assert!(sight.foot.norm() < 1e-6, "{:?}", sight.foot);
-        assert!(sight.unproven.is_some_and(|first| first.norm() < 1e-6));
+        assert_eq!(flow_range.begin(&flow, Quat::IDENTITY), Some(1.0));
+        assert_eq!(
+            (flow_range.flank, flow_range.agreed, flow_range.step),
+            (0, 0, 0.0)
+        );
+        assert!(flow_range.foot.norm() < 1e-6, "{:?}", flow_range.foot);
+        assert!(flow_range.unproven.is_some_and(|first| first.norm() < 1e-6));
     }
 }

@@ -142,7 +142,7 @@ impl Band {
 
     /// What the view from `place` sees, whose middle falls at `foot`: rays across the round band, `far` m to the ground
     /// beside it.
-    pub fn sight(&self, place: Vec3, foot: Vec3, far: f32) -> Depth {
+    pub fn depth(&self, place: Vec3, foot: Vec3, far: f32) -> Depth {
         let side = self.side(place);
         let slope = (foot - place).dot(self.across) / scalar::clamp(foot.z - place.z, NEAREST, 100.0);
         let near = scalar::clamp(self.top - place.z, NEAREST, far);
@@ -200,7 +200,7 @@ mod tests {
     #[test]
     fn the_view_is_as_near_as_what_fills_it() {
         // Its middle is at 1 m, the ground 1.9 m below the vehicle.
-        let seen = |y: f32, z: f32, slope: f32| band().sight(Vec3::new(0.0, y, z), foot(y - slope * z), -z);
+        let seen = |y: f32, z: f32, slope: f32| band().depth(Vec3::new(0.0, y, z), foot(y - slope * z), -z);
         let depth = |y: f32, z: f32, slope: f32| seen(y, z, slope).distance;
         // From 0.4 m its tangents, 15.8° to each side, are 74 % of the view; from 0.7 m 47 %.
         let over = depth(1.0, -1.9, 0.0);

@@ -18,7 +18,7 @@ use crate::navigation::estimate::Estimate;
 use crate::navigation::external_pose::{PoseFault, TURN_GAIN, TURN_STEP, Trust};
 use crate::navigation::fix::Fix;
 use crate::navigation::fix_age::{LOST_AGE, TAINTED_AGE, UNKNOWN_AGE};
-use crate::navigation::flow_range::{Sight, SightFault, beam};
+use crate::navigation::flow_range::{FlowRangeFault, FlowRangeFusion, beam};
 use crate::navigation::flow_range_sample::{Flow, GroundView};
 use crate::navigation::history::{Moment, Past};
 use crate::navigation::inertial::{Inertial, STEP_MAX};
@@ -55,7 +55,7 @@ pub enum Fault {
     /// The poses.
     Pose(PoseFault),
     /// Flow or range.
-    Sight(SightFault),
+    FlowRange(FlowRangeFault),
     /// The pressure of the air.
     Pressure(PressureFault),
 }
@@ -65,7 +65,7 @@ impl Fault {
     pub const fn text(self) -> &'static str {
         match self {
             Self::Pose(fault) => fault.text(),
-            Self::Sight(fault) => fault.text(),
+            Self::FlowRange(fault) => fault.text(),
             Self::Pressure(fault) => fault.text(),
         }
     }
@@ -79,7 +79,7 @@ pub struct PositionEstimator {
     past: Past,
     /// `None` before the first fix and after the last one has aged.
     track: Option<Track>,
-    sight: Sight,
+    flow_range: FlowRangeFusion,
     trust: Trust,
     baro_height: BaroHeight,
     /// When the last track by flow ended, µs, and its axes, of which the biases are good for the next.
@@ -97,7 +97,7 @@ impl PositionEstimator {
             motor_tau: p.motor_tau,
             past: Past::default(),
             track: None,
-            sight: Sight::new(p.pipe_diameter, p.flow_lens()),
+            flow_range: FlowRangeFusion::new(p.pipe_diameter, p.flow_lens()),
             trust: Trust::default(),
             baro_height: BaroHeight::default(),
             learnt: None,
@@ -109,7 +109,7 @@ impl PositionEstimator {
     /// What is left out at present, with an estimate or without one.
     pub fn fault(&self) -> Option<Fault> {
         let pose = self.trust.fault().map(Fault::Pose);
-        pose.or_else(|| self.sight.fault().map(Fault::Sight))
+        pose.or_else(|| self.flow_range.fault().map(Fault::FlowRange))
             .or_else(|| self.baro_height.fault().map(Fault::Pressure))
     }
 
@@ -134,20 +134,20 @@ impl PositionEstimator {
         let flow = flow.filter(|flow| flow.until_us > self.flow_us && flow.until_us <= at_us);
         self.flow_us = flow.map_or(self.flow_us, |flow| flow.until_us);
         let flies = lift > FLIES * GRAVITY * self.mass;
-        let before = self.sight.looked_us();
-        let range = view.and_then(|view| self.sight.new_range(view, at_us, flies));
-        let ranged = self.sight.looked_us();
-        let looked = (ranged != before && self.sight.range_is_sound()).then_some(ranged);
+        let before = self.flow_range.looked_us();
+        let range = view.and_then(|view| self.flow_range.new_range(view, at_us, flies));
+        let ranged = self.flow_range.looked_us();
+        let looked = (ranged != before && self.flow_range.range_is_sound()).then_some(ranged);
         if !(felt.q.is_finite() && felt.accel.is_finite() && lift.is_finite()) {
             return None;
         }
         let down = felt.q.rotate(felt.accel).z + GRAVITY;
-        self.sight.feel(at_us, flies.then_some(down), felt.q);
+        self.flow_range.feel(at_us, flies.then_some(down), felt.q);
         // A scaled range gives no height; how it changes may say that it is right again.
         let range = match range {
-            Some((at, distance)) if self.sight.scale.wrong() => {
+            Some((at, distance)) if self.flow_range.scale.wrong() => {
                 if let Some(then) = self.past.at(at) {
-                    self.sight.watch_scaled(then.q, distance);
+                    self.flow_range.watch_scaled(then.q, distance);
                 }
                 None
             }
@@ -175,7 +175,7 @@ impl PositionEstimator {
             }
             (track, None) => {
                 // Where the first flow that is of use comes, the axes begin: on the ground below, as the vehicle's own.
-                let height = flow.and_then(|flow| self.sight.begin(&flow, felt.q));
+                let height = flow.and_then(|flow| self.flow_range.begin(&flow, felt.q));
                 self.learnt = track.as_ref().map_or(self.learnt, Track::learnt);
                 *track = height.map(|height| {
                     self.past.clear();
@@ -205,16 +205,16 @@ impl PositionEstimator {
         }
         if let Some(at) = looked {
             let distance = range.map(|(_, distance)| distance);
-            track.step_on(&self.past, self.sight.lens, at, distance);
+            track.step_on(&self.past, self.flow_range.lens, at, distance);
         }
         let posed = track.posed && seconds(track.pose_us, at_us) < POSE_FRESH;
         if let Some((at, distance)) = range {
-            track.take_range(&mut self.past, &mut self.sight, (at, distance), posed);
+            track.take_range(&mut self.past, &mut self.flow_range, (at, distance), posed);
         }
         if let Some(flow) = flow {
-            track.take_flow(&mut self.past, &mut self.sight, &flow, posed);
+            track.take_flow(&mut self.past, &mut self.flow_range, &flow, posed);
         }
-        let misled = self.sight.misleads() && !posed;
+        let misled = self.flow_range.misleads() && !posed;
         if misled && !track.misled {
             track.taint();
         }
@@ -414,7 +414,13 @@ impl Track {
     }
 
     /// Compares a range of `distance` m, measured at `at` µs, with the height; beside a pose it gives the height of the ground alone.
-    fn take_range(&mut self, past: &mut Past, sight: &mut Sight, (at, distance): (u64, f32), posed: bool) {
+    fn take_range(
+        &mut self,
+        past: &mut Past,
+        flow_range: &mut FlowRangeFusion,
+        (at, distance): (u64, f32),
+        posed: bool,
+    ) {
         let Some(then) = past.at(at) else {
             return;
         };
@@ -427,9 +433,10 @@ impl Track {
         }
         let earlier = past.at(at.saturating_sub(EDGE_TIME)).unwrap_or(then);
         // The lever is rigid: what the lens is off, the vehicle is.
-        let [earlier, then] = [earlier, then].map(|moment| moment.of(sight.lens, self.turn));
+        let [earlier, then] = [earlier, then].map(|moment| moment.of(flow_range.lens, self.turn));
         let [_, _, axis] = &mut self.axes;
-        let Some((innovation, variance)) = sight.height((&earlier, &then), distance, posed, self.turn) else {
+        let Some((innovation, variance)) = flow_range.height((&earlier, &then), distance, posed, self.turn)
+        else {
             return;
         };
         let change = axis.correct(innovation, variance, seconds(at, self.at_us));
@@ -456,15 +463,15 @@ impl Track {
     }
 
     /// Compares a flow with the velocity in its middle; beside a pose it is only watched.
-    fn take_flow(&mut self, past: &mut Past, sight: &mut Sight, flow: &Flow, posed: bool) {
+    fn take_flow(&mut self, past: &mut Past, flow_range: &mut FlowRangeFusion, flow: &Flow, posed: bool) {
         let begin = flow.until_us.saturating_sub((flow.seconds * 1e6) as u64);
         let middle = begin + flow.until_us.saturating_sub(begin) / 2;
         let (Some(from), Some(to)) = (past.at(begin), past.at(flow.until_us)) else {
             return;
         };
         // Between the lens' two places lies the vehicle's way, and what its turning adds.
-        let [from, to] = [from, to].map(|moment| moment.of(sight.lens, self.turn));
-        let Some(seen) = sight.velocity(flow, &from, &to, self.turn) else {
+        let [from, to] = [from, to].map(|moment| moment.of(flow_range.lens, self.turn));
+        let Some(seen) = flow_range.velocity(flow, &from, &to, self.turn) else {
             return;
         };
         if posed {

@@ -1,6 +1,6 @@
 //! A range that is 1.6 or 0.6 times what it should be: named where the vehicle climbs, and a sound one never.
 
-use sophie_control::navigation::flow_range::SightFault;
+use sophie_control::navigation::flow_range::FlowRangeFault;
 use sophie_sim::scenario::FlowFault;
 
 use super::by_itself::{campaign, mission};
@@ -14,7 +14,7 @@ const FOR: f64 = 30.0;
 
 /// When it was named, s; `None` where it was not.
 fn named(record: &FlightRecord) -> Option<f64> {
-    let text = SightFault::RangeScaled.text();
+    let text = FlowRangeFault::RangeScaled.text();
     record.events.iter().find(|e| e.text.ends_with(text)).map(|e| e.t)
 }
 
