@@ -144,7 +144,7 @@ struct Before {
 
 /// What is known of the source.
 #[derive(Clone, Debug, Default)]
-pub struct Trust {
+pub struct ExternalPoseMonitor {
     /// The felt way's band, and when the inertial sensor was last looked at, µs.
     felt: [Low; 4],
     felt_us: u64,
@@ -174,14 +174,14 @@ pub struct Trust {
     unsound_us: u64,
 }
 
-impl Trust {
+impl ExternalPoseMonitor {
     /// What is wrong at present.
     pub fn fault(&self) -> Option<PoseFault> {
         self.fault
     }
 
     /// Takes what the inertial sensor feels; gives the way in the band, m, in the axes of the vehicle's attitude.
-    pub fn feel(&mut self, felt: &Inertial) -> Vec3 {
+    pub fn predict(&mut self, felt: &Inertial) -> Vec3 {
         let dt = seconds(self.felt_us, felt.at_us);
         if dt > super::inertial::STEP_MAX {
             self.felt = Default::default();
@@ -200,7 +200,7 @@ impl Trust {
     }
 
     /// Looks at `fix`, measured at the moment `then`, of a vehicle whose rotors carry it where it `flies`.
-    pub fn look(&mut self, fix: &Fix, then: Option<&Moment>, flies: bool) {
+    pub fn update(&mut self, fix: &Fix, then: Option<&Moment>, flies: bool) {
         let at = fix.at_us;
         let mut sound = true;
         let dt = self.before.map_or(0, |before| at.saturating_sub(before.at_us));
@@ -248,7 +248,7 @@ impl Trust {
         if let Some(then) = then.filter(|_| self.same == 0) {
             // Of a vehicle that is carried, after a silence and in new axes it may be any.
             let anew = !flies || announced || self.before.is_none_or(|b| seconds(b.at_us, at) > UNKNOWN_AGE);
-            self.face(scalar::wrap_pi(fix.heading - then.yaw()), at, anew);
+            self.check_heading(scalar::wrap_pi(fix.heading - then.yaw()), at, anew);
         }
         self.before = Some(Before {
             at_us: at,
@@ -274,7 +274,7 @@ impl Trust {
     }
 
     /// Looks at the heading less the vehicle's own, `turn` rad, at `at` µs; `anew` where it may be any.
-    fn face(&mut self, turn: f32, at: u64, anew: bool) {
+    fn check_heading(&mut self, turn: f32, at: u64, anew: bool) {
         let known = self.turn.unwrap_or(turn);
         let off = scalar::wrap_pi(turn - known);
         let same = off.abs() < TURN_STEP;
@@ -308,7 +308,7 @@ impl Trust {
     }
 
     /// A pose at `at` µs is `off` where the vehicle was taken to be, or is not.
-    pub fn gate(&mut self, at: u64, off: bool) {
+    pub fn note_gate(&mut self, at: u64, off: bool) {
         self.refused = if off {
             self.refused + REFUSED
         } else {

@@ -15,7 +15,7 @@ use crate::navigation::air_pressure::AirPressure;
 use crate::navigation::axis_filter::{Axis, Change};
 use crate::navigation::baro_height::{BaroHeight, PressureFault};
 use crate::navigation::estimate::Estimate;
-use crate::navigation::external_pose::{PoseFault, TURN_GAIN, TURN_STEP, Trust};
+use crate::navigation::external_pose::{ExternalPoseMonitor, PoseFault, TURN_GAIN, TURN_STEP};
 use crate::navigation::fix::Fix;
 use crate::navigation::fix_age::{LOST_AGE, TAINTED_AGE, UNKNOWN_AGE};
 use crate::navigation::flow_range::{FlowRangeFault, FlowRangeFusion, beam};
@@ -80,7 +80,7 @@ pub struct PositionEstimator {
     /// `None` before the first fix and after the last one has aged.
     track: Option<Track>,
     flow_range: FlowRangeFusion,
-    trust: Trust,
+    pose_monitor: ExternalPoseMonitor,
     baro_height: BaroHeight,
     /// When the last track by flow ended, µs, and its axes, of which the biases are good for the next.
     learnt: Option<(u64, [Axis; 3])>,
@@ -98,7 +98,7 @@ impl PositionEstimator {
             past: Past::default(),
             track: None,
             flow_range: FlowRangeFusion::new(p.pipe_diameter, p.flow_lens()),
-            trust: Trust::default(),
+            pose_monitor: ExternalPoseMonitor::default(),
             baro_height: BaroHeight::default(),
             learnt: None,
             seen_us: 0,
@@ -108,7 +108,7 @@ impl PositionEstimator {
 
     /// What is left out at present, with an estimate or without one.
     pub fn fault(&self) -> Option<Fault> {
-        let pose = self.trust.fault().map(Fault::Pose);
+        let pose = self.pose_monitor.fault().map(Fault::Pose);
         pose.or_else(|| self.flow_range.fault().map(Fault::FlowRange))
             .or_else(|| self.baro_height.fault().map(Fault::Pressure))
     }
@@ -153,11 +153,12 @@ impl PositionEstimator {
             }
             range => range,
         };
-        let swing = self.trust.feel(felt);
+        let swing = self.pose_monitor.predict(felt);
         if let Some(fix) = new {
-            self.trust.look(fix, self.past.at(fix.at_us).as_ref(), flies);
+            self.pose_monitor
+                .update(fix, self.past.at(fix.at_us).as_ref(), flies);
         }
-        let left_out = self.trust.fault().is_some();
+        let left_out = self.pose_monitor.fault().is_some();
         let new = new.filter(|_| !left_out);
         let here = Moment {
             at_us,
@@ -195,13 +196,13 @@ impl PositionEstimator {
         });
         track.left_out |= left_out;
         let jumps = track.jumps;
-        if self.trust.fault() == Some(PoseFault::Disagrees) && !track.tainted {
+        if self.pose_monitor.fault() == Some(PoseFault::Disagrees) && !track.tainted {
             track.taint();
             track.tainted = true;
             self.baro_height.forget();
         }
         if let Some(fix) = new {
-            track.take(&mut self.past, &mut self.trust, fix);
+            track.take(&mut self.past, &mut self.pose_monitor, fix);
         }
         if let Some(at) = looked {
             let distance = range.map(|(_, distance)| distance);
@@ -346,7 +347,7 @@ impl Track {
     }
 
     /// Compares `fix` with where the vehicle was taken to be when it was measured.
-    fn take(&mut self, past: &mut Past, trust: &mut Trust, fix: &Fix) {
+    fn take(&mut self, past: &mut Past, pose_monitor: &mut ExternalPoseMonitor, fix: &Fix) {
         let Some(then) = past.at(fix.at_us) else {
             return;
         };
@@ -363,7 +364,7 @@ impl Track {
             past.clear();
             self.jump(yaw, fix);
         } else if accepted {
-            trust.gate(fix.at_us, false);
+            pose_monitor.note_gate(fix.at_us, false);
             let lag = seconds(fix.at_us, self.at_us);
             let mut changes = [Change::default(); 3];
             let inputs = innovation.to_array().into_iter().zip(variance.to_array());
@@ -375,7 +376,7 @@ impl Track {
             self.turn = scalar::wrap_pi(self.turn + gain * off);
             self.count();
         } else {
-            trust.gate(fix.at_us, true);
+            pose_monitor.note_gate(fix.at_us, true);
             return;
         }
         (self.left_out, self.tainted) = (false, false);

@@ -398,7 +398,7 @@ mod any {
                 }
             }
             r.run(16.0);
-            prop_assert!(r.estimator.fault().is_none(), "{:?}", r.estimator.trust);
+            prop_assert!(r.estimator.fault().is_none(), "{:?}", r.estimator.pose_monitor);
             let [p, v] = r.errors();
             prop_assert!(p < 0.05 && v < 0.15, "{p} {v}");
         }
