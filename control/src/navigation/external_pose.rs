@@ -6,7 +6,7 @@
 
 use super::fix::Fix;
 use super::fix_age::{TAINTED_AGE, UNKNOWN_AGE};
-use super::history::Moment;
+use super::history::StateSnapshot;
 use super::inertial::Inertial;
 use crate::maths::elapsed::seconds;
 use crate::maths::frames::about_down;
@@ -200,7 +200,7 @@ impl ExternalPoseMonitor {
     }
 
     /// Looks at `fix`, measured at the moment `then`, of a vehicle whose rotors carry it where it `flies`.
-    pub fn update(&mut self, fix: &Fix, then: Option<&Moment>, flies: bool) {
+    pub fn update(&mut self, fix: &Fix, then: Option<&StateSnapshot>, flies: bool) {
         let at = fix.at_us;
         let mut sound = true;
         let dt = self.before.map_or(0, |before| at.saturating_sub(before.at_us));
@@ -354,7 +354,7 @@ impl ExternalPoseMonitor {
         last.step(high, dt)
     }
 
-    fn compare(&mut self, seen: Vec3, fix: &Fix, then: &Moment, dt: f32) {
+    fn compare(&mut self, seen: Vec3, fix: &Fix, then: &StateSnapshot, dt: f32) {
         let seen = about_down(seen, then.yaw() - fix.heading);
         let felt = then.swing;
         let level = |v: Vec3| Vec3::new(v.x, v.y, 0.0);

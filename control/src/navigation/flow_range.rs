@@ -2,7 +2,7 @@
 
 use super::consistency::Agreement;
 use super::frozen_range::Frozen;
-use super::history::Moment;
+use super::history::StateSnapshot;
 use super::pipe_footprint::{Band, Depth};
 use super::range_scale::{Below, RangeScale};
 use crate::maths::elapsed::seconds;
@@ -294,7 +294,7 @@ impl FlowRangeFusion {
     /// way there; the axes are turned by `turn`, rad.
     pub fn height(
         &mut self,
-        (earlier, then): (&Moment, &Moment),
+        (earlier, then): (&StateSnapshot, &StateSnapshot),
         distance: f32,
         posed: bool,
         turn: f32,
@@ -387,7 +387,7 @@ impl FlowRangeFusion {
             let mut band = self.band.unwrap_or(below);
             band.top = self.level.min(before);
             let reach = band.top - then.position.z;
-            let at = |m: &Moment| m.position + beam(m.q, reach, turn);
+            let at = |m: &StateSnapshot| m.position + beam(m.q, reach, turn);
             let way = at(then) - at(earlier);
             self.band = Some(Band::at_edge(band, self.stepped_at, onto, way, heading));
             self.foot = foot;
@@ -427,7 +427,7 @@ impl FlowRangeFusion {
 
     /// How far what the flow sees from `to` is. Beside something narrow the rest of the view is farther, and where an edge
     /// of it was seen its share is known.
-    pub(crate) fn depth(&self, to: &Moment, cos: f32, turn: f32) -> Depth {
+    pub(crate) fn depth(&self, to: &StateSnapshot, cos: f32, turn: f32) -> Depth {
         let far = |level: f32| {
             let (least, most) = FLOW_HEIGHT;
             scalar::clamp((level - to.position.z) / cos, least, 2.0 * most)
@@ -450,7 +450,13 @@ impl FlowRangeFusion {
 
     /// What the velocity of the lens between `from` and `to`, in axes turned by `turn` rad, is off by `flow`; `None` where it
     /// says nothing.
-    pub fn velocity(&mut self, flow: &Flow, from: &Moment, to: &Moment, turn: f32) -> Option<Seen> {
+    pub fn velocity(
+        &mut self,
+        flow: &Flow,
+        from: &StateSnapshot,
+        to: &StateSnapshot,
+        turn: f32,
+    ) -> Option<Seen> {
         self.watch_frozen(flow);
         let cos = to.q.down_in_body().z;
         let (at, distance) = self.range.filter(|_| !self.range_faulty())?;
@@ -532,11 +538,11 @@ mod tests {
     #[test]
     fn nothing_of_the_axes_before_is_left_where_an_estimate_begins() {
         let mut flow_range = FlowRangeFusion::new(0.3, Vec3::ZERO);
-        let at = |us: u64, y: f32| Moment {
+        let at = |us: u64, y: f32| StateSnapshot {
             at_us: us,
             position: Vec3::new(7.0, y, -1.9),
             q: Quat::IDENTITY,
-            ..Moment::default()
+            ..StateSnapshot::default()
         };
         for (y, distance) in [(0.5, 1.9), (0.7, 0.4)] {
             for _ in 0..5 {

@@ -20,7 +20,7 @@ use crate::navigation::fix::Fix;
 use crate::navigation::fix_age::{LOST_AGE, TAINTED_AGE, UNKNOWN_AGE};
 use crate::navigation::flow_range::{FlowRangeFault, FlowRangeFusion, beam};
 use crate::navigation::flow_range_sample::{Flow, GroundView};
-use crate::navigation::history::{Moment, Past};
+use crate::navigation::history::{StateHistory, StateSnapshot};
 use crate::navigation::inertial::{Inertial, STEP_MAX};
 use crate::navigation::range_hit::Foot;
 use crate::params::Params;
@@ -76,7 +76,7 @@ impl Fault {
 pub struct PositionEstimator {
     mass: f32,
     motor_tau: f32,
-    past: Past,
+    history: StateHistory,
     /// `None` before the first fix and after the last one has aged.
     track: Option<Track>,
     flow_range: FlowRangeFusion,
@@ -95,7 +95,7 @@ impl PositionEstimator {
         Self {
             mass: p.mass,
             motor_tau: p.motor_tau,
-            past: Past::default(),
+            history: StateHistory::default(),
             track: None,
             flow_range: FlowRangeFusion::new(p.pipe_diameter, p.flow_lens()),
             pose_monitor: ExternalPoseMonitor::default(),
@@ -146,7 +146,7 @@ impl PositionEstimator {
         // A scaled range gives no height; how it changes may say that it is right again.
         let range = match range {
             Some((at, distance)) if self.flow_range.scale.wrong() => {
-                if let Some(then) = self.past.at(at) {
+                if let Some(then) = self.history.at(at) {
                     self.flow_range.watch_scaled(then.q, distance);
                 }
                 None
@@ -156,20 +156,20 @@ impl PositionEstimator {
         let swing = self.pose_monitor.predict(felt);
         if let Some(fix) = new {
             self.pose_monitor
-                .update(fix, self.past.at(fix.at_us).as_ref(), flies);
+                .update(fix, self.history.at(fix.at_us).as_ref(), flies);
         }
         let left_out = self.pose_monitor.fault().is_some();
         let new = new.filter(|_| !left_out);
-        let here = Moment {
+        let here = StateSnapshot {
             at_us,
             q: felt.q,
             swing,
-            ..Moment::default()
+            ..StateSnapshot::default()
         };
         let track = match (&mut self.track, new) {
             (Some(track), _) if track.follows(at_us) => track,
             (track, Some(fix)) => {
-                self.past.clear();
+                self.history.clear();
                 self.baro_height.forget();
                 *track = Some(Track::begin(at_us, felt.q.to_euler().2, fix));
                 return None;
@@ -179,18 +179,18 @@ impl PositionEstimator {
                 let height = flow.and_then(|flow| self.flow_range.begin(&flow, felt.q));
                 self.learnt = track.as_ref().map_or(self.learnt, Track::learnt);
                 *track = height.map(|height| {
-                    self.past.clear();
+                    self.history.clear();
                     self.baro_height.forget();
                     Track::above(at_us, height, self.learnt.as_ref())
                 });
                 // Its own place: the next flow's interval may begin here.
                 let position = track.as_ref().map_or(here.position, Track::position);
-                self.past.push(Moment { position, ..here });
+                self.history.push(StateSnapshot { position, ..here });
                 return None;
             }
         };
         track.predict(felt, (lift / self.mass, self.motor_tau));
-        self.past.push(Moment {
+        self.history.push(StateSnapshot {
             position: track.position(),
             ..here
         });
@@ -202,18 +202,18 @@ impl PositionEstimator {
             self.baro_height.forget();
         }
         if let Some(fix) = new {
-            track.take(&mut self.past, &mut self.pose_monitor, fix);
+            track.take(&mut self.history, &mut self.pose_monitor, fix);
         }
         if let Some(at) = looked {
             let distance = range.map(|(_, distance)| distance);
-            track.step_on(&self.past, self.flow_range.lens, at, distance);
+            track.step_on(&self.history, self.flow_range.lens, at, distance);
         }
         let posed = track.posed && seconds(track.pose_us, at_us) < POSE_FRESH;
         if let Some((at, distance)) = range {
-            track.take_range(&mut self.past, &mut self.flow_range, (at, distance), posed);
+            track.take_range(&mut self.history, &mut self.flow_range, (at, distance), posed);
         }
         if let Some(flow) = flow {
-            track.take_flow(&mut self.past, &mut self.flow_range, &flow, posed);
+            track.take_flow(&mut self.history, &mut self.flow_range, &flow, posed);
         }
         let misled = self.flow_range.misleads() && !posed;
         if misled && !track.misled {
@@ -226,7 +226,7 @@ impl PositionEstimator {
         if let Some(at) = self.baro_height.news(at_us)
             && flies
         {
-            track.take_pressure(&mut self.past, &mut self.baro_height, at);
+            track.take_pressure(&mut self.history, &mut self.baro_height, at);
         }
         track.estimate(self.baro_height.carries(at_us))
     }
@@ -347,8 +347,8 @@ impl Track {
     }
 
     /// Compares `fix` with where the vehicle was taken to be when it was measured.
-    fn take(&mut self, past: &mut Past, pose_monitor: &mut ExternalPoseMonitor, fix: &Fix) {
-        let Some(then) = past.at(fix.at_us) else {
+    fn take(&mut self, history: &mut StateHistory, pose_monitor: &mut ExternalPoseMonitor, fix: &Fix) {
+        let Some(then) = history.at(fix.at_us) else {
             return;
         };
         let yaw = then.yaw();
@@ -361,7 +361,7 @@ impl Track {
         let unknown = self.left_out || seconds(self.pose_us, fix.at_us) > UNKNOWN_AGE;
         let elsewhere = !accepted || off.abs() > TURN_STEP;
         if !self.posed || fix.resets != self.resets || (unknown && elsewhere) {
-            past.clear();
+            history.clear();
             self.jump(yaw, fix);
         } else if accepted {
             pose_monitor.note_gate(fix.at_us, false);
@@ -371,7 +371,7 @@ impl Track {
             for ((axis, change), (y, r)) in self.axes.iter_mut().zip(&mut changes).zip(inputs) {
                 *change = axis.correct(y, r, lag);
             }
-            past.change(fix.at_us, &changes);
+            history.change(fix.at_us, &changes);
             let gain = scalar::clamp(1.0 / (1.0 + self.fixes as f32), TURN_GAIN, 1.0);
             self.turn = scalar::wrap_pi(self.turn + gain * off);
             self.count();
@@ -405,8 +405,8 @@ impl Track {
     }
 
     /// Notes where the beam of a range of `distance` m, measured at `at` µs, has met something.
-    fn step_on(&mut self, past: &Past, lens: Vec3, at: u64, distance: Option<f32>) {
-        let Some(then) = past.at(at).map(|moment| moment.of(lens, self.turn)) else {
+    fn step_on(&mut self, history: &StateHistory, lens: Vec3, at: u64, distance: Option<f32>) {
+        let Some(then) = history.at(at).map(|moment| moment.of(lens, self.turn)) else {
             return;
         };
         self.foot.point = distance.map(|d| then.position + beam(then.q, d, self.turn));
@@ -417,12 +417,12 @@ impl Track {
     /// Compares a range of `distance` m, measured at `at` µs, with the height; beside a pose it gives the height of the ground alone.
     fn take_range(
         &mut self,
-        past: &mut Past,
+        history: &mut StateHistory,
         flow_range: &mut FlowRangeFusion,
         (at, distance): (u64, f32),
         posed: bool,
     ) {
-        let Some(then) = past.at(at) else {
+        let Some(then) = history.at(at) else {
             return;
         };
         if distance < STANDING && !posed {
@@ -430,9 +430,9 @@ impl Track {
             let lag = seconds(at, self.at_us);
             let [x, y, _] = &mut self.axes;
             let [along, across] = [x, y].map(|axis| axis.correct_speed(-axis.velocity(), STAND_SPEED, lag));
-            past.change(at, &[along, across, Change::default()]);
+            history.change(at, &[along, across, Change::default()]);
         }
-        let earlier = past.at(at.saturating_sub(EDGE_TIME)).unwrap_or(then);
+        let earlier = history.at(at.saturating_sub(EDGE_TIME)).unwrap_or(then);
         // The lever is rigid: what the lens is off, the vehicle is.
         let [earlier, then] = [earlier, then].map(|moment| moment.of(flow_range.lens, self.turn));
         let [_, _, axis] = &mut self.axes;
@@ -441,13 +441,13 @@ impl Track {
             return;
         };
         let change = axis.correct(innovation, variance, seconds(at, self.at_us));
-        past.change(at, &[Change::default(), Change::default(), change]);
+        history.change(at, &[Change::default(), Change::default(), change]);
         self.height_us = at;
     }
 
     /// Compares the newest pressure, measured at `at` µs, with the height; beside range or pose it is only learnt from.
-    fn take_pressure(&mut self, past: &mut Past, baro_height: &mut BaroHeight, at: u64) {
-        let Some(then) = past.at(at) else {
+    fn take_pressure(&mut self, history: &mut StateHistory, baro_height: &mut BaroHeight, at: u64) {
+        let Some(then) = history.at(at) else {
             return;
         };
         let known = seconds(self.height_us, at);
@@ -457,17 +457,23 @@ impl Track {
         let [_, _, axis] = &mut self.axes;
         if axis.accepts(innovation, variance) {
             let change = axis.correct(innovation, variance, seconds(at, self.at_us));
-            past.change(at, &[Change::default(), Change::default(), change]);
+            history.change(at, &[Change::default(), Change::default(), change]);
         } else {
             baro_height.refuse();
         }
     }
 
     /// Compares a flow with the velocity in its middle; beside a pose it is only watched.
-    fn take_flow(&mut self, past: &mut Past, flow_range: &mut FlowRangeFusion, flow: &Flow, posed: bool) {
+    fn take_flow(
+        &mut self,
+        history: &mut StateHistory,
+        flow_range: &mut FlowRangeFusion,
+        flow: &Flow,
+        posed: bool,
+    ) {
         let begin = flow.until_us.saturating_sub((flow.seconds * 1e6) as u64);
         let middle = begin + flow.until_us.saturating_sub(begin) / 2;
-        let (Some(from), Some(to)) = (past.at(begin), past.at(flow.until_us)) else {
+        let (Some(from), Some(to)) = (history.at(begin), history.at(flow.until_us)) else {
             return;
         };
         // Between the lens' two places lies the vehicle's way, and what its turning adds.
@@ -494,7 +500,7 @@ impl Track {
         } else {
             let lag = seconds(middle, self.at_us);
             let [along, across] = sides.map(|(axis, off)| axis.correct_speed(off, seen.variance, lag));
-            past.change(middle, &[along, across, Change::default()]);
+            history.change(middle, &[along, across, Change::default()]);
             self.count();
         }
         self.flows_refused = 0;

@@ -277,11 +277,11 @@ fn a_step_of_what_is_below_changes_neither_height_nor_velocity() {
 #[test]
 fn the_ground_is_what_the_beam_falls_back_to() {
     let mut flow_range = FlowRangeFusion::new(0.3, Vec3::ZERO);
-    let at = |us: u64, y: f32| Moment {
+    let at = |us: u64, y: f32| StateSnapshot {
         at_us: us,
         position: Vec3::new(0.0, y, -1.9),
         q: Quat::IDENTITY,
-        ..Moment::default()
+        ..StateSnapshot::default()
     };
     let look = |flow_range: &mut FlowRangeFusion, y: f32, distance: f32| {
         for _ in 0..5 {
@@ -306,10 +306,10 @@ fn a_beam_falls_where_it_does_below_the_lens() {
     let lens = Vec3::new(0.2, 0.1, 0.05);
     let q = Quat::from_euler(0.1, -0.2, 0.7);
     let mut flow_range = FlowRangeFusion::new(0.3, lens);
-    let moment = Moment {
+    let moment = StateSnapshot {
         position: Vec3::new(1.0, 2.0, -1.5),
         q,
-        ..Moment::default()
+        ..StateSnapshot::default()
     };
     let above = 1.5 - q.rotate(lens).z;
     let distance = above / q.down_in_body().z;
@@ -347,11 +347,11 @@ fn a_beam_falls_where_it_does_below_the_lens() {
 fn a_pipe_is_left_behind_by_way_and_by_time() {
     for (way, seconds) in [(2.5, 1), (0.0, 25)] {
         let mut flow_range = FlowRangeFusion::new(0.3, Vec3::ZERO);
-        let at = |us: u64, x: f32, y: f32| Moment {
+        let at = |us: u64, x: f32, y: f32| StateSnapshot {
             at_us: us,
             position: Vec3::new(x, y, -1.9),
             q: Quat::IDENTITY,
-            ..Moment::default()
+            ..StateSnapshot::default()
         };
         let look = |flow_range: &mut FlowRangeFusion, us: u64, (x, y): (f32, f32), distance: f32| {
             for _ in 0..5 {
@@ -398,11 +398,11 @@ fn a_leaning_beam_finds_the_edges_where_they_are() {
     let mut flow_range = FlowRangeFusion::new(0.3, Vec3::ZERO);
     for step in 0..200u64 {
         let y = 0.005 * step as f32;
-        let moment = |y: f32| Moment {
+        let moment = |y: f32| StateSnapshot {
             at_us: 20_000 * step,
             position: Vec3::new(0.0, y, -1.9),
             q,
-            ..Moment::default()
+            ..StateSnapshot::default()
         };
         // To the left of the vehicle; the pipe's middle is at 0.5 m.
         let near = y - 0.4 * lean.tan() - 0.5;
@@ -514,10 +514,10 @@ fn an_edge_that_is_crossed_in_gusts_is_no_fault_and_a_range_that_jumps_as_often_
 #[test]
 fn the_surface_of_a_flank_does_not_follow_the_height_for_good() {
     let mut flow_range = FlowRangeFusion::new(0.3, Vec3::ZERO);
-    let mut moment = Moment {
+    let mut moment = StateSnapshot {
         at_us: 1_000_000,
         position: Vec3::new(0.0, 0.0, -2.0),
-        ..Moment::default()
+        ..StateSnapshot::default()
     };
     let mut seen = |flow_range: &mut FlowRangeFusion, height: f32, distance: f32, times: u8| {
         moment.position.z = -height;
