@@ -3,7 +3,7 @@
 use super::consistency::Agreement;
 use super::frozen_range::Frozen;
 use super::history::StateSnapshot;
-use super::pipe_footprint::{Band, Depth};
+use super::pipe_footprint::{Depth, PipeFootprint};
 use super::range_scale::{Below, RangeScale};
 use crate::maths::elapsed::seconds;
 use crate::maths::frames::about_down;
@@ -177,7 +177,7 @@ pub struct FlowRangeFusion {
     /// Ranges for which the height of what is narrow below is not known yet: its flank was seen alone.
     flank: u32,
     /// What is narrow, where its edge was seen; when it was met below last, µs, and where.
-    pub(crate) band: Option<Band>,
+    pub(crate) band: Option<PipeFootprint>,
     met: (u64, Vec3),
     pub(crate) frozen: Frozen,
     same_flows: u32,
@@ -320,7 +320,7 @@ impl FlowRangeFusion {
         let off = self.level - surface;
         let raised = self.raised();
         let heading = then.yaw() + turn;
-        let below = Band::below(foot, heading, self.radius, self.level);
+        let below = PipeFootprint::below(foot, heading, self.radius, self.level);
         if !self.scale.begun() {
             self.unproven = Some(foot);
         }
@@ -389,7 +389,7 @@ impl FlowRangeFusion {
             let reach = band.top - then.position.z;
             let at = |m: &StateSnapshot| m.position + beam(m.q, reach, turn);
             let way = at(then) - at(earlier);
-            self.band = Some(Band::at_edge(band, self.stepped_at, onto, way, heading));
+            self.band = Some(PipeFootprint::at_edge(band, self.stepped_at, onto, way, heading));
             self.foot = foot;
             self.flank = if onto && !known { FLANK_RANGES } else { 0 };
         }
