@@ -14,7 +14,7 @@ use crate::maths::frames::about_down;
 use crate::maths::hold_timer::HoldTimer;
 use crate::maths::scalar::{self, clamp, clamp_abs};
 use crate::maths::vector::Vec3;
-use crate::navigation::range_hit::Foot;
+use crate::navigation::range_hit::RangeHit;
 use crate::params::Params;
 use crate::position_hold::Wish;
 
@@ -59,7 +59,7 @@ pub struct View {
     /// Age of the newest fix or flow, s.
     pub age: f32,
     /// Where the range sees something.
-    pub foot: Foot,
+    pub foot: RangeHit,
     /// Where the pipe is said to be; with it no range is asked.
     pub target: Option<PipeTarget>,
 }

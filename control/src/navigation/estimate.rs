@@ -1,6 +1,6 @@
 //! Result of the position estimator.
 
-use super::range_hit::Foot;
+use super::range_hit::RangeHit;
 use crate::maths::vector::Vec3;
 
 /// Where the vehicle is, as far as the newest fix and the inertial sensor say.
@@ -21,7 +21,7 @@ pub struct Estimate {
     /// Counts where the position has jumped with the sender's origin.
     pub jumps: u8,
     /// Where the beam of the range falls.
-    pub foot: Foot,
+    pub foot: RangeHit,
 }
 
 impl Estimate {

@@ -22,7 +22,7 @@ use crate::navigation::flow_range::{FlowRangeFault, FlowRangeFusion, beam};
 use crate::navigation::flow_range_sample::{Flow, GroundView};
 use crate::navigation::history::{StateHistory, StateSnapshot};
 use crate::navigation::inertial::{Inertial, STEP_MAX};
-use crate::navigation::range_hit::Foot;
+use crate::navigation::range_hit::RangeHit;
 use crate::params::Params;
 
 /// Fixes until the estimate is given out, half a second at 50 Hz, and the velocity's deviation by then, m/s.
@@ -261,7 +261,7 @@ struct Track {
     resets: u8,
     jumps: u8,
     ready: bool,
-    foot: Foot,
+    foot: RangeHit,
     /// When that was measured, µs; 0 before the first.
     foot_us: u64,
 }
@@ -287,7 +287,7 @@ impl Track {
             resets: fix.resets,
             jumps: 0,
             ready: false,
-            foot: Foot::default(),
+            foot: RangeHit::default(),
             foot_us: 0,
         }
     }
@@ -552,8 +552,8 @@ impl Track {
             by_pressure,
             jumps: self.jumps,
             foot: match self.foot_us {
-                0 => Foot::default(),
-                at => Foot {
+                0 => RangeHit::default(),
+                at => RangeHit {
                     age: seconds(at, self.at_us),
                     ..self.foot
                 },

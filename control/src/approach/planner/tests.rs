@@ -69,10 +69,10 @@ impl World {
 /// How a try ends: the law, where the vehicle is then, and after how long.
 fn flown(world: World, law: Approach) -> (Result<(), Doubt>, Vec3, Approach, f32) {
     let (mut law, mut held, mut speed) = (law, law.origin, Vec3::ZERO);
-    let mut foot = Foot::default();
+    let mut foot = RangeHit::default();
     for i in 0..12_000 {
         if i % 2 == 0 {
-            foot = Foot {
+            foot = RangeHit {
                 point: world.below_lens(held, law.lens).and_then(|point| {
                     let (from, until, scale) = world.scaled;
                     let wrong = (from..until).contains(&(i as f32 * DT));
@@ -127,7 +127,7 @@ fn begun_by(world: &World, p: &Params) -> Approach {
         heading: world.heading,
         held: Vec3::ZERO,
         age: 0.0,
-        foot: Foot::default(),
+        foot: RangeHit::default(),
         target: None,
     };
     Approach::begin(p, &view, world.heading, 0)
@@ -194,7 +194,7 @@ fn it_sinks_no_faster_than_it_may_and_only_over_the_crown() {
             heading: world.heading,
             held,
             age: 0.0,
-            foot: Foot {
+            foot: RangeHit {
                 point: world.below(held),
                 count: (i % 256) as u8,
                 age: 0.0,
@@ -355,9 +355,9 @@ fn without_a_range_and_where_nothing_is_touched_it_gives_up() {
         heading: 0.4,
         held: Vec3::ZERO,
         age: 0.0,
-        foot: Foot {
+        foot: RangeHit {
             age: RANGE_AGE - 0.01,
-            ..Foot::default()
+            ..RangeHit::default()
         },
         target: None,
     };
@@ -387,7 +387,7 @@ fn another_try_climbs_before_it_searches_and_leaving_only_climbs() {
         heading: world.heading,
         held: Vec3::new(0.0, 0.0, 0.5),
         age: 0.0,
-        foot: Foot::default(),
+        foot: RangeHit::default(),
         target: None,
     };
     let law = Approach::again(&Params::default(), &view, world.heading, 0, true);
@@ -416,7 +416,7 @@ fn another_try_from_a_search_climbs_no_higher_than_over_what_it_has_met() {
             heading: world.heading,
             held: Vec3::ZERO,
             age: 0.0,
-            foot: Foot {
+            foot: RangeHit {
                 point: world.below(Vec3::ZERO),
                 count: 1,
                 age: 0.0,
@@ -446,7 +446,7 @@ fn descending(range: f32, sinks: f32, age: f32) -> (Approach, View) {
         heading: world.heading,
         held: place,
         age,
-        foot: Foot {
+        foot: RangeHit {
             point: world.below(place),
             count: 1,
             age: 0.0,
@@ -545,7 +545,7 @@ fn a_search_about_where_the_pipe_was_finds_it_from_where_an_escape_ends() {
         heading: world.heading,
         held: Vec3::ZERO,
         age: 0.0,
-        foot: Foot::default(),
+        foot: RangeHit::default(),
         target: None,
     };
     let p = Params::default();

@@ -3,7 +3,7 @@
 use super::*;
 use crate::maths::scalar::sin;
 use crate::maths::vector::Vec3;
-use crate::navigation::range_hit::Foot;
+use crate::navigation::range_hit::RangeHit;
 
 const DT: f32 = 0.01;
 
@@ -19,7 +19,7 @@ struct World {
     off: f32,
     /// Error of the felt acceleration, m/s².
     bias: f32,
-    foot: Foot,
+    foot: RangeHit,
     age: f32,
     /// Over a crown, near it.
     steady: bool,
@@ -37,10 +37,10 @@ impl World {
             bent: 0.0,
             off: 0.0,
             bias: 0.05,
-            foot: Foot {
+            foot: RangeHit {
                 point: Some(Vec3::ZERO),
                 age: 0.02,
-                ..Foot::default()
+                ..RangeHit::default()
             },
             age: 0.02,
             steady: false,
@@ -120,7 +120,7 @@ fn where_nothing_gives_the_height_a_bent_speed_is_not_flown_by() {
 #[test]
 fn where_poses_have_gone_their_bent_speed_is_not_flown_by() {
     let mut w = World::new();
-    w.foot = Foot::default();
+    w.foot = RangeHit::default();
     w.run(30.0);
     (w.age, w.bent) = (0.2, -0.2);
     w.run(1.0);
@@ -150,7 +150,7 @@ fn a_range_that_goes_another_way_is_named_once_its_bias_is_learnt() {
     }
     // What a pose says of the speed is judged elsewhere.
     let mut w = World::learnt();
-    (w.foot, w.bent) = (Foot::default(), 0.5);
+    (w.foot, w.bent) = (RangeHit::default(), 0.5);
     w.run(1.0);
     assert_eq!(Some(w.out()), w.estimate);
 }
