@@ -119,7 +119,7 @@ pub fn contact(_: &State, step: &mut Step<'_>, _: Option<Reason>) -> Contact {
 
 /// The arms begin to close. A radio lost just now finishes the landing that the pilot began.
 pub fn closing(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Clamping {
-    step.context.lean.sit();
+    step.context.lean.capture_lean();
     step.context.tightened = 0;
     step.context.perch_switch.seen_on = step.inputs.sticks.is_some();
     Clamping {
@@ -130,7 +130,7 @@ pub fn closing(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Clamping
 
 /// The arms stay closed, or close again. Radio lost: hold on; a later release takes a new turn of the switch.
 pub fn closing_again(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Clamping {
-    step.context.lean.sit();
+    step.context.lean.capture_lean();
     step.context.perch_switch.seen_on = Releasing::called_back(step) && step.inputs.sticks.is_some();
     let share = match from {
         State::Releasing(r) => r.spooled(step.dt),
@@ -164,7 +164,7 @@ pub fn armed_on_pipe(from: &State, step: &mut Step<'_>, why: Option<Reason>) -> 
 /// The pilot wants to leave: rotors first.
 pub fn releasing(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Releasing {
     step.context.by_itself = ByItself::default();
-    step.context.lean.sit();
+    step.context.lean.capture_lean();
     let grip_memory = from.behaviour().grip_memory();
     Releasing {
         hold: present(step, grip_memory.arms().unwrap_or_default()),
@@ -178,7 +178,7 @@ pub fn releasing(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Releas
 /// The same after a slip: a slow spool-up would take the belly off the pipe while the arms still close, and it slides on.
 pub fn leaving(from: &State, step: &mut Step<'_>, why: Option<Reason>) -> Escaping {
     step.context.by_itself = ByItself::default();
-    step.context.lean.sit();
+    step.context.lean.capture_lean();
     giving_up(from, step, why)
 }
 
