@@ -7,7 +7,7 @@
 //! slope, and so does the heading, of which nothing else is known.
 
 use crate::attitude::motion::Motion;
-use crate::contact::contact_force::{LEAVING_FORCE, RESTING_FORCE, Support};
+use crate::contact::contact_force::{ContactForce, LEAVING_FORCE, RESTING_FORCE};
 use crate::contact::friction_limit::FrictionLimit;
 use crate::maths::hold_timer::HoldTimer;
 use crate::maths::scalar::{GRAVITY, deg, sqrt, wrap_pi};
@@ -87,12 +87,12 @@ impl Lean {
     }
 
     /// One step of `dt` s with the rotors' collective (N).
-    pub fn step(&mut self, motion: Option<Motion>, support: &Support, collective: f32, dt: f32) {
-        self.follow(motion, collective / support.weight(), dt);
-        let idle = support.force() < LEAVING_FORCE;
-        let low = collective < FALL_SHARE * support.weight();
+    pub fn step(&mut self, motion: Option<Motion>, contact_force: &ContactForce, collective: f32, dt: f32) {
+        self.follow(motion, collective / contact_force.weight(), dt);
+        let idle = contact_force.force() < LEAVING_FORCE;
+        let low = collective < FALL_SHARE * contact_force.weight();
         self.falling.step(idle && low, dt);
-        self.apart.step(support.force() <= RESTING_FORCE, dt);
+        self.apart.step(contact_force.force() <= RESTING_FORCE, dt);
     }
 
     fn follow(&mut self, motion: Option<Motion>, share: f32, dt: f32) {

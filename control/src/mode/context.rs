@@ -12,7 +12,7 @@ use super::shared::on_pipe::held;
 use super::shared::power_up_grip::PowerUpGripCheck;
 use crate::arming::{ArmingInhibit, ArmingInhibits, Checks, Gesture, GestureWatch};
 use crate::chain::setpoint::ClampCommand;
-use crate::contact::contact_force::{Felt, Support};
+use crate::contact::contact_force::{ContactForce, Felt};
 use crate::contact::crown_offset::{Crown, CrownSide};
 use crate::contact::fall::Fall;
 use crate::contact::lean::Lean;
@@ -67,7 +67,7 @@ pub struct Context {
     pub params: Params,
     /// Time in this mode, s.
     pub since: f32,
-    pub support: Support,
+    pub contact_force: ContactForce,
     pub dangers: Dangers,
     gestures: GestureWatch,
     /// The gesture completed in this step.
@@ -105,7 +105,7 @@ impl Context {
         Self {
             params: *params,
             since: 0.0,
-            support: Support::new(params),
+            contact_force: ContactForce::new(params),
             dangers: Dangers::default(),
             gestures: GestureWatch::default(),
             gesture: None,
@@ -164,11 +164,12 @@ impl Context {
             rate: m.rate.norm(),
             lift: i.lift,
         });
-        self.support.step(felt, dt);
-        self.crown.step(i.lift, i.roll_moment, &self.support, dt);
+        self.contact_force.step(felt, dt);
+        self.crown.step(i.lift, i.roll_moment, &self.contact_force, dt);
         self.sinking = felt.map_or(0.0, |f| f.down);
-        self.fall.step(self.sinking, &self.support, dt);
-        self.lean.step(i.motion, &self.support, self.collective.now(), dt);
+        self.fall.step(self.sinking, &self.contact_force, dt);
+        self.lean
+            .step(i.motion, &self.contact_force, self.collective.now(), dt);
         self.dangers.step(i, &self.params, dt);
     }
 
@@ -304,7 +305,7 @@ impl Context {
     /// The collective on the pipe while the arms close, N: `perch_lift` of the weight; not more than the pilot's throttle,
     /// unless that is centred for a perch by itself.
     pub fn set_down_thrust(&self) -> f32 {
-        let most = self.params.perch_lift * self.support.weight();
+        let most = self.params.perch_lift * self.contact_force.weight();
         if self.by_itself.active {
             most
         } else {
@@ -320,7 +321,7 @@ impl Step<'_> {
         position_hold::Felt {
             q: motion.q,
             rate: motion.rate,
-            carried: self.context.support.resting(),
+            carried: self.context.contact_force.resting(),
         }
     }
 

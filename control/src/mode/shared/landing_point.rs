@@ -120,7 +120,7 @@ impl Spot {
     /// What the way off the pipe asks for, until it has ended.
     fn way_off(&mut self, estimate: &Estimate, step: &mut Step<'_>) -> Option<Wish> {
         let aside = self.aside.as_mut()?;
-        let carried = step.context.support.resting();
+        let carried = step.context.contact_force.resting();
         aside.left -= if carried { 0.0 } else { step.dt };
         aside.limit -= step.dt;
         if aside.left <= 0.0 || aside.limit <= 0.0 {
@@ -147,7 +147,7 @@ impl Spot {
                 pitch,
                 yaw_rate,
                 ..
-            } if context.support.force() <= HINT_FORCE => Setpoint::Angle {
+            } if context.contact_force.force() <= HINT_FORCE => Setpoint::Angle {
                 roll,
                 pitch,
                 yaw_rate,

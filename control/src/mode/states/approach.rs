@@ -160,7 +160,7 @@ impl Approach {
     /// Another try, or none.
     fn again(&mut self, why: Reason, view: &View, e: &Estimate, step: &mut Step<'_>) {
         step.context.note(Some(why));
-        if self.committed() && step.context.support.force() > HINT_FORCE {
+        if self.committed() && step.context.contact_force.force() > HINT_FORCE {
             (self.astray, self.given_up) = (true, Some(why));
             return;
         }

@@ -82,7 +82,7 @@ impl Escaping {
 
     /// Overdue arms that still hold pull the vehicle down.
     pub fn stuck(&self, context: &Context) -> bool {
-        self.late(context) && context.support.force() < -HINT_FORCE
+        self.late(context) && context.contact_force.force() < -HINT_FORCE
     }
 
     /// The arms are free, and there was time to leave. Unless pulled down, the vehicle flies whatever an arm's sensors
@@ -113,9 +113,9 @@ impl Escaping {
 /// The throttle stick carries the vehicle.
 pub fn takes_over(step: &Step<'_>) -> bool {
     let context = &step.context;
-    step.inputs
-        .sticks
-        .is_some_and(|s| context.full_thrust() * s.throttle >= TAKE_OVER_SHARE * context.support.weight())
+    step.inputs.sticks.is_some_and(|s| {
+        context.full_thrust() * s.throttle >= TAKE_OVER_SHARE * context.contact_force.weight()
+    })
 }
 
 impl Behaviour for Escaping {
@@ -164,7 +164,7 @@ impl Behaviour for Escaping {
         let share = clamp(1.0 + CLIMB_GAIN * (wanted - self.climb), LEAST_SHARE, MOST_SHARE);
         // Leaning rotors lift less.
         let upright = inputs.motion.map_or(1.0, |m| m.q.down_in_body().z);
-        let goal = share * context.support.weight() / clamp(upright, UPRIGHT_MIN, 1.0);
+        let goal = share * context.contact_force.weight() / clamp(upright, UPRIGHT_MIN, 1.0);
         let thrust = self.from.map_or(goal, |from| {
             let risen = clamp(self.rise / STAND_RAMP, 0.0, 1.0);
             from + (goal - from) * risen

@@ -59,7 +59,7 @@ guards! {
     THROTTLE_LOW = "throttle low", |_, s| sticks(s, |t| t.throttle <= s.context.params.throttle_low);
     IDLED = "idle for too long", |_, s| s.context.since >= crate::mode::states::armed::IDLE_MAX;
     STOOD = "landed long enough", |_, s| s.context.since >= crate::mode::states::landed::LANDED_TIME;
-    GROUNDED = "the ground carries nearly all", |_, s| s.context.support.grounded();
+    GROUNDED = "the ground carries nearly all", |_, s| s.context.contact_force.grounded();
 
     HOLD_ON = "hold switch on, sticks in angle mode, perch switch off", |_, s| sticks(s, stick_positions::asks_hold);
     HOLD_OFF = "hold switch off, or sticks in another mode", |_, s| sticks(s, |t| !stick_positions::keeps_hold(t));
@@ -81,7 +81,7 @@ guards! {
     HAS_LEFT = "climbed off the pipe", |state, _| approaching(state, Approach::has_left);
     GIVEN_UP = "no other try", |state, _| approaching(state, |a| a.given_up.is_some());
     FEELS_PIPE = "on the way down, and something seems to carry it", |state, s| {
-        approaching(state, Approach::committed) && s.context.support.force() > HINT_FORCE
+        approaching(state, Approach::committed) && s.context.contact_force.force() > HINT_FORCE
     };
     TOUCHED_ASTRAY = "a try ends while something seems to carry it", |state, _| approaching(state, Approach::astray);
     UNAWARE = "nothing below by what it sees", |state, _| approaching(state, Approach::unaware);
@@ -98,8 +98,8 @@ guards! {
         s.context.fall.falls() && s.context.lean.beyond_seats()
     };
     SLIDES_AT_TOUCH = "leans where it feels the pipe", |_, s| s.context.lean.slides_at_touch();
-    TOUCHED = "feels the pipe", |_, s| s.context.support.touched();
-    LIFTED = "nothing carries it any more", |_, s| s.context.support.lifted();
+    TOUCHED = "feels the pipe", |_, s| s.context.contact_force.touched();
+    LIFTED = "nothing carries it any more", |_, s| s.context.contact_force.lifted();
     LEVEL = "nearly level", |_, s| Flight::is_level(s);
     CALLED_OFF = "perch switch off or throttle up", |_, s| {
         let most = s.context.params.perch_thr_max + CONTACT_MARGIN;
@@ -108,8 +108,8 @@ guards! {
     SLIDES = "slides", |_, s| s.context.lean.slides();
     CREEPS = "leans more and more", |_, s| s.context.lean.creeps();
     TWISTS = "turns on its pads", |_, s| s.context.lean.twists();
-    NOT_RESTING = "nothing carries", |_, s| !s.context.support.resting();
-    RESTED = "rested long enough", |_, s| s.context.since >= CONTACT_TIME && s.context.support.resting();
+    NOT_RESTING = "nothing carries", |_, s| !s.context.contact_force.resting();
+    RESTED = "rested long enough", |_, s| s.context.since >= CONTACT_TIME && s.context.contact_force.resting();
 
     ARMS_STAY = "arms hold and have not opened", |state, s| match state {
         State::Clamping(_) => s.grip_proven(),
