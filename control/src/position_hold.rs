@@ -50,7 +50,7 @@ pub struct Wish {
 
 /// What the inertial sensor says of the vehicle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Felt {
+pub struct BodyMotion {
     /// Body to world.
     pub q: Quat,
     /// Angular rate, rad/s, body.
@@ -118,13 +118,13 @@ pub struct PositionHold {
 
 impl PositionHold {
     /// Holds where the vehicle is.
-    pub fn begin(p: &Params, e: &Estimate, felt: &Felt) -> Self {
+    pub fn begin(p: &Params, e: &Estimate, motion: &BodyMotion) -> Self {
         let weight = p.mass * GRAVITY;
         let full = 4.0 * p.thrust_max;
         Self {
             mass: p.mass,
             thrust: (0.4 * weight, scalar::clamp(1.6 * weight, weight, 0.95 * full)),
-            lag: Lag::at(p, tilt(felt.q)),
+            lag: Lag::at(p, tilt(motion.q)),
             height: Height::default(),
             anchor: e.position,
             course: Course::default(),
@@ -146,8 +146,8 @@ impl PositionHold {
     }
 
     /// One step of `dt` s; without `known` the position is none, and the sticks tilt.
-    pub fn step(&mut self, e: &Estimate, felt: &Felt, wish: &Wish, known: bool, dt: f32) -> Setpoint {
-        let heading = felt.q.to_euler().2 + e.turn;
+    pub fn step(&mut self, e: &Estimate, motion: &BodyMotion, wish: &Wish, known: bool, dt: f32) -> Setpoint {
+        let heading = motion.q.to_euler().2 + e.turn;
         if e.jumps != self.jumps {
             self.anchor_at(e);
         }
@@ -156,7 +156,7 @@ impl PositionHold {
         let speed = self.course.speed;
         self.anchor += speed * dt;
         self.leash(e.position);
-        let d = self.disturbance(e, felt.carried, dt);
+        let d = self.disturbance(e, motion.carried, dt);
         let ahead = |v: Vec3| {
             let v = about_down(v, -heading);
             [v.x, v.y]
@@ -171,12 +171,12 @@ impl PositionHold {
                 ..
             } = self.course;
             let course = [asked, turning, gained].map(ahead);
-            self.feedback(p, v, ahead(d), wind, &course, felt)
+            self.feedback(p, v, ahead(d), wind, &course, motion)
         } else {
             core::array::from_fn(|i| at(&wish.lean, i) - at(&wind, i))
         };
         let u = limited(u);
-        self.lag.step(u, tilt(felt.q), tilt_rate(felt.rate), dt);
+        self.lag.step(u, tilt(motion.q), tilt_rate(motion.rate), dt);
         let up = self.height.step(
             &height::State {
                 error: self.anchor.z - e.position.z,
@@ -184,11 +184,11 @@ impl PositionHold {
                 gained: self.course.asked.z,
                 velocity: e.velocity.z,
                 disturbance: e.disturbance.z,
-                landing: felt.carried && wish.velocity.z > 0.0,
+                landing: motion.carried && wish.velocity.z > 0.0,
             },
             dt,
         );
-        self.setpoint(u, up, felt.q, wish.yaw_rate)
+        self.setpoint(u, up, motion.q, wish.yaw_rate)
     }
 
     /// Keeps the held point within reach.
@@ -225,9 +225,9 @@ impl PositionHold {
         d: [f32; 2],
         wind: [f32; 2],
         course: &[[f32; 2]; 3],
-        felt: &Felt,
+        motion: &BodyMotion,
     ) -> [f32; 2] {
-        let (a, rate) = (tilt(felt.q), tilt_rate(felt.rate));
+        let (a, rate) = (tilt(motion.q), tilt_rate(motion.rate));
         let Lag {
             first,
             second,

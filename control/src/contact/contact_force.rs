@@ -43,7 +43,7 @@ const SINK_MAX: f32 = 10.0;
 
 /// Measurements of one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Felt {
+pub struct InertialSample {
     /// Specific force along body z, m/s²; -9.81 at rest.
     pub specific_force_z: f32,
     /// Acceleration along world down, m/s².
@@ -87,28 +87,28 @@ impl ContactForce {
     }
 
     /// One step of `dt` s; `None` without a fresh inertial sample.
-    pub fn step(&mut self, felt: Option<Felt>, dt: f32) {
-        let felt = felt.filter(|f| {
+    pub fn step(&mut self, sample: Option<InertialSample>, dt: f32) {
+        let sample = sample.filter(|f| {
             f.specific_force_z.is_finite() && f.down.is_finite() && f.rate.is_finite() && f.lift.is_finite()
         });
-        let silent = self.silent.step(felt.is_none(), dt) >= SILENCE_MAX;
-        let Some(felt) = felt else {
+        let silent = self.silent.step(sample.is_none(), dt) >= SILENCE_MAX;
+        let Some(sample) = sample else {
             if silent {
                 (self.pressed, self.unloaded, self.full) = Default::default();
                 self.resting = false;
             }
             return;
         };
-        self.lift += (felt.lift - self.lift) * dt / (dt + self.motor_tau);
-        let contact_force = -self.mass * felt.specific_force_z - self.lift;
+        self.lift += (sample.lift - self.lift) * dt / (dt + self.motor_tau);
+        let contact_force = -self.mass * sample.specific_force_z - self.lift;
         self.force += (contact_force - self.force) * dt / (dt + 1.0 / (2.0 * PI * CUTOFF));
         self.sink = clamp(
-            self.sink + (felt.down - self.sink / SINK_MEMORY) * dt,
+            self.sink + (sample.down - self.sink / SINK_MEMORY) * dt,
             -SINK_MAX,
             SINK_MAX,
         );
 
-        let still = felt.rate < RATE_MAX;
+        let still = sample.rate < RATE_MAX;
         let pressed = self.pressed.step(still && self.force > RESTING_FORCE, dt);
         let unloaded = self.unloaded.step(self.force < LEAVING_FORCE, dt);
         self.full
@@ -165,7 +165,7 @@ mod tests {
         for _ in 0..(seconds * 100.0) as u32 {
             let down = GRAVITY + specific_force_z;
             s.step(
-                Some(Felt {
+                Some(InertialSample {
                     specific_force_z,
                     down,
                     rate: 0.0,
@@ -219,7 +219,7 @@ mod tests {
         assert!(!s.resting(), "a bump of 0.1 s");
         for _ in 0..300 {
             s.step(
-                Some(Felt {
+                Some(InertialSample {
                     specific_force_z: -GRAVITY,
                     down: 0.0,
                     rate: 2.0,
@@ -238,7 +238,7 @@ mod tests {
         }
         assert!(!s.resting() && !s.grounded());
         s.step(
-            Some(Felt {
+            Some(InertialSample {
                 specific_force_z: f32::NAN,
                 down: 0.0,
                 rate: 0.0,
@@ -293,7 +293,7 @@ mod tests {
         let mut turn = |rate, seconds: f32| {
             for _ in 0..(seconds * 100.0) as u32 {
                 s.step(
-                    Some(Felt {
+                    Some(InertialSample {
                         specific_force_z: -GRAVITY,
                         down: 0.0,
                         rate,

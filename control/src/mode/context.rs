@@ -12,7 +12,7 @@ use super::shared::on_pipe::held;
 use super::shared::power_up_grip::PowerUpGripCheck;
 use crate::arming::{ArmingInhibit, ArmingInhibits, Checks, Gesture, GestureWatch};
 use crate::chain::setpoint::ClampCommand;
-use crate::contact::contact_force::{ContactForce, Felt};
+use crate::contact::contact_force::{ContactForce, InertialSample};
 use crate::contact::crown_offset::{Crown, CrownSide};
 use crate::contact::fall::Fall;
 use crate::contact::lean::Lean;
@@ -158,15 +158,15 @@ impl Context {
             let seen = clamp(-down, GRAVITY_BOUNDS.0, GRAVITY_BOUNDS.1);
             self.gravity += (seen - self.gravity) * dt / (dt + GRAVITY_TIME);
         }
-        let felt = i.motion.map(|m| Felt {
+        let sample = i.motion.map(|m| InertialSample {
             specific_force_z: m.accel.z,
             down: down + self.gravity,
             rate: m.rate.norm(),
             lift: i.lift,
         });
-        self.contact_force.step(felt, dt);
+        self.contact_force.step(sample, dt);
         self.crown.step(i.lift, i.roll_moment, &self.contact_force, dt);
-        self.sinking = felt.map_or(0.0, |f| f.down);
+        self.sinking = sample.map_or(0.0, |f| f.down);
         self.fall.step(self.sinking, &self.contact_force, dt);
         self.lean
             .step(i.motion, &self.contact_force, self.collective.now(), dt);
@@ -316,9 +316,9 @@ impl Context {
 
 impl Step<'_> {
     /// Motion of the body, for the position hold.
-    pub fn felt(&self) -> position_hold::Felt {
+    pub fn body_motion(&self) -> position_hold::BodyMotion {
         let motion = self.inputs.motion.unwrap_or_default();
-        position_hold::Felt {
+        position_hold::BodyMotion {
             q: motion.q,
             rate: motion.rate,
             carried: self.context.contact_force.resting(),

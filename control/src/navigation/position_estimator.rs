@@ -122,12 +122,12 @@ impl PositionEstimator {
     /// `None` without a position.
     pub fn step(
         &mut self,
-        felt: &Inertial,
+        inertial: &Inertial,
         lift: f32,
         fix: Option<&Fix>,
         view: Option<&GroundView>,
     ) -> Option<Estimate> {
-        let at_us = felt.at_us;
+        let at_us = inertial.at_us;
         let new = fix.filter(|fix| fix.at_us > self.seen_us && fix.at_us <= at_us && fix.is_sane());
         self.seen_us = new.map_or(self.seen_us, |fix| fix.at_us);
         let flow = view.and_then(|view| view.flow).and_then(Flow::checked);
@@ -138,11 +138,11 @@ impl PositionEstimator {
         let range = view.and_then(|view| self.flow_range.new_range(view, at_us, flies));
         let ranged = self.flow_range.looked_us();
         let looked = (ranged != before && self.flow_range.range_is_sound()).then_some(ranged);
-        if !(felt.q.is_finite() && felt.accel.is_finite() && lift.is_finite()) {
+        if !(inertial.q.is_finite() && inertial.accel.is_finite() && lift.is_finite()) {
             return None;
         }
-        let down = felt.q.rotate(felt.accel).z + GRAVITY;
-        self.flow_range.feel(at_us, flies.then_some(down), felt.q);
+        let down = inertial.q.rotate(inertial.accel).z + GRAVITY;
+        self.flow_range.feel(at_us, flies.then_some(down), inertial.q);
         // A scaled range gives no height; how it changes may say that it is right again.
         let range = match range {
             Some((at, distance)) if self.flow_range.scale.wrong() => {
@@ -153,7 +153,7 @@ impl PositionEstimator {
             }
             range => range,
         };
-        let swing = self.pose_monitor.predict(felt);
+        let swing = self.pose_monitor.predict(inertial);
         if let Some(fix) = new {
             self.pose_monitor
                 .update(fix, self.history.at(fix.at_us).as_ref(), flies);
@@ -162,7 +162,7 @@ impl PositionEstimator {
         let new = new.filter(|_| !left_out);
         let here = StateSnapshot {
             at_us,
-            q: felt.q,
+            q: inertial.q,
             swing,
             ..StateSnapshot::default()
         };
@@ -171,12 +171,12 @@ impl PositionEstimator {
             (track, Some(fix)) => {
                 self.history.clear();
                 self.baro_height.forget();
-                *track = Some(Track::begin(at_us, felt.q.to_euler().2, fix));
+                *track = Some(Track::begin(at_us, inertial.q.to_euler().2, fix));
                 return None;
             }
             (track, None) => {
                 // Where the first flow that is of use comes, the axes begin: on the ground below, as the vehicle's own.
-                let height = flow.and_then(|flow| self.flow_range.begin(&flow, felt.q));
+                let height = flow.and_then(|flow| self.flow_range.begin(&flow, inertial.q));
                 self.learnt = track.as_ref().map_or(self.learnt, Track::learnt);
                 *track = height.map(|height| {
                     self.history.clear();
@@ -189,7 +189,7 @@ impl PositionEstimator {
                 return None;
             }
         };
-        track.predict(felt, (lift / self.mass, self.motor_tau));
+        track.predict(inertial, (lift / self.mass, self.motor_tau));
         self.history.push(StateSnapshot {
             position: track.position(),
             ..here

@@ -26,13 +26,13 @@ impl World {
             turn,
             ..Estimate::default()
         };
-        let felt = Felt {
+        let motion = BodyMotion {
             q: Quat::from_euler(0.0, 0.0, yaw),
             rate: Vec3::ZERO,
             carried: false,
         };
         Self {
-            law: PositionHold::begin(&Params::DEFAULT, &e, &felt),
+            law: PositionHold::begin(&Params::DEFAULT, &e, &motion),
             e,
             tilt: [[0.0; 3]; 2],
             stages: [[0.0; 2]; 2],
@@ -44,10 +44,10 @@ impl World {
         }
     }
 
-    fn felt(&self) -> Felt {
+    fn motion(&self) -> BodyMotion {
         let [[f, fr, _], [r, rr, _]] = self.tilt;
         let q = Quat::from_euler(scalar::asin(r / GRAVITY), -scalar::asin(f / GRAVITY), self.yaw);
-        Felt {
+        BodyMotion {
             q,
             rate: Vec3::new(rr / GRAVITY, -fr / GRAVITY, 0.0),
             carried: false,
@@ -56,7 +56,7 @@ impl World {
 
     fn step(&mut self) {
         let p = Params::DEFAULT;
-        self.out = self.law.step(&self.e, &self.felt(), &self.wish, self.known, DT);
+        self.out = self.law.step(&self.e, &self.motion(), &self.wish, self.known, DT);
         let Setpoint::Angle {
             roll, pitch, thrust, ..
         } = self.out
@@ -185,7 +185,7 @@ fn a_step_of_no_time_asks_for_a_finite_tilt() {
     let mut w = World::new(0.0, 0.0);
     w.wish.velocity.y = 0.3;
     for dt in [DT, 0.0, DT] {
-        let asked = w.law.step(&w.e, &w.felt(), &w.wish, true, dt);
+        let asked = w.law.step(&w.e, &w.motion(), &w.wish, true, dt);
         assert!(asked.is_finite(), "{dt}: {asked:?}");
     }
 }
@@ -199,12 +199,12 @@ fn what_is_touched_is_not_learnt_as_wind() {
     let learnt = w.law.wind;
     w.e.disturbance = Vec3::new(2.5, 0.0, 0.0);
     for _ in 0..200 {
-        w.law.step(&w.e, &w.felt(), &w.wish, true, DT);
+        w.law.step(&w.e, &w.motion(), &w.wish, true, DT);
     }
     assert_eq!(w.law.wind, learnt);
-    let carried = Felt {
+    let carried = BodyMotion {
         carried: true,
-        ..w.felt()
+        ..w.motion()
     };
     w.e.disturbance = Vec3::new(0.6, 0.0, 0.0);
     for _ in 0..200 {
@@ -230,9 +230,9 @@ fn a_jump_of_the_origin_moves_the_held_point_and_a_push_leaves_it_in_reach() {
 fn sinking_onto_something_hands_over_the_weight() {
     let mut w = World::new(0.0, 0.0);
     w.wish.velocity.z = CLIMB_MAX;
-    let carried = Felt {
+    let carried = BodyMotion {
         carried: true,
-        ..w.felt()
+        ..w.motion()
     };
     let mut thrust = f32::MAX;
     for _ in 0..300 {

@@ -27,6 +27,7 @@ impl CoastingHold {
             self.law.anchor_at(estimate);
         }
         self.adrift = adrift;
-        self.law.step(estimate, &step.felt(), wish, !adrift, step.dt)
+        self.law
+            .step(estimate, &step.body_motion(), wish, !adrift, step.dt)
     }
 }

@@ -90,7 +90,7 @@ impl Spot {
 
     fn from_here(aside: Option<Aside>, step: &mut Step<'_>) -> Option<Self> {
         let estimate = step.inputs.position.filter(|_| step.inputs.position_fresh())?;
-        let law = PositionHold::begin(&step.context.params, &estimate, &step.felt());
+        let law = PositionHold::begin(&step.context.params, &estimate, &step.body_motion());
         Some(Self::begin(CoastingHold::new(law), aside, step))
     }
 

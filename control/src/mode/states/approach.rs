@@ -81,7 +81,8 @@ impl Approach {
         way: impl Fn(&Step<'_>, &View, &Estimate) -> Law,
     ) -> Self {
         let estimate = step.inputs.position.unwrap_or_default();
-        let law = law.unwrap_or_else(|| PositionHold::begin(&step.context.params, &estimate, &step.felt()));
+        let law =
+            law.unwrap_or_else(|| PositionHold::begin(&step.context.params, &estimate, &step.body_motion()));
         let way = way(step, &view(&law, &estimate, step), &estimate);
         let mut approach = Self {
             law,
@@ -144,7 +145,7 @@ impl Approach {
             }
             Wish::default()
         });
-        self.wanted = self.law.step(estimate, &step.felt(), &wish, true, step.dt);
+        self.wanted = self.law.step(estimate, &step.body_motion(), &wish, true, step.dt);
     }
 
     /// Another try, once, unless it is `proven`; then up and away.

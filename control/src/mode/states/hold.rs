@@ -27,7 +27,7 @@ impl Hold {
     /// Holds where the vehicle is.
     pub fn here(step: &mut Step<'_>) -> Self {
         let estimate = step.inputs.position.unwrap_or_default();
-        let law = PositionHold::begin(&step.context.params, &estimate, &step.felt());
+        let law = PositionHold::begin(&step.context.params, &estimate, &step.body_motion());
         Self::begin(law, false, step)
     }
 
@@ -35,7 +35,7 @@ impl Hold {
     pub fn after(law: Option<PositionHold>, step: &mut Step<'_>) -> Self {
         let estimate = step.inputs.position.unwrap_or_default();
         let mut law =
-            law.unwrap_or_else(|| PositionHold::begin(&step.context.params, &estimate, &step.felt()));
+            law.unwrap_or_else(|| PositionHold::begin(&step.context.params, &estimate, &step.body_motion()));
         law.anchor_at(&estimate);
         Self::begin(law, true, step)
     }
