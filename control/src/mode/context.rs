@@ -84,7 +84,7 @@ pub struct Context {
     pub fall: Fall,
     pub crown: Crown,
     /// Acceleration along world down, m/s².
-    pub sinking: f32,
+    pub accel_down: f32,
     /// The same summed, beside the estimate's speed.
     pub vertical_fallback: VerticalFallback,
     pub collective: Collective,
@@ -122,7 +122,7 @@ impl Context {
             lean: Lean::new(params),
             fall: Fall::default(),
             crown: Crown::default(),
-            sinking: 0.0,
+            accel_down: 0.0,
             vertical_fallback: VerticalFallback::default(),
             collective: Collective::default(),
             probe: Probe::default(),
@@ -166,8 +166,8 @@ impl Context {
         });
         self.contact_force.step(sample, dt);
         self.crown.step(i.lift, i.roll_moment, &self.contact_force, dt);
-        self.sinking = sample.map_or(0.0, |f| f.down);
-        self.fall.step(self.sinking, &self.contact_force, dt);
+        self.accel_down = sample.map_or(0.0, |f| f.down);
+        self.fall.step(self.accel_down, &self.contact_force, dt);
         self.lean
             .step(i.motion, &self.contact_force, self.collective.now(), dt);
         self.dangers.step(i, &self.params, dt);

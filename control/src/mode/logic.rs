@@ -62,11 +62,11 @@ impl ModeLogic {
         let refused = remote.and_then(|request| self.weigh(request.order, &inputs, dt));
         let inputs = &self.context.remote.apply(inputs);
         self.context.observe(inputs, rotors_locked(before), dt);
-        let sinking = self.context.sinking;
+        let accel_down = self.context.accel_down;
         let position = inputs.position.as_ref();
         self.context
             .vertical_fallback
-            .step(flies_free(before), sinking, position, dt);
+            .step(flies_free(before), accel_down, position, dt);
         let inputs = &Inputs {
             position: inputs.position.map(|e| self.context.vertical_fallback.apply(e)),
             ..*inputs

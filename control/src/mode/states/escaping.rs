@@ -132,7 +132,7 @@ impl Behaviour for Escaping {
                 self.climb = -clamp(context.fall.speed(), 0.0, 10.0);
             }
             self.rise = clamp(self.rise + step.dt, 0.0, 1e3);
-            self.climb -= context.sinking * step.dt;
+            self.climb -= context.accel_down * step.dt;
         }
         // Below this only the arms keep the vehicle on the pipe.
         self.opening |= context.collective.now() >= release_thrust(&context.params);
