@@ -1,7 +1,7 @@
 //! What outlives a state: parameters, the pilot's switches, evidence of support and lean, dangers, the collective.
 
 use super::inputs::Inputs;
-use super::inputs::auto_perch::ByItself;
+use super::inputs::auto_perch::AutoPerch;
 use super::inputs::bench::Bench;
 use super::inputs::dangers::Dangers;
 use super::inputs::remote::{self, Remote};
@@ -93,7 +93,7 @@ pub struct Context {
     pub tightened: u8,
     pub bench: Bench,
     pub remote: Remote,
-    pub by_itself: ByItself,
+    pub auto_perch: AutoPerch,
     /// A reason and its remaining display time, s.
     note: (Option<Reason>, f32),
     /// Specific force at rest, m/s².
@@ -129,7 +129,7 @@ impl Context {
             tightened: 0,
             bench: Bench::default(),
             remote: Remote::default(),
-            by_itself: ByItself::default(),
+            auto_perch: AutoPerch::default(),
             note: (None, 0.0),
             gravity: crate::maths::scalar::GRAVITY,
         }
@@ -306,7 +306,7 @@ impl Context {
     /// unless that is centred for a perch by itself.
     pub fn set_down_thrust(&self) -> f32 {
         let most = self.params.perch_lift * self.contact_force.weight();
-        if self.by_itself.active {
+        if self.auto_perch.active {
             most
         } else {
             clamp(self.throttle * self.full_thrust(), 0.0, most)

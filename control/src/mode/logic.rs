@@ -86,16 +86,16 @@ impl ModeLogic {
             inputs,
             dt,
         };
-        step.context.by_itself.follow(before, inputs);
+        step.context.auto_perch.follow(before, inputs);
         self.state.behaviour_mut().observe(step);
         match Transition::first(&self.state, step) {
             Some(transition) => {
                 self.state = transition.enter(&self.state, step);
                 if self.state.mode() != before {
                     self.context.since = 0.0;
-                    self.context.by_itself.enters(self.state.mode());
-                    let by_itself = self.context.by_itself.active;
-                    let dropped = self.context.remote.enters(self.state.mode(), by_itself);
+                    self.context.auto_perch.enters(self.state.mode());
+                    let auto_perch = self.context.auto_perch.active;
+                    let dropped = self.context.remote.enters(self.state.mode(), auto_perch);
                     self.context.perch_switch.forget(dropped);
                     let time = self.state.behaviour().hand_over_time(before);
                     self.context.collective.hand_over(time);

@@ -1,8 +1,8 @@
 //! The mode logic: a vehicle in a world of two switches ([`rig`]), a flight without trouble ([`mission`]), and every
 //! trouble.
 
+mod auto_perch;
 mod bench;
-mod by_itself;
 mod diagram;
 mod docs;
 mod hand_over;

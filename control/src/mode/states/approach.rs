@@ -65,7 +65,7 @@ impl Approach {
 
     /// Climbs, for another search or to be `left` there.
     pub fn climb(step: &mut Step<'_>, left: bool) -> Self {
-        let crown = step.context.by_itself.crown.filter(|_| !left);
+        let crown = step.context.auto_perch.crown.filter(|_| !left);
         Self::begin(None, step, |step, view, e| {
             let (params, heading) = (&step.context.params, heading(step, e));
             match crown {
@@ -135,7 +135,7 @@ impl Approach {
             self.given_up = self.gives_up;
         }
         let crown = self.way.crown().map(|crown| (crown, estimate.jumps));
-        step.context.by_itself.crown = crown.or(step.context.by_itself.crown);
+        step.context.auto_perch.crown = crown.or(step.context.auto_perch.crown);
         step.context.vertical_fallback.steady = self.way.near_crown(&seen);
         let wish = result.unwrap_or_else(|doubt| {
             match doubt {
@@ -150,7 +150,7 @@ impl Approach {
 
     /// Another try, once, unless it is `proven`; then up and away.
     fn misfit(&mut self, proven: bool, view: &View, e: &Estimate, step: &mut Step<'_>) {
-        let before = core::mem::replace(&mut step.context.by_itself.misfit, true) || proven;
+        let before = core::mem::replace(&mut step.context.auto_perch.misfit, true) || proven;
         self.again(Reason::RangeMisfit, view, e, step);
         if before && !self.astray {
             (self.given_up, self.gives_up) = (None, Some(Reason::RangeMisfit));
@@ -165,7 +165,7 @@ impl Approach {
             (self.astray, self.given_up) = (true, Some(why));
             return;
         }
-        let tries = &mut step.context.by_itself.tries;
+        let tries = &mut step.context.auto_perch.tries;
         let searched = matches!(
             why,
             Reason::NoPipe | Reason::RangeStale | Reason::TargetStale | Reason::TargetFar
@@ -195,7 +195,7 @@ fn view(law: &PositionHold, e: &Estimate, step: &Step<'_>) -> View {
 
 /// Heading along the pipe in the estimate's axes, rad.
 fn heading(step: &Step<'_>, e: &Estimate) -> f32 {
-    step.context.by_itself.heading + e.turn
+    step.context.auto_perch.heading + e.turn
 }
 
 fn reason(doubt: Doubt) -> Reason {

@@ -56,7 +56,7 @@ impl Clamping {
         let context = &step.context;
         let limit = context.params.clamp_timeout + if self.spool.down { SPOOL_ALLOWANCE } else { 0.0 };
         let switched = !sticks.perch_switch && context.perch_switch.seen_on;
-        if switched || context.by_itself.taken {
+        if switched || context.auto_perch.taken {
             return Some(Reason::ClosingCancelled);
         }
         match self.hopeless(step) {

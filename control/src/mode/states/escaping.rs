@@ -185,7 +185,7 @@ impl Behaviour for Escaping {
 
     fn reason(&self, context: &Context, inputs: &Inputs, _: ArmingInhibits) -> Option<Reason> {
         let waits = self.rise >= self.clear_after() + WAIT_TIME && self.clear(context);
-        let adrift = waits && context.by_itself.acts() && !inputs.position_fresh();
+        let adrift = waits && context.auto_perch.acts() && !inputs.position_fresh();
         let lands = context.dangers.battery_critical() || inputs.sticks.is_none();
         if adrift && !lands {
             Some(Reason::PositionLost)

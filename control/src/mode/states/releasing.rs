@@ -103,7 +103,7 @@ impl Behaviour for Releasing {
     }
 
     fn rotors(&self, context: &Context, _: &Inputs) -> Setpoint {
-        let asked = if context.by_itself.active {
+        let asked = if context.auto_perch.active {
             RELEASE_THROTTLE_MIN
         } else {
             context.throttle

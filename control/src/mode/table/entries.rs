@@ -3,7 +3,7 @@
 use crate::gripper::retained_grip::GripMemory;
 use crate::maths::scalar;
 use crate::mode::context::Step;
-use crate::mode::inputs::auto_perch::ByItself;
+use crate::mode::inputs::auto_perch::AutoPerch;
 use crate::mode::reason::Reason;
 use crate::mode::shared::landing_point::Spot;
 use crate::mode::shared::on_pipe::{Hold, Spool, pressed};
@@ -88,7 +88,7 @@ pub fn approach(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Approac
         .target
         .and_then(|target| target.heading_near(nose + turn));
     let heading = pipe.map_or(nose, |pipe| scalar::wrap_pi(pipe - turn));
-    step.context.by_itself.begin(heading);
+    step.context.auto_perch.begin(heading);
     let law = match from {
         State::Hold(h) => Some(h.place.law),
         _ => None,
@@ -98,9 +98,9 @@ pub fn approach(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Approac
 
 /// Clear of the pipe: up, and another try, or only up after a release.
 pub fn approach_again(_: &State, step: &mut Step<'_>, _: Option<Reason>) -> Approach {
-    let by_itself = &mut step.context.by_itself;
-    by_itself.tries = by_itself.tries.saturating_add(1);
-    let leaves = by_itself.leaving;
+    let auto_perch = &mut step.context.auto_perch;
+    auto_perch.tries = auto_perch.tries.saturating_add(1);
+    let leaves = auto_perch.leaving;
     Approach::climb(step, leaves)
 }
 
@@ -163,7 +163,7 @@ pub fn armed_on_pipe(from: &State, step: &mut Step<'_>, why: Option<Reason>) -> 
 
 /// The pilot wants to leave: rotors first.
 pub fn releasing(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Releasing {
-    step.context.by_itself = ByItself::default();
+    step.context.auto_perch = AutoPerch::default();
     step.context.lean.capture_lean();
     let grip_memory = from.behaviour().grip_memory();
     Releasing {
@@ -177,7 +177,7 @@ pub fn releasing(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Releas
 
 /// The same after a slip: a slow spool-up would take the belly off the pipe while the arms still close, and it slides on.
 pub fn leaving(from: &State, step: &mut Step<'_>, why: Option<Reason>) -> Escaping {
-    step.context.by_itself = ByItself::default();
+    step.context.auto_perch = AutoPerch::default();
     step.context.lean.capture_lean();
     giving_up(from, step, why)
 }
@@ -199,10 +199,10 @@ pub fn releasing_instead(from: &State, step: &mut Step<'_>, _: Option<Reason>) -
 }
 
 /// The same by itself, with the throttle centred.
-pub fn releasing_by_itself(from: &State, step: &mut Step<'_>, why: Option<Reason>) -> Releasing {
+pub fn releasing_autonomously(from: &State, step: &mut Step<'_>, why: Option<Reason>) -> Releasing {
     let releasing = releasing(from, step, why);
     let heading = present_heading(step);
-    step.context.by_itself.leave(heading);
+    step.context.auto_perch.leave(heading);
     releasing
 }
 

@@ -73,11 +73,11 @@ guards! {
     ASKED_TO_PERCH = "perch switch turned on", |_, s| approach::asked(s);
     SERVOS_FED = "servo battery, if measured, not low", |_, s| s.inputs.servo_trouble().is_none();
     MAY_APPROACH = "position and range or pipe known, sticks centred, servo battery not low", |_, s| approach::obstacle(s).is_none();
-    TAKEN_OVER = "a stick moved, or perch or hold switch turned", |_, s| s.context.by_itself.taken;
-    BY_ITSELF = "perching or leaving by itself", |_, s| s.context.by_itself.active;
-    BY_HAND = "flown by hand", |_, s| !s.context.by_itself.acts();
-    TRY_LEFT = "another try is left", |_, s| s.context.by_itself.may_try();
-    LEAVES = "leaving by itself", |_, s| s.context.by_itself.acts() && s.context.by_itself.leaving;
+    TAKEN_OVER = "a stick moved, or perch or hold switch turned", |_, s| s.context.auto_perch.taken;
+    AUTO_PERCH = "perching or leaving by itself", |_, s| s.context.auto_perch.active;
+    BY_HAND = "flown by hand", |_, s| !s.context.auto_perch.acts();
+    TRY_LEFT = "another try is left", |_, s| s.context.auto_perch.may_try();
+    LEAVES = "leaving by itself", |_, s| s.context.auto_perch.acts() && s.context.auto_perch.leaving;
     HAS_LEFT = "climbed off the pipe", |state, _| approaching(state, Approach::has_left);
     GIVEN_UP = "no other try", |state, _| approaching(state, |a| a.given_up.is_some());
     FEELS_PIPE = "on the way down, and something seems to carry it", |state, s| {
@@ -86,9 +86,9 @@ guards! {
     TOUCHED_ASTRAY = "a try ends while something seems to carry it", |state, _| approaching(state, Approach::astray);
     UNAWARE = "nothing below by what it sees", |state, _| approaching(state, Approach::unaware);
     COMMITTED = "on the way down", |state, _| approaching(state, Approach::committed);
-    RELEASE_BY_ITSELF = "perch switch off again, hold switch on, sticks centred, perched by itself", |_, s| {
+    AUTO_RELEASE = "perch switch off again, hold switch on, sticks centred, perched by itself", |_, s| {
         let sticks_ask = |t: &Sticks| t.arm_switch && !t.perch_switch && stick_positions::keeps_hold(t) && centred(t);
-        s.context.by_itself.active && s.context.perch_switch.seen_on && sticks(s, sticks_ask)
+        s.context.auto_perch.active && s.context.perch_switch.seen_on && sticks(s, sticks_ask)
     };
 
     MEANS_TO_PERCH = "perch switch on, throttle down", |_, s| Flight::means_to_perch(s);

@@ -151,7 +151,7 @@ pub const TRANSITIONS: &[Transition] = &[
     row(&[Approach], &[COMMITTED, SLIDES_AT_TOUCH], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
     row(&[Approach], &[COMMITTED, TOUCHED, LEVEL], To::Contact(entries::contact), Keep),
     // Onto the pipe.
-    row(&[Contact], &[BY_ITSELF, TAKEN_OVER], To::Escaping(entries::giving_up), Show(Reason::TakenOver)),
+    row(&[Contact], &[AUTO_PERCH, TAKEN_OVER], To::Escaping(entries::giving_up), Show(Reason::TakenOver)),
     row(&[Contact], &[BY_HAND, CALLED_OFF], To::Flight(entries::flight), Keep),
     row(&[Contact], &[SLIDES], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
     row(&[Contact], &[TWISTS], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
@@ -168,11 +168,11 @@ pub const TRANSITIONS: &[Transition] = &[
     row(&[Clamping], &[STANDS, LAST_RESORT], To::Disarmed(entries::stopped), Keep),
     // Off the pipe.
     row(&[Perched], &[ARM_SWITCH_OFF, DISARM_GESTURE], To::Disarmed(entries::stopped), Keep),
-    row(&[Perched], &[RELEASE_BY_ITSELF, MAY_FLY, UPRIGHT], To::Releasing(entries::releasing_by_itself), Keep),
+    row(&[Perched], &[AUTO_RELEASE, MAY_FLY, UPRIGHT], To::Releasing(entries::releasing_autonomously), Keep),
     row(&[Perched], &[RELEASE_ASKED, SLIPPED, MAY_FLY, UPRIGHT], To::Escaping(entries::leaving), Show(Reason::LiftsOff)),
     row(&[Perched], &[RELEASE_ASKED, MAY_FLY, UPRIGHT], To::Releasing(entries::releasing), Keep),
     row(&[Releasing], &[ARMS_FREE, RADIO_LOST], To::Failsafe(entries::failsafe), Lasting(Reason::RADIO_LOST)),
-    row(&[Releasing], &[ARMS_FREE, BY_ITSELF], To::Escaping(entries::lifting_off), Keep),
+    row(&[Releasing], &[ARMS_FREE, AUTO_PERCH], To::Escaping(entries::lifting_off), Keep),
     row(&[Releasing], &[ARMS_FREE], To::Flight(entries::flight), Keep),
     row(&[Releasing], &[LOOSE, SLIDES], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
     row(&[Releasing], &[GIVES_WAY], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
@@ -188,7 +188,7 @@ pub const TRANSITIONS: &[Transition] = &[
     row(&[Escaping], &[CLEAR, MUST_LAND], To::Failsafe(entries::failsafe), LANDS),
     row(&[Escaping], &[CLEAR, LEAVES, POSITION_FRESH], To::Approach(entries::approach_again), Keep),
     row(&[Escaping], &[CLEAR, TRY_LEFT, SERVOS_FED, POSITION_FRESH], To::Approach(entries::approach_again), Keep),
-    row(&[Escaping], &[CLEAR, BY_ITSELF, HOLD_KEPT, POSITION_FRESH], To::Hold(entries::handed_back), Keep),
+    row(&[Escaping], &[CLEAR, AUTO_PERCH, HOLD_KEPT, POSITION_FRESH], To::Hold(entries::handed_back), Keep),
     row(&[Escaping], &[CLEAR, BY_HAND, TAKES_OVER], To::Flight(entries::flight), Keep),
     row(&[Escaping], &[CLEAR, NOT_TAKEN_OVER], To::Failsafe(entries::failsafe), Lasting(Reason::NotTakenOver)),
     // Not by its support alone: a vehicle lighter or stronger than its parameters would seem carried in free air. On
