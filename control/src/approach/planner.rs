@@ -20,7 +20,7 @@ use crate::position_hold::Wish;
 
 /// Why a try ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Doubt {
+pub enum ApproachAbort {
     /// No pipe across the whole sweep.
     NoPipe,
     /// Between its ends there is no room.
@@ -90,7 +90,7 @@ enum Phase {
 /// lasted, s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Other {
-    doubt: Doubt,
+    doubt: ApproachAbort,
     from: f32,
     seconds: f32,
 }
@@ -150,7 +150,7 @@ pub struct Approach {
     slow: f32,
     left: bool,
     /// The pipe is where it is said to be: nothing is searched.
-    given: bool,
+    has_target: bool,
     /// Asked for, m/s.
     speed: Vec3,
 }
@@ -193,7 +193,7 @@ impl Approach {
             settled: HoldTimer::default(),
             slow: 0.0,
             left: false,
-            given: false,
+            has_target: false,
             speed: Vec3::ZERO,
         };
         match &v.target {
@@ -250,7 +250,7 @@ impl Approach {
         let top = if known { self.top } else { self.edges.top() };
         let over = self.origin.z + top - HIGH - v.position.z;
         Self {
-            given: self.given,
+            has_target: self.has_target,
             steps: self.steps,
             farthest: self.farthest,
             up: clamp(over, -2.0 * HIGH, 0.0),
@@ -267,7 +267,7 @@ impl Approach {
     pub fn near_crown(&self, v: &View) -> bool {
         let at = self.local(v.position);
         let over = (at.y - self.crown).abs() < NEAR_OFF;
-        self.phase == Phase::Descend && !self.given && over && self.clearance(at) < STEADY
+        self.phase == Phase::Descend && !self.has_target && over && self.clearance(at) < STEADY
     }
 
     /// It is on its way up.
@@ -309,16 +309,16 @@ impl Approach {
     ///
     /// # Errors
     /// Why the try ends.
-    pub fn step(&mut self, v: &View, dt: f32) -> Result<Wish, Doubt> {
+    pub fn step(&mut self, v: &View, dt: f32) -> Result<Wish, ApproachAbort> {
         self.since += dt;
         let asks = !self.leaves && self.phase != Phase::Commit;
-        if asks && self.given {
+        if asks && self.has_target {
             self.follow(v, dt)?;
         } else if asks && v.foot.age > RANGE_AGE {
-            return Err(Doubt::RangeStale);
+            return Err(ApproachAbort::RangeStale);
         }
         let before = self.edges.level();
-        let edge = self.look(v).filter(|_| !self.given);
+        let edge = self.look(v).filter(|_| !self.has_target);
         let at = self.local(v.position);
         if let Some(edge) = edge {
             self.other = self.other.filter(|other| !self.at_known(other.from));
@@ -374,7 +374,7 @@ impl Approach {
         (self.settled, self.lost) = Default::default();
     }
 
-    fn late(&self, limit: f32, doubt: Doubt) -> Result<(), Doubt> {
+    fn late(&self, limit: f32, doubt: ApproachAbort) -> Result<(), ApproachAbort> {
         if self.since > limit { Err(doubt) } else { Ok(()) }
     }
 
@@ -401,7 +401,7 @@ impl Approach {
     }
 
     /// Compares the step at `edge`, seen from `at`, with those by which the pipe was crossed first.
-    fn compare(&self, edge: Edge, at: Vec3) -> Result<(), Doubt> {
+    fn compare(&self, edge: Edge, at: Vec3) -> Result<(), ApproachAbort> {
         let [onto, off] = self.steps;
         if !(onto + off).is_finite() {
             return Ok(());
@@ -410,12 +410,12 @@ impl Approach {
         let falls = matches!(edge, Edge::Off(_));
         let from_crown = |step| self.edges.level() - step - self.edges.top() < 0.5 * self.diameter;
         match self.edges.height() {
-            Some(step) if step > HIGHER * most + 0.5 * self.diameter => Err(Doubt::RangeLong),
+            Some(step) if step > HIGHER * most + 0.5 * self.diameter => Err(ApproachAbort::RangeLong),
             Some(step) if falls && from_crown(step) && step < LOWEST * onto.min(off) => {
-                Err(Doubt::RangeMisfit)
+                Err(ApproachAbort::RangeMisfit)
             }
             // From as high what is below was within reach.
-            None if falls && self.edges.top() + most - at.z < self.farthest => Err(Doubt::RangeLong),
+            None if falls && self.edges.top() + most - at.z < self.farthest => Err(ApproachAbort::RangeLong),
             _ => Ok(()),
         }
     }
@@ -434,7 +434,11 @@ impl Approach {
         let target = Vec3::new(0.0, 0.0, self.up);
         if (at.z - self.up).abs() < OVER || self.since > WAY_TIME {
             self.left = self.leaves;
-            self.enter(if self.given { Phase::Over } else { Phase::Search });
+            self.enter(if self.has_target {
+                Phase::Over
+            } else {
+                Phase::Search
+            });
         }
         Self::way(held, target, CROSS_SPEED, CLIMB_SPEED)
     }
@@ -468,8 +472,8 @@ impl Approach {
         }
     }
 
-    fn search(&mut self, edge: Option<Edge>, held: Vec3) -> Result<Vec3, Doubt> {
-        self.late(SEARCH_TIME, Doubt::NoPipe)?;
+    fn search(&mut self, edge: Option<Edge>, held: Vec3) -> Result<Vec3, ApproachAbort> {
+        self.late(SEARCH_TIME, ApproachAbort::NoPipe)?;
         self.met = match edge {
             Some(Edge::Onto(at)) => Some(at.y + self.side * self.half),
             Some(Edge::Off(at)) => Some(at.y - self.side * self.half),
@@ -488,7 +492,7 @@ impl Approach {
             self.reach += if self.side < 0.0 { SWEEP } else { 0.0 };
             self.side = -self.side;
             if self.reach > SWEEP_MAX {
-                return Err(Doubt::NoPipe);
+                return Err(ApproachAbort::NoPipe);
             }
         }
         Ok(Self::way(held, target, SWEEP_SPEED, 0.0))
@@ -499,12 +503,12 @@ impl Approach {
         Vec3::new(self.along, self.crown, self.top - height)
     }
 
-    fn over(&mut self, at: Vec3, held: Vec3, askew: f32) -> Result<Vec3, Doubt> {
-        self.late(WAY_TIME, Doubt::NotCentred)?;
+    fn over(&mut self, at: Vec3, held: Vec3, askew: f32) -> Result<Vec3, ApproachAbort> {
+        self.late(WAY_TIME, ApproachAbort::NotCentred)?;
         let target = self.spot(LOW);
         let off = target - at;
         if off.y.abs() < OVER && off.z.abs() < OVER && self.since > OVER_TIME {
-            if self.given {
+            if self.has_target {
                 if off.x.abs() < OVER && askew.abs() < ALONG {
                     self.enter(Phase::Centre);
                 }
@@ -526,11 +530,11 @@ impl Approach {
 
     /// The range sees the pipe's back.
     fn sees_pipe(&self) -> bool {
-        self.given || (self.edges.level() - self.top).abs() < 0.5 * self.diameter
+        self.has_target || (self.edges.level() - self.top).abs() < 0.5 * self.diameter
     }
 
-    fn look_along(&mut self, edge: Option<Edge>, held: Vec3, dt: f32) -> Result<Vec3, Doubt> {
-        self.late(WAY_TIME, Doubt::NotCentred)?;
+    fn look_along(&mut self, edge: Option<Edge>, held: Vec3, dt: f32) -> Result<Vec3, ApproachAbort> {
+        self.late(WAY_TIME, ApproachAbort::NotCentred)?;
         let fore = self.phase == Phase::Fore;
         let middle = self.middle.x;
         let goal = middle + if fore { LOOK } else { -LOOK };
@@ -561,7 +565,7 @@ impl Approach {
                 let most = front.map_or(middle + LOOK, |end| end - END);
                 let least = rear.map_or(middle - LOOK, |end| end + END);
                 if most < least {
-                    return Err(Doubt::TooShort);
+                    return Err(ApproachAbort::TooShort);
                 }
                 self.along = clamp(middle, least, most);
                 self.looked = true;
@@ -571,11 +575,11 @@ impl Approach {
         Ok(Self::way(held, target, CROSS_SPEED, DESCENT))
     }
 
-    fn cross(&mut self, edge: Option<Edge>, held: Vec3) -> Result<Vec3, Doubt> {
-        self.late(2.0 * WAY_TIME, Doubt::NotCentred)?;
+    fn cross(&mut self, edge: Option<Edge>, held: Vec3) -> Result<Vec3, ApproachAbort> {
+        self.late(2.0 * WAY_TIME, ApproachAbort::NotCentred)?;
         if let Some(middle) = self.crossed(edge) {
             if self.before.is_some_and(|before| (before - middle).abs() > AGREE) {
-                return Err(Doubt::NotCentred);
+                return Err(ApproachAbort::NotCentred);
             }
             self.before = Some(middle);
             self.crown = middle;
@@ -587,7 +591,7 @@ impl Approach {
             self.legs = self.legs.saturating_add(1);
             if self.legs >= LEGS {
                 if self.before.is_none() {
-                    return Err(Doubt::PipeLost);
+                    return Err(ApproachAbort::PipeLost);
                 }
                 self.crossed = true;
                 self.enter(if self.looked { Phase::Centre } else { Phase::Over });
@@ -596,8 +600,8 @@ impl Approach {
         Ok(Self::way(held, target, CROSS_SPEED, DESCENT))
     }
 
-    fn centre(&mut self, edge: Option<Edge>, at: Vec3, held: Vec3) -> Result<Vec3, Doubt> {
-        self.late(CENTRE_TIME, Doubt::NotCentred)?;
+    fn centre(&mut self, edge: Option<Edge>, at: Vec3, held: Vec3) -> Result<Vec3, ApproachAbort> {
+        self.late(CENTRE_TIME, ApproachAbort::NotCentred)?;
         match edge {
             // From the side at which the last crossing ended: what has drifted since shows.
             Some(Edge::Onto(onto)) => {
@@ -608,7 +612,7 @@ impl Approach {
                 };
                 let middle = onto.y + inwards;
                 if (middle - self.crown).abs() > AGREE {
-                    return Err(Doubt::NotCentred);
+                    return Err(ApproachAbort::NotCentred);
                 }
                 self.crown += NEWER * (middle - self.crown);
             }
@@ -628,10 +632,10 @@ impl Approach {
         (at, velocity, held): (Vec3, Vec3, Vec3),
         age: f32,
         dt: f32,
-    ) -> Result<Vec3, Doubt> {
-        self.late(GATE_WAIT, Doubt::NotCentred)?;
+    ) -> Result<Vec3, ApproachAbort> {
+        self.late(GATE_WAIT, ApproachAbort::NotCentred)?;
         if matches!(edge, Some(Edge::Off(_))) || !self.sees_pipe() {
-            return Err(Doubt::PipeLost);
+            return Err(ApproachAbort::PipeLost);
         }
         let off = at.y - self.crown;
         let range = self.clearance(at);
@@ -652,7 +656,7 @@ impl Approach {
         let mut way = Self::way(held, self.spot(LOW), CORRECT_SPEED, DESCENT);
         let waits = off.abs() > NEAR_OFF;
         // Flow sees again from a little higher. A pose comes back or not: what drifts must not do so beside the pipe.
-        let (goal, back) = match (blind, self.given) {
+        let (goal, back) = match (blind, self.has_target) {
             (false, _) => (GATE, BACK_SPEED),
             (true, false) => (SEEING, BACK_SPEED),
             (true, true) => (LOW, CLIMB_SPEED),
@@ -666,10 +670,10 @@ impl Approach {
         Ok(way)
     }
 
-    fn commit(&mut self, at: Vec3, held: Vec3) -> Result<Vec3, Doubt> {
-        self.late(TOUCH_WAIT, Doubt::NotTouched)?;
+    fn commit(&mut self, at: Vec3, held: Vec3) -> Result<Vec3, ApproachAbort> {
+        self.late(TOUCH_WAIT, ApproachAbort::NotTouched)?;
         if (at.y - self.crown).abs() > ASTRAY {
-            return Err(Doubt::NotCentred);
+            return Err(ApproachAbort::NotCentred);
         }
         let mut way = Self::way(held, self.spot(LOW), CORRECT_SPEED, DESCENT);
         way.z = LAST_SPEED;

@@ -67,7 +67,7 @@ impl World {
 }
 
 /// How a try ends: the law, where the vehicle is then, and after how long.
-fn flown(world: World, law: Approach) -> (Result<(), Doubt>, Vec3, Approach, f32) {
+fn flown(world: World, law: Approach) -> (Result<(), ApproachAbort>, Vec3, Approach, f32) {
     let (mut law, mut held, mut speed) = (law, law.origin, Vec3::ZERO);
     let mut foot = RangeHit::default();
     for i in 0..12_000 {
@@ -177,7 +177,7 @@ fn with_the_lens_beside_its_centre_it_touches_on_the_crown_as_far_from_the_ends(
         };
         assert_eq!(
             flown(short, begun_by(&short, &p)).0,
-            Err(Doubt::TooShort),
+            Err(ApproachAbort::TooShort),
             "{x} {y} {z}"
         );
     }
@@ -229,7 +229,7 @@ fn it_keeps_away_from_an_end_and_refuses_a_pipe_that_is_too_short() {
         ends: (-0.2, 0.25),
         ..WORLD
     };
-    assert_eq!(flown(short, begun(&short)).0, Err(Doubt::TooShort));
+    assert_eq!(flown(short, begun(&short)).0, Err(ApproachAbort::TooShort));
 }
 
 #[test]
@@ -247,11 +247,11 @@ fn what_the_beam_comes_back_onto_has_not_ended() {
 fn what_is_no_pipe_or_too_wide_for_it_is_none() {
     let none = World { right: 5.0, ..WORLD };
     let (end, at, ..) = flown(none, begun(&none));
-    assert_eq!(end, Err(Doubt::NoPipe));
+    assert_eq!(end, Err(ApproachAbort::NoPipe));
     // Where it gives up the height is that of the beginning.
     assert!(at.z.abs() < 1e-3, "{at:?}");
     let wall = World { radius: 0.4, ..WORLD };
-    assert_eq!(flown(wall, begun(&wall)).0, Err(Doubt::NoPipe));
+    assert_eq!(flown(wall, begun(&wall)).0, Err(ApproachAbort::NoPipe));
 }
 
 /// One that had become too long was flown by: the vehicle hovered at the gate where flow sees nothing, or in another search lower
@@ -267,7 +267,10 @@ fn a_range_that_shows_higher_steps_than_before_ends_it() {
                 ..WORLD
             };
             let (end, at, law, seconds) = flown(world, begun(&world));
-            let found = matches!(end, Err(Doubt::RangeLong | Doubt::RangeMisfit | Doubt::PipeLost));
+            let found = matches!(
+                end,
+                Err(ApproachAbort::RangeLong | ApproachAbort::RangeMisfit | ApproachAbort::PipeLost)
+            );
             assert!(found, "{from} {ground}: {end:?} {law:?}");
             let above = world.crown - at.z;
             assert!(
@@ -290,7 +293,7 @@ fn a_range_that_is_back_soon_is_no_other_step() {
                 ..WORLD
             };
             let (end, ..) = flown(world, begun(&world));
-            let misfit = matches!(end, Err(Doubt::RangeLong | Doubt::RangeMisfit));
+            let misfit = matches!(end, Err(ApproachAbort::RangeLong | ApproachAbort::RangeMisfit));
             assert!(!misfit, "{from} {ground}: {end:?}");
         }
     }
@@ -316,7 +319,7 @@ fn uneven_ground_and_a_range_that_is_a_little_off_are_no_other_steps() {
                 ..WORLD
             };
             let (end, ..) = flown(world, begun(&world));
-            let misfit = matches!(end, Err(Doubt::RangeLong | Doubt::RangeMisfit));
+            let misfit = matches!(end, Err(ApproachAbort::RangeLong | ApproachAbort::RangeMisfit));
             assert!(!misfit, "{from} {scale}: {end:?}");
         }
     }
@@ -363,19 +366,19 @@ fn without_a_range_and_where_nothing_is_touched_it_gives_up() {
     };
     assert!(law.step(&view, DT).is_ok());
     view.foot.age = RANGE_AGE + 0.01;
-    assert_eq!(law.step(&view, DT), Err(Doubt::RangeStale));
+    assert_eq!(law.step(&view, DT), Err(ApproachAbort::RangeStale));
     law.phase = Phase::Commit;
     let steps = (0..1000).take_while(|_| law.step(&view, DT).is_ok()).count();
     assert!((steps as f32 * DT - TOUCH_WAIT).abs() < 0.05, "{steps}");
     view.position.y = 0.2;
     law.since = 0.0;
-    assert_eq!(law.step(&view, DT), Err(Doubt::NotCentred));
+    assert_eq!(law.step(&view, DT), Err(ApproachAbort::NotCentred));
     // The wind keeps it from sweeping.
     let mut law = begun(&WORLD);
     view.foot.age = 0.0;
     let steps = (0..10_000).take_while(|_| law.step(&view, DT).is_ok()).count();
     assert!((steps as f32 * DT - SEARCH_TIME).abs() < 0.1, "{steps}");
-    assert_eq!(law.step(&view, DT), Err(Doubt::NoPipe));
+    assert_eq!(law.step(&view, DT), Err(ApproachAbort::NoPipe));
 }
 
 #[test]
@@ -551,7 +554,7 @@ fn a_search_about_where_the_pipe_was_finds_it_from_where_an_escape_ends() {
     let p = Params::default();
     assert_eq!(
         flown(world, Approach::again(&p, &view, world.heading, 0, false)).0,
-        Err(Doubt::NoPipe)
+        Err(ApproachAbort::NoPipe)
     );
     // The flow has drifted by as much as 0.6 m meanwhile.
     for drift in [-0.6, 0.0, 0.6] {

@@ -1,7 +1,7 @@
 //! Free flight onto the pipe, or off it, by itself.
 
 use crate::approach::limits::RANGE_AGE;
-use crate::approach::planner::{Approach as Law, Doubt, View};
+use crate::approach::planner::{Approach as Law, ApproachAbort, View};
 use crate::arming::ArmingInhibits;
 use crate::chain::setpoint::Setpoint;
 use crate::contact::contact_force::HINT_FORCE;
@@ -22,11 +22,11 @@ pub struct Approach {
     way: Law,
     wanted: Setpoint,
     /// Why no other try follows.
-    pub given_up: Option<Reason>,
+    pub abort_reason: Option<Reason>,
     /// The same, once it has climbed.
-    gives_up: Option<Reason>,
+    pending_abort_reason: Option<Reason>,
     /// The try ends at a touch.
-    astray: bool,
+    aborted_in_contact: bool,
 }
 
 /// The perch switch was turned on while the position is held.
@@ -88,9 +88,9 @@ impl Approach {
             law,
             way,
             wanted: Setpoint::Stop,
-            given_up: None,
-            gives_up: None,
-            astray: false,
+            abort_reason: None,
+            pending_abort_reason: None,
+            aborted_in_contact: false,
         };
         approach.step(&estimate, step);
         approach
@@ -102,13 +102,13 @@ impl Approach {
     }
 
     /// It crosses the pipe at a height, and touches nothing.
-    pub fn unaware(&self) -> bool {
+    pub fn not_committed(&self) -> bool {
         !self.committed() && !self.way.climbs()
     }
 
     /// Its try has ended while something seemed to carry it.
-    pub fn astray(&self) -> bool {
-        self.astray
+    pub fn aborted_in_contact(&self) -> bool {
+        self.aborted_in_contact
     }
 
     /// It has climbed off the pipe.
@@ -127,20 +127,20 @@ impl Approach {
             self.misfit(false, &seen, estimate, step);
         }
         let result = if self.way.jumped(estimate.jumps) {
-            Err(Doubt::NotCentred)
+            Err(ApproachAbort::NotCentred)
         } else {
             self.way.step(&seen, step.dt)
         };
         if self.way.has_left() {
-            self.given_up = self.gives_up;
+            self.abort_reason = self.pending_abort_reason;
         }
         let crown = self.way.crown().map(|crown| (crown, estimate.jumps));
         step.context.auto_perch.crown = crown.or(step.context.auto_perch.crown);
         step.context.vertical_fallback.steady = self.way.near_crown(&seen);
         let wish = result.unwrap_or_else(|doubt| {
             match doubt {
-                Doubt::RangeMisfit => self.misfit(false, &seen, estimate, step),
-                Doubt::RangeLong => self.misfit(true, &seen, estimate, step),
+                ApproachAbort::RangeMisfit => self.misfit(false, &seen, estimate, step),
+                ApproachAbort::RangeLong => self.misfit(true, &seen, estimate, step),
                 _ => self.again(reason(doubt), &seen, estimate, step),
             }
             Wish::default()
@@ -152,8 +152,8 @@ impl Approach {
     fn misfit(&mut self, proven: bool, view: &View, e: &Estimate, step: &mut Step<'_>) {
         let before = core::mem::replace(&mut step.context.auto_perch.misfit, true) || proven;
         self.again(Reason::RangeMisfit, view, e, step);
-        if before && !self.astray {
-            (self.given_up, self.gives_up) = (None, Some(Reason::RangeMisfit));
+        if before && !self.aborted_in_contact {
+            (self.abort_reason, self.pending_abort_reason) = (None, Some(Reason::RangeMisfit));
             self.way = Law::cleared(&step.context.params, view, heading(step, e), e.jumps);
         }
     }
@@ -162,7 +162,7 @@ impl Approach {
     fn again(&mut self, why: Reason, view: &View, e: &Estimate, step: &mut Step<'_>) {
         step.context.note(Some(why));
         if self.committed() && step.context.contact_force.force() > HINT_FORCE {
-            (self.astray, self.given_up) = (true, Some(why));
+            (self.aborted_in_contact, self.abort_reason) = (true, Some(why));
             return;
         }
         let tries = &mut step.context.auto_perch.tries;
@@ -171,7 +171,7 @@ impl Approach {
             Reason::NoPipe | Reason::RangeStale | Reason::TargetStale | Reason::TargetFar
         );
         if *tries >= TRIES || searched {
-            self.given_up = Some(why);
+            self.abort_reason = Some(why);
         } else {
             *tries += 1;
             let heading = heading(step, e);
@@ -198,18 +198,18 @@ fn heading(step: &Step<'_>, e: &Estimate) -> f32 {
     step.context.auto_perch.heading + e.turn
 }
 
-fn reason(doubt: Doubt) -> Reason {
+fn reason(doubt: ApproachAbort) -> Reason {
     match doubt {
-        Doubt::NoPipe => Reason::NoPipe,
-        Doubt::TooShort => Reason::PipeTooShort,
-        Doubt::PipeLost => Reason::PipeLost,
-        Doubt::NotCentred => Reason::NotCentred,
-        Doubt::NotTouched => Reason::NotTouched,
-        Doubt::RangeStale => Reason::RangeStale,
-        Doubt::RangeMisfit | Doubt::RangeLong => Reason::RangeMisfit,
-        Doubt::TargetStale => Reason::TargetStale,
-        Doubt::TargetFar => Reason::TargetFar,
-        Doubt::TargetJumps => Reason::TargetJumps,
+        ApproachAbort::NoPipe => Reason::NoPipe,
+        ApproachAbort::TooShort => Reason::PipeTooShort,
+        ApproachAbort::PipeLost => Reason::PipeLost,
+        ApproachAbort::NotCentred => Reason::NotCentred,
+        ApproachAbort::NotTouched => Reason::NotTouched,
+        ApproachAbort::RangeStale => Reason::RangeStale,
+        ApproachAbort::RangeMisfit | ApproachAbort::RangeLong => Reason::RangeMisfit,
+        ApproachAbort::TargetStale => Reason::TargetStale,
+        ApproachAbort::TargetFar => Reason::TargetFar,
+        ApproachAbort::TargetJumps => Reason::TargetJumps,
     }
 }
 

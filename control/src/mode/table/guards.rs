@@ -77,14 +77,14 @@ guards! {
     AUTO_PERCH = "perching or leaving by itself", |_, s| s.context.auto_perch.active;
     BY_HAND = "flown by hand", |_, s| !s.context.auto_perch.acts();
     TRY_LEFT = "another try is left", |_, s| s.context.auto_perch.may_try();
-    LEAVES = "leaving by itself", |_, s| s.context.auto_perch.acts() && s.context.auto_perch.leaving;
-    HAS_LEFT = "climbed off the pipe", |state, _| approaching(state, Approach::has_left);
-    GIVEN_UP = "no other try", |state, _| approaching(state, |a| a.given_up.is_some());
+    DEPARTING = "leaving by itself", |_, s| s.context.auto_perch.acts() && s.context.auto_perch.leaving;
+    DEPARTED = "climbed off the pipe", |state, _| approaching(state, Approach::has_left);
+    APPROACH_ABORTED = "no other try", |state, _| approaching(state, |a| a.abort_reason.is_some());
     FEELS_PIPE = "on the way down, and something seems to carry it", |state, s| {
         approaching(state, Approach::committed) && s.context.contact_force.force() > HINT_FORCE
     };
-    TOUCHED_ASTRAY = "a try ends while something seems to carry it", |state, _| approaching(state, Approach::astray);
-    UNAWARE = "nothing below by what it sees", |state, _| approaching(state, Approach::unaware);
+    ABORTED_IN_CONTACT = "a try ends while something seems to carry it", |state, _| approaching(state, Approach::aborted_in_contact);
+    NOT_COMMITTED = "nothing below by what it sees", |state, _| approaching(state, Approach::not_committed);
     COMMITTED = "on the way down", |state, _| approaching(state, Approach::committed);
     AUTO_RELEASE = "perch switch off again, hold switch on, sticks centred, perched by itself", |_, s| {
         let sticks_ask = |t: &Sticks| t.arm_switch && !t.perch_switch && stick_positions::keeps_hold(t) && centred(t);
@@ -149,7 +149,7 @@ guards! {
     NOT_TAKEN_OVER = "throttle not moved in time", |_, s| s.context.since >= TAKE_OVER_TIME;
 
     LOST_RADIO = "acting for the radio", |state, _| acts_for(state, Reason::RADIO_LOST);
-    LOST_PILOT = "acting for the throttle", |state, _| acts_for(state, Reason::NotTakenOver);
+    THROTTLE_NOT_TAKEN = "acting for the throttle", |state, _| acts_for(state, Reason::NotTakenOver);
     RESUMES = "radio back at once, or roll or pitch stick moved", |_, s| sticks(s, |t| {
         t.roll.abs() > RESUME_STICK || t.pitch.abs() > RESUME_STICK || s.context.since <= RESUME_TIME
     });
