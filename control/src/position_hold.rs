@@ -39,7 +39,7 @@ const LEASH: f32 = 1.0;
 
 /// What the pilot wants.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Wish {
+pub struct VelocityCommand {
     /// Forward, right and down along the heading, m/s: within [`SPEED_MAX`] and [`CLIMB_MAX`].
     pub velocity: Vec3,
     /// Clockwise from above, rad/s.
@@ -146,7 +146,14 @@ impl PositionHold {
     }
 
     /// One step of `dt` s; without `known` the position is none, and the sticks tilt.
-    pub fn step(&mut self, e: &Estimate, motion: &BodyMotion, wish: &Wish, known: bool, dt: f32) -> Setpoint {
+    pub fn step(
+        &mut self,
+        e: &Estimate,
+        motion: &BodyMotion,
+        wish: &VelocityCommand,
+        known: bool,
+        dt: f32,
+    ) -> Setpoint {
         let heading = motion.q.to_euler().2 + e.turn;
         if e.jumps != self.jumps {
             self.anchor_at(e);

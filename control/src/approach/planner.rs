@@ -16,7 +16,7 @@ use crate::maths::scalar::{self, clamp, clamp_abs};
 use crate::maths::vector::Vec3;
 use crate::navigation::range_hit::RangeHit;
 use crate::params::Params;
-use crate::position_hold::Wish;
+use crate::position_hold::VelocityCommand;
 
 /// Why a try ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -309,7 +309,7 @@ impl Approach {
     ///
     /// # Errors
     /// Why the try ends.
-    pub fn step(&mut self, v: &View, dt: f32) -> Result<Wish, ApproachAbort> {
+    pub fn step(&mut self, v: &View, dt: f32) -> Result<VelocityCommand, ApproachAbort> {
         self.since += dt;
         let asks = !self.leaves && self.phase != Phase::Commit;
         if asks && self.has_target {
@@ -356,7 +356,7 @@ impl Approach {
             wanted.z,
         );
         let off = scalar::wrap_pi(self.heading - v.heading);
-        Ok(Wish {
+        Ok(VelocityCommand {
             velocity: about_down(self.speed, -off),
             yaw_rate: clamp_abs(HEADING_GAIN * off, YAW_RATE_MAX),
             lean: [0.0; 2],

@@ -14,7 +14,7 @@ struct World {
     tilt: [[f32; 3]; 2],
     stages: [[f32; 2]; 2],
     wind: Vec3,
-    wish: Wish,
+    wish: VelocityCommand,
     known: bool,
     yaw: f32,
     out: Setpoint,
@@ -37,7 +37,7 @@ impl World {
             tilt: [[0.0; 3]; 2],
             stages: [[0.0; 2]; 2],
             wind: Vec3::ZERO,
-            wish: Wish::default(),
+            wish: VelocityCommand::default(),
             known: true,
             yaw,
             out: Setpoint::Stop,
@@ -132,7 +132,7 @@ fn sticks_ask_for_velocities_along_the_heading_and_centred_they_stop() {
     let v = w.run(6.0).velocity;
     let wanted = about_down(w.wish.velocity, 1.5);
     assert!((v - wanted).norm() < 0.03, "{v:?} {wanted:?}");
-    w.wish = Wish::default();
+    w.wish = VelocityCommand::default();
     w.run(5.0);
     let held = w.e.position;
     w.run(5.0);
@@ -158,7 +158,7 @@ fn at_a_turn_the_vehicle_follows_the_held_point() {
     assert!(off < 0.04, "{off}");
     // Where the wishes have led it is where it comes to rest.
     assert!((w.law.held() - led).norm() < 0.03, "{:?} {led:?}", w.law.held());
-    w.wish = Wish::default();
+    w.wish = VelocityCommand::default();
     let goal = w.law.held();
     w.run(6.0);
     assert!((w.e.position - goal).norm() < 0.04, "{:?} {goal:?}", w.e.position);

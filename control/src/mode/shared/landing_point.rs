@@ -3,7 +3,7 @@
 use super::coasting_hold::CoastingHold;
 use super::collective::HAND_OVER_TIME;
 use super::descent::descent;
-use super::stick_velocity::wished;
+use super::stick_velocity::velocity_from_sticks;
 use crate::chain::setpoint::Setpoint;
 use crate::contact::contact_force::HINT_FORCE;
 use crate::maths::frames::about_down;
@@ -12,7 +12,7 @@ use crate::maths::vector::Vec3;
 use crate::mode::context::{Context, Step};
 use crate::navigation::estimate::Estimate;
 use crate::pilot::rc::Sticks;
-use crate::position_hold::{PositionHold, Wish};
+use crate::position_hold::{PositionHold, VelocityCommand};
 
 /// Speed and climb of the way off the pipe, m/s, and its time with nothing that carries, s: with the stop 1 m, where the
 /// largest pipe and the propellers' reach take 0.5 m.
@@ -112,13 +112,13 @@ impl Spot {
         let estimate = step.inputs.position.unwrap_or_default();
         let wish = match self.way_off(&estimate, step) {
             Some(wish) => wish,
-            None => wished(&pilot.unwrap_or_default(), 0.0, step.context),
+            None => velocity_from_sticks(&pilot.unwrap_or_default(), 0.0, step.context),
         };
         self.wanted = self.hold.step(&estimate, &wish, step);
     }
 
     /// What the way off the pipe asks for, until it has ended.
-    fn way_off(&mut self, estimate: &Estimate, step: &mut Step<'_>) -> Option<Wish> {
+    fn way_off(&mut self, estimate: &Estimate, step: &mut Step<'_>) -> Option<VelocityCommand> {
         let aside = self.aside.as_mut()?;
         let carried = step.context.contact_force.resting();
         aside.left -= if carried { 0.0 } else { step.dt };
@@ -131,9 +131,9 @@ impl Spot {
         let nose = step.inputs.motion.map_or(0.0, |m| m.q.to_euler().2) + estimate.turn;
         let speed = if carried { 0.0 } else { ASIDE_SPEED };
         let level = about_down(aside.direction, -nose) * speed;
-        Some(Wish {
+        Some(VelocityCommand {
             velocity: Vec3::new(level.x, level.y, -ASIDE_CLIMB),
-            ..Wish::default()
+            ..VelocityCommand::default()
         })
     }
 

@@ -13,7 +13,7 @@ use crate::mode::inputs::auto_perch::TRIES;
 use crate::mode::reason::Reason;
 use crate::navigation::estimate::Estimate;
 use crate::pilot::stick_positions::{centred, keeps_hold};
-use crate::position_hold::{PositionHold, Wish};
+use crate::position_hold::{PositionHold, VelocityCommand};
 
 /// See [`crate::mode::Mode::Approach`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -143,7 +143,7 @@ impl Approach {
                 ApproachAbort::RangeLong => self.misfit(true, &seen, estimate, step),
                 _ => self.again(reason(doubt), &seen, estimate, step),
             }
-            Wish::default()
+            VelocityCommand::default()
         });
         self.wanted = self.law.step(estimate, &step.body_motion(), &wish, true, step.dt);
     }

@@ -14,7 +14,7 @@ use sophie_control::navigation::flow_range_sample::{Flow, GroundView, Range};
 use sophie_control::navigation::inertial::Inertial;
 use sophie_control::navigation::position_estimator::PositionEstimator;
 use sophie_control::params::Params;
-use sophie_control::position_hold::{BodyMotion, PositionHold, Wish};
+use sophie_control::position_hold::{BodyMotion, PositionHold, VelocityCommand};
 use sophie_drivers::ground_module::GroundModule;
 use sophie_drivers::msp::Message;
 use sophie_tasks::ports::GroundDecoder;
@@ -63,7 +63,7 @@ struct Hold {
 }
 
 #[inline(never)]
-fn hold(h: &mut Hold, (motion, wish): &(BodyMotion, Wish)) {
+fn hold(h: &mut Hold, (motion, wish): &(BodyMotion, VelocityCommand)) {
     h.out = h.law.step(&h.estimate, motion, wish, true, 0.01);
 }
 
@@ -165,7 +165,7 @@ pub fn run(print: &mut dyn FnMut(Arguments<'_>), overhead: u32) {
             });
             law.estimate = found;
             if step.is_multiple_of(2) {
-                let input = black_box((motion, Wish::default()));
+                let input = black_box((motion, VelocityCommand::default()));
                 hold_tally.add(gross(hold, law, &input) - overhead);
             }
         }
