@@ -97,7 +97,7 @@ struct Other {
 
 /// The law and its state.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Approach {
+pub struct ApproachPlanner {
     diameter: f32,
     /// Where the range looks down from, of the centre of mass, m: forward, right, down, as the nose is along the pipe.
     lens: Vec3,
@@ -155,7 +155,7 @@ pub struct Approach {
     speed: Vec3,
 }
 
-impl Approach {
+impl ApproachPlanner {
     /// Begins where the vehicle is, over or beside a pipe along `heading`, rad.
     pub fn begin(p: &Params, v: &View, heading: f32, jumps: u8) -> Self {
         let law = Self {
@@ -292,7 +292,7 @@ impl Approach {
         let off = match (self.phase, self.met) {
             (Phase::Search, Some(met)) => here - met,
             // Over something from the beginning: on, as the sweep goes.
-            (Phase::Search, None) if self.origin.z + self.edges.level() < -RAISED => self.side,
+            (Phase::Search, None) if self.origin.z + self.edges.surface_depth() < -RAISED => self.side,
             (Phase::Search, None) => return None,
             _ => here - self.crown,
         };
@@ -317,7 +317,7 @@ impl Approach {
         } else if asks && v.foot.age > RANGE_AGE {
             return Err(ApproachAbort::RangeStale);
         }
-        let before = self.edges.level();
+        let before = self.edges.surface_depth();
         let edge = self.look(v).filter(|_| !self.has_target);
         let at = self.local(v.position);
         if let Some(edge) = edge {
@@ -396,7 +396,7 @@ impl Approach {
     /// What is below is `before`, m down, again, or the pipe, or the ground at its sides.
     fn at_known(&self, before: f32) -> bool {
         let [onto, off] = self.steps.map(|step| self.top + step);
-        let near = |known: f32| (self.edges.level() - known).abs() < 0.5 * self.diameter;
+        let near = |known: f32| (self.edges.surface_depth() - known).abs() < 0.5 * self.diameter;
         self.sees_pipe() || [before, onto, off].into_iter().any(near)
     }
 
@@ -408,7 +408,7 @@ impl Approach {
         }
         let most = onto.max(off);
         let falls = matches!(edge, Edge::Off(_));
-        let from_crown = |step| self.edges.level() - step - self.edges.top() < 0.5 * self.diameter;
+        let from_crown = |step| self.edges.surface_depth() - step - self.edges.top() < 0.5 * self.diameter;
         match self.edges.height() {
             Some(step) if step > HIGHER * most + 0.5 * self.diameter => Err(ApproachAbort::RangeLong),
             Some(step) if falls && from_crown(step) && step < LOWEST * onto.min(off) => {
@@ -421,11 +421,11 @@ impl Approach {
     }
 
     /// Velocity from the held point to `target`, level at most `speed` and vertically at most `climb`, m/s.
-    fn way(held: Vec3, target: Vec3, speed: f32, climb: f32) -> Vec3 {
+    fn velocity_towards(held: Vec3, target: Vec3, speed: f32, climb: f32) -> Vec3 {
         let off = target - held;
         Vec3::new(
-            level(off.x, speed),
-            level(off.y, speed),
+            braking_speed(off.x, speed),
+            braking_speed(off.y, speed),
             clamp_abs(HEIGHT_GAIN * off.z, climb),
         )
     }
@@ -440,7 +440,7 @@ impl Approach {
                 Phase::Search
             });
         }
-        Self::way(held, target, CROSS_SPEED, CLIMB_SPEED)
+        Self::velocity_towards(held, target, CROSS_SPEED, CLIMB_SPEED)
     }
 
     /// The middle of the pipe, right, m, where this `edge` ends a crossing.
@@ -495,7 +495,7 @@ impl Approach {
                 return Err(ApproachAbort::NoPipe);
             }
         }
-        Ok(Self::way(held, target, SWEEP_SPEED, 0.0))
+        Ok(Self::velocity_towards(held, target, SWEEP_SPEED, 0.0))
     }
 
     /// The place over the crown, `height` m above it.
@@ -519,7 +519,7 @@ impl Approach {
                 self.turn_across();
             }
         }
-        Ok(Self::way(held, target, CROSS_SPEED, DESCENT))
+        Ok(Self::velocity_towards(held, target, CROSS_SPEED, DESCENT))
     }
 
     /// The crossings begin.
@@ -530,7 +530,7 @@ impl Approach {
 
     /// The range sees the pipe's back.
     fn sees_pipe(&self) -> bool {
-        self.has_target || (self.edges.level() - self.top).abs() < 0.5 * self.diameter
+        self.has_target || (self.edges.surface_depth() - self.top).abs() < 0.5 * self.diameter
     }
 
     fn look_along(&mut self, edge: Option<Edge>, held: Vec3, dt: f32) -> Result<Vec3, ApproachAbort> {
@@ -572,7 +572,7 @@ impl Approach {
                 self.turn_across();
             }
         }
-        Ok(Self::way(held, target, CROSS_SPEED, DESCENT))
+        Ok(Self::velocity_towards(held, target, CROSS_SPEED, DESCENT))
     }
 
     fn cross(&mut self, edge: Option<Edge>, held: Vec3) -> Result<Vec3, ApproachAbort> {
@@ -597,7 +597,7 @@ impl Approach {
                 self.enter(if self.looked { Phase::Centre } else { Phase::Over });
             }
         }
-        Ok(Self::way(held, target, CROSS_SPEED, DESCENT))
+        Ok(Self::velocity_towards(held, target, CROSS_SPEED, DESCENT))
     }
 
     fn centre(&mut self, edge: Option<Edge>, at: Vec3, held: Vec3) -> Result<Vec3, ApproachAbort> {
@@ -623,7 +623,7 @@ impl Approach {
         if (at.y - self.crown).abs() < NEAR_OFF && self.sees_pipe() {
             self.enter(Phase::Descend);
         }
-        Ok(Self::way(held, self.spot(LOW), CROSS_SPEED, DESCENT))
+        Ok(Self::velocity_towards(held, self.spot(LOW), CROSS_SPEED, DESCENT))
     }
 
     fn descend(
@@ -653,7 +653,7 @@ impl Approach {
         if self.settled.step(at_gate && over && !blind, dt) >= GATE_TIME {
             self.enter(Phase::Commit);
         }
-        let mut way = Self::way(held, self.spot(LOW), CORRECT_SPEED, DESCENT);
+        let mut way = Self::velocity_towards(held, self.spot(LOW), CORRECT_SPEED, DESCENT);
         let waits = off.abs() > NEAR_OFF;
         // Flow sees again from a little higher. A pose comes back or not: what drifts must not do so beside the pipe.
         let (goal, back) = match (blind, self.has_target) {
@@ -675,14 +675,14 @@ impl Approach {
         if (at.y - self.crown).abs() > ASTRAY {
             return Err(ApproachAbort::NotCentred);
         }
-        let mut way = Self::way(held, self.spot(LOW), CORRECT_SPEED, DESCENT);
+        let mut way = Self::velocity_towards(held, self.spot(LOW), CORRECT_SPEED, DESCENT);
         way.z = LAST_SPEED;
         Ok(way)
     }
 }
 
 /// Speed towards what is `off` m away that a stop at [`SLEW`] still ends there, at most `speed`, m/s.
-fn level(off: f32, speed: f32) -> f32 {
+fn braking_speed(off: f32, speed: f32) -> f32 {
     let most = 1.6 * SLEW * off.abs();
     let braked = most * scalar::inv_sqrt(most);
     clamp(braked, 0.0, speed) * if off < 0.0 { -1.0 } else { 1.0 }

@@ -67,7 +67,7 @@ impl World {
 }
 
 /// How a try ends: the law, where the vehicle is then, and after how long.
-fn flown(world: World, law: Approach) -> (Result<(), ApproachAbort>, Vec3, Approach, f32) {
+fn flown(world: World, law: ApproachPlanner) -> (Result<(), ApproachAbort>, Vec3, ApproachPlanner, f32) {
     let (mut law, mut held, mut speed) = (law, law.origin, Vec3::ZERO);
     let mut foot = RangeHit::default();
     for i in 0..12_000 {
@@ -116,11 +116,11 @@ fn flown(world: World, law: Approach) -> (Result<(), ApproachAbort>, Vec3, Appro
     panic!("neither touch nor doubt in 120 s: {law:?}");
 }
 
-fn begun(world: &World) -> Approach {
+fn begun(world: &World) -> ApproachPlanner {
     begun_by(world, &Params::default())
 }
 
-fn begun_by(world: &World, p: &Params) -> Approach {
+fn begun_by(world: &World, p: &Params) -> ApproachPlanner {
     let view = View {
         position: Vec3::ZERO,
         velocity: Vec3::ZERO,
@@ -130,7 +130,7 @@ fn begun_by(world: &World, p: &Params) -> Approach {
         foot: RangeHit::default(),
         target: None,
     };
-    Approach::begin(p, &view, world.heading, 0)
+    ApproachPlanner::begin(p, &view, world.heading, 0)
 }
 
 #[test]
@@ -393,11 +393,11 @@ fn another_try_climbs_before_it_searches_and_leaving_only_climbs() {
         foot: RangeHit::default(),
         target: None,
     };
-    let law = Approach::again(&Params::default(), &view, world.heading, 0, true);
+    let law = ApproachPlanner::again(&Params::default(), &view, world.heading, 0, true);
     let (end, at, ..) = flown(world, law);
     assert_eq!(end, Ok(()));
     assert!((at.z - 0.5 + HIGH).abs() < 0.1, "{at:?}");
-    let law = Approach::again(&Params::default(), &view, world.heading, 0, false);
+    let law = ApproachPlanner::again(&Params::default(), &view, world.heading, 0, false);
     let (end, at, ..) = flown(world, law);
     assert_eq!(end, Ok(()));
     assert!(world.beside(at).0.abs() < 0.015, "{at:?}");
@@ -440,7 +440,7 @@ fn another_try_from_a_search_climbs_no_higher_than_over_what_it_has_met() {
 }
 
 /// Over the crown on the way down: at `range` m, sinking at `sinks` m/s, the newest flow `age` s old.
-fn descending(range: f32, sinks: f32, age: f32) -> (Approach, View) {
+fn descending(range: f32, sinks: f32, age: f32) -> (ApproachPlanner, View) {
     let world = World { right: 0.0, ..WORLD };
     let place = Vec3::new(0.0, 0.0, world.crown - range);
     let view = View {
@@ -553,13 +553,13 @@ fn a_search_about_where_the_pipe_was_finds_it_from_where_an_escape_ends() {
     };
     let p = Params::default();
     assert_eq!(
-        flown(world, Approach::again(&p, &view, world.heading, 0, false)).0,
+        flown(world, ApproachPlanner::again(&p, &view, world.heading, 0, false)).0,
         Err(ApproachAbort::NoPipe)
     );
     // The flow has drifted by as much as 0.6 m meanwhile.
     for drift in [-0.6, 0.0, 0.6] {
         let crown = about_down(Vec3::new(0.1, world.right + drift, world.crown), world.heading);
-        let law = Approach::back_to(crown, &p, &view, world.heading, 0);
+        let law = ApproachPlanner::back_to(crown, &p, &view, world.heading, 0);
         let (end, at, law, seconds) = flown(world, law);
         assert_eq!(end, Ok(()), "{drift}: {law:?}");
         let (y, x) = world.beside(at);

@@ -1,6 +1,6 @@
 //! The way onto a pipe whose place another computer says, in the axes of the poses: nothing is searched or crossed.
 
-use super::{Approach, ApproachAbort, Phase, View};
+use super::{ApproachAbort, ApproachPlanner, Phase, View};
 use crate::approach::limits::*;
 use crate::approach::pipe_target::PipeTarget;
 use crate::maths::frames::about_down;
@@ -8,7 +8,7 @@ use crate::maths::scalar;
 use crate::maths::vector::Vec3;
 use crate::navigation::estimate::Estimate;
 
-impl Approach {
+impl ApproachPlanner {
     /// `target` is near the vehicle, and below it.
     pub fn reaches(target: &PipeTarget, e: &Estimate) -> bool {
         near(target.crown - e.position, TARGET_REACH)
@@ -54,7 +54,7 @@ impl Approach {
             // Beside the crown the beam meets the pipe's round back, by so much below it.
             let (half, square) = (self.half, self.lens.y * self.lens.y);
             let fallen = square / (half + scalar::sqrt(half * half - square));
-            self.edges.level() - fallen - self.lens.z.max(0.0)
+            self.edges.surface_depth() - fallen - self.lens.z.max(0.0)
         };
         surface - at.z
     }

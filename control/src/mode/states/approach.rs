@@ -1,7 +1,7 @@
 //! Free flight onto the pipe, or off it, by itself.
 
 use crate::approach::limits::RANGE_AGE;
-use crate::approach::planner::{Approach as Law, ApproachAbort, View};
+use crate::approach::planner::{ApproachAbort, ApproachPlanner, View};
 use crate::arming::ArmingInhibits;
 use crate::chain::setpoint::Setpoint;
 use crate::contact::contact_force::HINT_FORCE;
@@ -19,7 +19,7 @@ use crate::position_hold::{PositionHold, VelocityCommand};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Approach {
     pub law: PositionHold,
-    way: Law,
+    planner: ApproachPlanner,
     wanted: Setpoint,
     /// Why no other try follows.
     pub abort_reason: Option<Reason>,
@@ -47,7 +47,7 @@ pub fn obstacle(step: &Step<'_>) -> Option<Reason> {
     } else if !step.inputs.position_fresh() {
         Some(Reason::NoPosition)
     } else if let (Some(target), Some(e)) = (step.inputs.target, step.inputs.position) {
-        (!Law::reaches(&target, &e)).then_some(Reason::TargetFar)
+        (!ApproachPlanner::reaches(&target, &e)).then_some(Reason::TargetFar)
     } else if !step.inputs.position.is_some_and(ranged) {
         Some(Reason::NoRange)
     } else {
@@ -59,7 +59,7 @@ impl Approach {
     /// Searches from where `law` holds.
     pub fn search(law: Option<PositionHold>, step: &mut Step<'_>) -> Self {
         Self::begin(law, step, |step, view, e| {
-            Law::begin(&step.context.params, view, heading(step, e), e.jumps)
+            ApproachPlanner::begin(&step.context.params, view, heading(step, e), e.jumps)
         })
     }
 
@@ -69,8 +69,10 @@ impl Approach {
         Self::begin(None, step, |step, view, e| {
             let (params, heading) = (&step.context.params, heading(step, e));
             match crown {
-                Some((crown, jumps)) if jumps == e.jumps => Law::back_to(crown, params, view, heading, jumps),
-                _ => Law::again(params, view, heading, e.jumps, left),
+                Some((crown, jumps)) if jumps == e.jumps => {
+                    ApproachPlanner::back_to(crown, params, view, heading, jumps)
+                }
+                _ => ApproachPlanner::again(params, view, heading, e.jumps, left),
             }
         })
     }
@@ -78,15 +80,15 @@ impl Approach {
     fn begin(
         law: Option<PositionHold>,
         step: &mut Step<'_>,
-        way: impl Fn(&Step<'_>, &View, &Estimate) -> Law,
+        planner: impl Fn(&Step<'_>, &View, &Estimate) -> ApproachPlanner,
     ) -> Self {
         let estimate = step.inputs.position.unwrap_or_default();
         let law =
             law.unwrap_or_else(|| PositionHold::begin(&step.context.params, &estimate, &step.body_motion()));
-        let way = way(step, &view(&law, &estimate, step), &estimate);
+        let planner = planner(step, &view(&law, &estimate, step), &estimate);
         let mut approach = Self {
             law,
-            way,
+            planner,
             wanted: Setpoint::Stop,
             abort_reason: None,
             pending_abort_reason: None,
@@ -98,12 +100,12 @@ impl Approach {
 
     /// It is on the way down to the pipe.
     pub fn committed(&self) -> bool {
-        self.way.committed()
+        self.planner.committed()
     }
 
     /// It crosses the pipe at a height, and touches nothing.
     pub fn not_committed(&self) -> bool {
-        !self.committed() && !self.way.climbs()
+        !self.committed() && !self.planner.climbs()
     }
 
     /// Its try has ended while something seemed to carry it.
@@ -113,30 +115,30 @@ impl Approach {
 
     /// It has climbed off the pipe.
     pub fn has_left(&self) -> bool {
-        self.way.has_left()
+        self.planner.has_left()
     }
 
     /// The level way off the pipe for a vehicle at `position`, length 1, in the estimate's axes; `None` where none is known.
     pub fn off_pipe(&self, position: Vec3) -> Option<Vec3> {
-        self.way.off_pipe(position)
+        self.planner.off_pipe(position)
     }
 
     fn step(&mut self, estimate: &Estimate, step: &mut Step<'_>) {
         let seen = view(&self.law, estimate, step);
-        if step.context.vertical_fallback.misfit() && !self.way.leaves() {
+        if step.context.vertical_fallback.misfit() && !self.planner.leaves() {
             self.misfit(false, &seen, estimate, step);
         }
-        let result = if self.way.jumped(estimate.jumps) {
+        let result = if self.planner.jumped(estimate.jumps) {
             Err(ApproachAbort::NotCentred)
         } else {
-            self.way.step(&seen, step.dt)
+            self.planner.step(&seen, step.dt)
         };
-        if self.way.has_left() {
+        if self.planner.has_left() {
             self.abort_reason = self.pending_abort_reason;
         }
-        let crown = self.way.crown().map(|crown| (crown, estimate.jumps));
+        let crown = self.planner.crown().map(|crown| (crown, estimate.jumps));
         step.context.auto_perch.crown = crown.or(step.context.auto_perch.crown);
-        step.context.vertical_fallback.steady = self.way.near_crown(&seen);
+        step.context.vertical_fallback.steady = self.planner.near_crown(&seen);
         let wish = result.unwrap_or_else(|doubt| {
             match doubt {
                 ApproachAbort::RangeMisfit => self.misfit(false, &seen, estimate, step),
@@ -154,7 +156,7 @@ impl Approach {
         self.again(Reason::RangeMisfit, view, e, step);
         if before && !self.aborted_in_contact {
             (self.abort_reason, self.pending_abort_reason) = (None, Some(Reason::RangeMisfit));
-            self.way = Law::cleared(&step.context.params, view, heading(step, e), e.jumps);
+            self.planner = ApproachPlanner::cleared(&step.context.params, view, heading(step, e), e.jumps);
         }
     }
 
@@ -175,7 +177,7 @@ impl Approach {
         } else {
             *tries += 1;
             let heading = heading(step, e);
-            self.way = self.way.retried(&step.context.params, view, heading, e.jumps);
+            self.planner = self.planner.retried(&step.context.params, view, heading, e.jumps);
         }
     }
 }
