@@ -154,7 +154,7 @@ impl PositionHold {
         known: bool,
         dt: f32,
     ) -> Setpoint {
-        let heading = motion.q.to_euler().2 + e.turn;
+        let heading = motion.q.to_euler().2 + e.yaw_offset;
         if e.jumps != self.jumps {
             self.anchor_at(e);
         }

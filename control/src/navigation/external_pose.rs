@@ -156,7 +156,7 @@ pub struct ExternalPoseMonitor {
     level: Departure,
     down: Departure,
     /// Heading less the vehicle's own, rad; `None` before the first pose.
-    turn: Option<f32>,
+    yaw_offset: Option<f32>,
     /// Weight of the poses that are off it, and since when they are doubted, µs: until the heading is back, or the level way
     /// agrees with the new one.
     turns: u32,
@@ -273,20 +273,20 @@ impl ExternalPoseMonitor {
         self.settle(at, sound && found.is_none());
     }
 
-    /// Looks at the heading less the vehicle's own, `turn` rad, at `at` µs; `anew` where it may be any.
-    fn check_heading(&mut self, turn: f32, at: u64, anew: bool) {
-        let known = self.turn.unwrap_or(turn);
-        let off = scalar::wrap_pi(turn - known);
+    /// Looks at the heading less the vehicle's own, `yaw_offset` rad, at `at` µs; `anew` where it may be any.
+    fn check_heading(&mut self, yaw_offset: f32, at: u64, anew: bool) {
+        let known = self.yaw_offset.unwrap_or(yaw_offset);
+        let off = scalar::wrap_pi(yaw_offset - known);
         let same = off.abs() < TURN_STEP;
         if self.turned_us.is_some() {
             if same || !self.level.wrong {
                 self.turned_us = None;
                 self.level.wrong = false;
-                self.turn = Some(turn);
+                self.yaw_offset = Some(yaw_offset);
             }
         } else if self.level.wrong || anew || same {
             let gain = if same { TURN_GAIN } else { 1.0 };
-            self.turn = Some(scalar::wrap_pi(known + gain * off));
+            self.yaw_offset = Some(scalar::wrap_pi(known + gain * off));
             self.turns = self.turns.saturating_sub(1);
         } else {
             self.turns += REFUSED;

@@ -291,13 +291,13 @@ impl FlowRangeFusion {
 
     /// What the height of the lens at `then` is off by a range of `distance`, m, with its variance, m²; `None` while it is not
     /// clear what is below. Where a pose is fresh the surface follows the height instead. A little `earlier` the beam was on its
-    /// way there; the axes are turned by `turn`, rad.
+    /// way there; the axes are turned by `yaw_offset`, rad.
     pub fn height(
         &mut self,
         (earlier, then): (&StateSnapshot, &StateSnapshot),
         distance: f32,
         posed: bool,
-        turn: f32,
+        yaw_offset: f32,
     ) -> Option<(f32, f32)> {
         let cos = then.q.down_in_body().z;
         if cos < COS_MIN {
@@ -315,11 +315,11 @@ impl FlowRangeFusion {
             self.band = None;
             return None;
         }
-        let foot = then.position + beam(then.q, distance, turn);
+        let foot = then.position + beam(then.q, distance, yaw_offset);
         // The range's own place is that of a surface at `level`.
         let off = self.level - surface;
         let raised = self.raised();
-        let heading = then.yaw() + turn;
+        let heading = then.yaw() + yaw_offset;
         let below = PipeFootprint::below(foot, heading, self.radius, self.level);
         if !self.scale.begun() {
             self.unproven = Some(foot);
@@ -339,7 +339,7 @@ impl FlowRangeFusion {
         if off.abs() <= STEP || flank {
             (self.agreed, self.foot) = (0, foot);
             // Where the beam passes its height: the ground is met farther off.
-            let at = |top: f32| then.position + beam(then.q, (top - then.position.z) / cos, turn);
+            let at = |top: f32| then.position + beam(then.q, (top - then.position.z) / cos, yaw_offset);
             self.band = self.band.map(|band| band.bounded(at(band.top), raised));
             self.band = self.band.filter(|band| raised || !band.is_mistaken());
             if !raised {
@@ -387,7 +387,7 @@ impl FlowRangeFusion {
             let mut band = self.band.unwrap_or(below);
             band.top = self.level.min(before);
             let reach = band.top - then.position.z;
-            let at = |m: &StateSnapshot| m.position + beam(m.q, reach, turn);
+            let at = |m: &StateSnapshot| m.position + beam(m.q, reach, yaw_offset);
             let way = at(then) - at(earlier);
             self.band = Some(PipeFootprint::at_edge(band, self.stepped_at, onto, way, heading));
             self.foot = foot;
@@ -427,13 +427,13 @@ impl FlowRangeFusion {
 
     /// How far what the flow sees from `to` is. Beside something narrow the rest of the view is farther, and where an edge
     /// of it was seen its share is known.
-    pub(crate) fn depth(&self, to: &StateSnapshot, cos: f32, turn: f32) -> Depth {
+    pub(crate) fn depth(&self, to: &StateSnapshot, cos: f32, yaw_offset: f32) -> Depth {
         let far = |level: f32| {
             let (least, most) = FLOW_HEIGHT;
             scalar::clamp((level - to.position.z) / cos, least, 2.0 * most)
         };
         let near = far(self.level);
-        let foot = to.position + beam(to.q, near, turn);
+        let foot = to.position + beam(to.q, near, yaw_offset);
         let seen = match self.band {
             Some(band) => band.depth(to.position, foot, far(self.base)),
             None => Depth {
@@ -448,14 +448,14 @@ impl FlowRangeFusion {
         }
     }
 
-    /// What the velocity of the lens between `from` and `to`, in axes turned by `turn` rad, is off by `flow`; `None` where it
+    /// What the velocity of the lens between `from` and `to`, in axes turned by `yaw_offset` rad, is off by `flow`; `None` where it
     /// says nothing.
     pub fn velocity(
         &mut self,
         flow: &Flow,
         from: &StateSnapshot,
         to: &StateSnapshot,
-        turn: f32,
+        yaw_offset: f32,
     ) -> Option<Seen> {
         self.watch_frozen(flow);
         let cos = to.q.down_in_body().z;
@@ -469,15 +469,15 @@ impl FlowRangeFusion {
             distance: depth,
             doubt,
             lean,
-        } = self.depth(to, cos, turn);
+        } = self.depth(to, cos, yaw_offset);
         // What the vehicle has turned by, body.
         let turned = from.q.conjugate() * to.q;
         let half = if turned.w < 0.0 { -2.0 } else { 2.0 };
         let turned = [half * turned.x, half * turned.y];
-        let way = about_down(to.position - from.position, -turn);
+        let way = about_down(to.position - from.position, -yaw_offset);
         let way = to.q.rotate_inverse(way);
         // On the way down what is near on one side of the view seems to move to that side.
-        let aside = to.q.rotate_inverse(about_down(lean, -turn)) * way.z;
+        let aside = to.q.rotate_inverse(about_down(lean, -yaw_offset)) * way.z;
         let [roll, pitch] = flow.angle;
         let angle = [roll - aside.y / depth, pitch + aside.x / depth];
         let [roll, pitch] = angle;
@@ -499,7 +499,7 @@ impl FlowRangeFusion {
         }
         // Along the down axis of the body flow sees nothing: there the estimate stands.
         let seen = Vec3::new((pitch - turned[1]) * depth, (turned[0] - roll) * depth, way.z);
-        let off = about_down(to.q.rotate(seen - way), turn) * per;
+        let off = about_down(to.q.rotate(seen - way), yaw_offset) * per;
         let speed = FLOW_NOISE * depth * per;
         let scale = (SCALE_NOISE + doubt) * (seen.x.abs() + seen.y.abs()) * per;
         Some(Seen {
@@ -524,9 +524,9 @@ impl FlowRangeFusion {
     }
 }
 
-/// From the lens of a vehicle with the attitude `q` to what its range sees `distance` m away, in axes turned by `turn` rad.
-pub fn beam(q: Quat, distance: f32, turn: f32) -> Vec3 {
-    about_down(q.rotate(Vec3::new(0.0, 0.0, distance)), turn)
+/// From the lens of a vehicle with the attitude `q` to what its range sees `distance` m away, in axes turned by `yaw_offset` rad.
+pub fn beam(q: Quat, distance: f32, yaw_offset: f32) -> Vec3 {
+    about_down(q.rotate(Vec3::new(0.0, 0.0, distance)), yaw_offset)
 }
 
 #[cfg(test)]

@@ -23,10 +23,10 @@ pub struct StateSnapshot {
 }
 
 impl StateSnapshot {
-    /// The same moment of the point that lies `lever` m from the centre of mass, body, in axes turned by `turn` rad.
-    pub fn of(self, lever: Vec3, turn: f32) -> Self {
+    /// The same moment of the point that lies `lever` m from the centre of mass, body, in axes turned by `yaw_offset` rad.
+    pub fn of(self, lever: Vec3, yaw_offset: f32) -> Self {
         Self {
-            position: self.position + about_down(self.q.rotate(lever), turn),
+            position: self.position + about_down(self.q.rotate(lever), yaw_offset),
             ..self
         }
     }

@@ -237,7 +237,7 @@ impl PositionEstimator {
 struct Track {
     /// North or forward, east or right, down.
     axes: [Axis; 3],
-    turn: f32,
+    yaw_offset: f32,
     /// Thrust over mass, with the motors' lag, m/s².
     lift: f32,
     disturbance: Vec3,
@@ -271,7 +271,7 @@ impl Track {
         let axes = fix.position.to_array().map(Axis::at);
         Self {
             axes,
-            turn: scalar::wrap_pi(fix.heading - yaw),
+            yaw_offset: scalar::wrap_pi(fix.heading - yaw),
             lift: 0.0,
             disturbance: Vec3::ZERO,
             at_us,
@@ -328,13 +328,14 @@ impl Track {
     fn predict(&mut self, a: &Inertial, (lift, motor_tau): (f32, f32)) {
         let dt = seconds(self.at_us, a.at_us);
         self.at_us = a.at_us;
-        let force = about_down(a.q.rotate(a.accel), self.turn);
+        let force = about_down(a.q.rotate(a.accel), self.yaw_offset);
         let acceleration = force + Vec3::new(0.0, 0.0, GRAVITY);
         for (axis, acceleration) in self.axes.iter_mut().zip(acceleration.to_array()) {
             axis.predict(acceleration, dt);
         }
         // Across the thrust axis rotors push little: what is felt there is the air, and the arms' lean.
-        let across = about_down(a.q.rotate(Vec3::new(a.accel.x, a.accel.y, 0.0)), self.turn) - self.bias();
+        let across =
+            about_down(a.q.rotate(Vec3::new(a.accel.x, a.accel.y, 0.0)), self.yaw_offset) - self.bias();
         self.lift += (lift - self.lift) * dt / (dt + motor_tau);
         let down = acceleration.z - self.bias().z - GRAVITY + self.lift * a.q.down_in_body().z;
         let follow = |from: f32, to: f32, cutoff: f32| from + (to - from) * cutoff * dt / (1.0 + cutoff * dt);
@@ -357,7 +358,7 @@ impl Track {
         let close = |((axis, y), r): ((&Axis, f32), f32)| axis.accepts(y, r);
         let pairs = self.axes.iter().zip(innovation.to_array());
         let accepted = pairs.zip(variance.to_array()).all(close);
-        let off = scalar::wrap_pi(fix.heading - yaw - self.turn);
+        let off = scalar::wrap_pi(fix.heading - yaw - self.yaw_offset);
         let unknown = self.left_out || seconds(self.pose_us, fix.at_us) > UNKNOWN_AGE;
         let elsewhere = !accepted || off.abs() > TURN_STEP;
         if !self.posed || fix.resets != self.resets || (unknown && elsewhere) {
@@ -373,7 +374,7 @@ impl Track {
             }
             history.change(fix.at_us, &changes);
             let gain = scalar::clamp(1.0 / (1.0 + self.fixes as f32), TURN_GAIN, 1.0);
-            self.turn = scalar::wrap_pi(self.turn + gain * off);
+            self.yaw_offset = scalar::wrap_pi(self.yaw_offset + gain * off);
             self.count();
         } else {
             pose_monitor.note_gate(fix.at_us, true);
@@ -406,10 +407,10 @@ impl Track {
 
     /// Notes where the beam of a range of `distance` m, measured at `at` µs, has met something.
     fn step_on(&mut self, history: &StateHistory, lens: Vec3, at: u64, distance: Option<f32>) {
-        let Some(then) = history.at(at).map(|moment| moment.of(lens, self.turn)) else {
+        let Some(then) = history.at(at).map(|moment| moment.of(lens, self.yaw_offset)) else {
             return;
         };
-        self.foot.point = distance.map(|d| then.position + beam(then.q, d, self.turn));
+        self.foot.point = distance.map(|d| then.position + beam(then.q, d, self.yaw_offset));
         self.foot.count = self.foot.count.wrapping_add(1);
         self.foot_us = at;
     }
@@ -434,9 +435,10 @@ impl Track {
         }
         let earlier = history.at(at.saturating_sub(EDGE_TIME)).unwrap_or(then);
         // The lever is rigid: what the lens is off, the vehicle is.
-        let [earlier, then] = [earlier, then].map(|moment| moment.of(flow_range.lens, self.turn));
+        let [earlier, then] = [earlier, then].map(|moment| moment.of(flow_range.lens, self.yaw_offset));
         let [_, _, axis] = &mut self.axes;
-        let Some((innovation, variance)) = flow_range.height((&earlier, &then), distance, posed, self.turn)
+        let Some((innovation, variance)) =
+            flow_range.height((&earlier, &then), distance, posed, self.yaw_offset)
         else {
             return;
         };
@@ -477,8 +479,8 @@ impl Track {
             return;
         };
         // Between the lens' two places lies the vehicle's way, and what its turning adds.
-        let [from, to] = [from, to].map(|moment| moment.of(flow_range.lens, self.turn));
-        let Some(seen) = flow_range.velocity(flow, &from, &to, self.turn) else {
+        let [from, to] = [from, to].map(|moment| moment.of(flow_range.lens, self.yaw_offset));
+        let Some(seen) = flow_range.velocity(flow, &from, &to, self.yaw_offset) else {
             return;
         };
         if posed {
@@ -509,9 +511,9 @@ impl Track {
 
     /// The sender's origin has jumped: velocity and bias stay, but for their turn.
     fn jump(&mut self, yaw: f32, fix: &Fix) {
-        let before = self.turn;
-        self.turn = scalar::wrap_pi(fix.heading - yaw);
-        let by = self.turn - before;
+        let before = self.yaw_offset;
+        self.yaw_offset = scalar::wrap_pi(fix.heading - yaw);
+        let by = self.yaw_offset - before;
         let velocity = about_down(self.velocity(), by);
         let bias = about_down(self.bias(), by);
         self.disturbance = about_down(self.disturbance, by);
@@ -547,7 +549,7 @@ impl Track {
             position: self.position(),
             velocity: self.velocity(),
             disturbance: self.disturbance,
-            turn: self.turn,
+            yaw_offset: self.yaw_offset,
             age: seconds(self.fixed_us, self.at_us),
             by_pressure,
             jumps: self.jumps,

@@ -21,9 +21,9 @@ struct World {
 }
 
 impl World {
-    fn new(yaw: f32, turn: f32) -> Self {
+    fn new(yaw: f32, yaw_offset: f32) -> Self {
         let e = Estimate {
-            turn,
+            yaw_offset,
             ..Estimate::default()
         };
         let motion = BodyMotion {
@@ -77,7 +77,7 @@ impl World {
             }
             let [[f, ..], [r, ..]] = self.tilt;
             let up = thrust / p.mass - GRAVITY;
-            let level = about_down(Vec3::new(f, r, 0.0), self.yaw + self.e.turn);
+            let level = about_down(Vec3::new(f, r, 0.0), self.yaw + self.e.yaw_offset);
             let a = level + self.wind - Vec3::new(0.0, 0.0, up);
             self.e.velocity += a * dt;
             self.e.position += self.e.velocity * dt;
@@ -95,8 +95,8 @@ impl World {
 
 #[test]
 fn a_displaced_vehicle_returns_with_little_overshoot_whatever_its_heading() {
-    for (yaw, turn) in [(0.0, 0.0), (1.2, 0.7), (3.0, -1.0)] {
-        let mut w = World::new(yaw, turn);
+    for (yaw, yaw_offset) in [(0.0, 0.0), (1.2, 0.7), (3.0, -1.0)] {
+        let mut w = World::new(yaw, yaw_offset);
         w.e.position = Vec3::new(0.3, -0.2, 0.1);
         let start = w.e.position;
         let mut over = 0.0f32;
@@ -104,8 +104,12 @@ fn a_displaced_vehicle_returns_with_little_overshoot_whatever_its_heading() {
             w.step();
             over = over.max(-w.e.position.dot(start) / start.norm());
         }
-        assert!(w.e.position.norm() < 0.01, "{yaw} {turn}: {:?}", w.e.position);
-        assert!(over < 0.05, "{yaw} {turn}: {over}");
+        assert!(
+            w.e.position.norm() < 0.01,
+            "{yaw} {yaw_offset}: {:?}",
+            w.e.position
+        );
+        assert!(over < 0.05, "{yaw} {yaw_offset}: {over}");
     }
 }
 

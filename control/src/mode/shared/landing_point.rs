@@ -45,7 +45,7 @@ impl Aside {
 /// The level direction to the side of the nose to which the vehicle moves, length 1, in the estimate's axes.
 fn sideways(step: &Step<'_>) -> Option<Vec3> {
     let (estimate, motion) = (step.inputs.position?, step.inputs.motion?);
-    let nose = motion.q.to_euler().2 + estimate.turn;
+    let nose = motion.q.to_euler().2 + estimate.yaw_offset;
     let right = about_down(Vec3::new(0.0, 1.0, 0.0), nose);
     let onwards = if right.dot(estimate.velocity) < 0.0 {
         -1.0
@@ -128,7 +128,7 @@ impl Spot {
             step.context.collective.hand_over(HAND_OVER_TIME);
             return None;
         }
-        let nose = step.inputs.motion.map_or(0.0, |m| m.q.to_euler().2) + estimate.turn;
+        let nose = step.inputs.motion.map_or(0.0, |m| m.q.to_euler().2) + estimate.yaw_offset;
         let speed = if carried { 0.0 } else { ASIDE_SPEED };
         let level = about_down(aside.direction, -nose) * speed;
         Some(VelocityCommand {

@@ -187,7 +187,7 @@ fn view(law: &PositionHold, e: &Estimate, step: &Step<'_>) -> View {
     View {
         position: e.position,
         velocity: e.velocity,
-        heading: heading + e.turn,
+        heading: heading + e.yaw_offset,
         held: law.held(),
         age: e.age,
         foot: e.foot,
@@ -197,7 +197,7 @@ fn view(law: &PositionHold, e: &Estimate, step: &Step<'_>) -> View {
 
 /// Heading along the pipe in the estimate's axes, rad.
 fn heading(step: &Step<'_>, e: &Estimate) -> f32 {
-    step.context.auto_perch.heading + e.turn
+    step.context.auto_perch.heading + e.yaw_offset
 }
 
 fn reason(doubt: ApproachAbort) -> Reason {

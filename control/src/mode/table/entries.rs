@@ -82,7 +82,7 @@ pub fn approach(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Approac
     step.context.perch_switch.seen_off = false;
     let nose = present_heading(step);
     // The pipe's, where it is known; else the nose lies along it.
-    let turn = step.inputs.position.map_or(0.0, |e| e.turn);
+    let turn = step.inputs.position.map_or(0.0, |e| e.yaw_offset);
     let pipe = step
         .inputs
         .target

@@ -108,12 +108,12 @@ fn position() -> impl Strategy<Value = Option<Estimate>> {
         .prop_map(|(point, count, age)| RangeHit { point, count, age });
     let age = (age, any::<bool>());
     let some = (vector(20.0), vector(5.0), vector(8.0), number(), age, jumps, foot).prop_map(
-        |(position, velocity, disturbance, turn, (age, by_pressure), jumps, foot)| {
+        |(position, velocity, disturbance, yaw_offset, (age, by_pressure), jumps, foot)| {
             Some(Estimate {
                 position,
                 velocity,
                 disturbance,
-                turn,
+                yaw_offset,
                 age,
                 by_pressure,
                 jumps,
