@@ -113,7 +113,7 @@ pub struct PositionHold {
     course: Course,
     /// Learnt wind, m/s², in the estimate's axes.
     wind: Vec3,
-    jumps: u8,
+    reset_count: u8,
 }
 
 impl PositionHold {
@@ -129,7 +129,7 @@ impl PositionHold {
             anchor: e.position,
             course: Course::default(),
             wind: Vec3::new(e.disturbance.x, e.disturbance.y, 0.0),
-            jumps: e.jumps,
+            reset_count: e.reset_count,
         }
     }
 
@@ -137,7 +137,7 @@ impl PositionHold {
     pub fn anchor_at(&mut self, e: &Estimate) {
         self.anchor = e.position;
         self.course = Course::default();
-        self.jumps = e.jumps;
+        self.reset_count = e.reset_count;
     }
 
     /// Where the wished velocities have led the point that is held, m, in the estimate's axes; it comes there behind them.
@@ -155,7 +155,7 @@ impl PositionHold {
         dt: f32,
     ) -> Setpoint {
         let heading = motion.q.to_euler().2 + e.yaw_offset;
-        if e.jumps != self.jumps {
+        if e.reset_count != self.reset_count {
             self.anchor_at(e);
         }
         let wished = about_down(wish.velocity, heading);

@@ -103,7 +103,7 @@ pub struct ApproachPlanner {
     lens: Vec3,
     origin: Vec3,
     heading: f32,
-    jumps: u8,
+    reset_count: u8,
     phase: Phase,
     /// Time in it, s.
     since: f32,
@@ -157,13 +157,13 @@ pub struct ApproachPlanner {
 
 impl ApproachPlanner {
     /// Begins where the vehicle is, over or beside a pipe along `heading`, rad.
-    pub fn begin(p: &Params, v: &View, heading: f32, jumps: u8) -> Self {
+    pub fn begin(p: &Params, v: &View, heading: f32, reset_count: u8) -> Self {
         let law = Self {
             diameter: p.pipe_diameter,
             lens: p.flow_lens(),
             origin: v.position,
             heading,
-            jumps,
+            reset_count,
             phase: Phase::Search,
             since: 0.0,
             leaves: false,
@@ -203,20 +203,20 @@ impl ApproachPlanner {
     }
 
     /// Climbs first: another try, or with `leaves` the way off the pipe.
-    pub fn again(p: &Params, v: &View, heading: f32, jumps: u8, leaves: bool) -> Self {
+    pub fn again(p: &Params, v: &View, heading: f32, reset_count: u8, leaves: bool) -> Self {
         Self {
             phase: Phase::Climb,
             leaves,
             returns: true,
             up: if leaves { -HIGH } else { -RISE },
-            ..Self::begin(p, v, heading, jumps)
+            ..Self::begin(p, v, heading, reset_count)
         }
     }
 
     /// Climbs to where it crosses `crown`, the place at which it was last taken to be, and sweeps about it: an escape has
     /// carried the vehicle a metre or two away.
-    pub fn back_to(crown: Vec3, p: &Params, v: &View, heading: f32, jumps: u8) -> Self {
-        let law = Self::again(p, v, heading, jumps, false);
+    pub fn back_to(crown: Vec3, p: &Params, v: &View, heading: f32, reset_count: u8) -> Self {
+        let law = Self::again(p, v, heading, reset_count, false);
         let off = law.local(crown);
         Self {
             up: clamp(off.z - HIGH, -2.0 * HIGH, 0.0),
@@ -233,16 +233,16 @@ impl ApproachPlanner {
     }
 
     /// Up and away from where the range misleads, to be left there.
-    pub fn cleared(p: &Params, v: &View, heading: f32, jumps: u8) -> Self {
+    pub fn cleared(p: &Params, v: &View, heading: f32, reset_count: u8) -> Self {
         Self {
             up: -CLEAR,
-            ..Self::again(p, v, heading, jumps, true)
+            ..Self::again(p, v, heading, reset_count, true)
         }
     }
 
     /// Another try from the top, over the crown where that is known; what leaves goes on doing so.
-    pub fn retried(&self, p: &Params, v: &View, heading: f32, jumps: u8) -> Self {
-        let again = Self::again(p, v, heading, jumps, self.leaves);
+    pub fn retried(&self, p: &Params, v: &View, heading: f32, reset_count: u8) -> Self {
+        let again = Self::again(p, v, heading, reset_count, self.leaves);
         if self.leaves {
             return again;
         }
@@ -301,8 +301,8 @@ impl ApproachPlanner {
     }
 
     /// Origin of the estimate's axes has jumped since the beginning.
-    pub fn jumped(&self, jumps: u8) -> bool {
-        self.jumps != jumps
+    pub fn jumped(&self, reset_count: u8) -> bool {
+        self.reset_count != reset_count
     }
 
     /// One step of `dt` s: what to ask for.

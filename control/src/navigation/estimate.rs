@@ -19,7 +19,7 @@ pub struct Estimate {
     /// The height is by the pressure of the air, since neither range nor pose give it.
     pub by_pressure: bool,
     /// Counts where the position has jumped with the sender's origin.
-    pub jumps: u8,
+    pub reset_count: u8,
     /// Where the beam of the range falls.
     pub foot: RangeHit,
 }

@@ -195,7 +195,7 @@ impl PositionEstimator {
             ..here
         });
         track.left_out |= left_out;
-        let jumps = track.jumps;
+        let reset_count = track.reset_count;
         if self.pose_monitor.fault() == Some(PoseFault::Disagrees) && !track.tainted {
             track.taint();
             track.tainted = true;
@@ -220,7 +220,7 @@ impl PositionEstimator {
             track.taint();
         }
         track.misled = misled;
-        if track.jumps != jumps {
+        if track.reset_count != reset_count {
             self.baro_height.forget();
         }
         if let Some(at) = self.baro_height.news(at_us)
@@ -259,7 +259,7 @@ struct Track {
     /// Flows refused in a row.
     flows_refused: u32,
     resets: u8,
-    jumps: u8,
+    reset_count: u8,
     ready: bool,
     foot: RangeHit,
     /// When that was measured, µs; 0 before the first.
@@ -285,7 +285,7 @@ impl Track {
             height_us: fix.at_us,
             flows_refused: 0,
             resets: fix.resets,
-            jumps: 0,
+            reset_count: 0,
             ready: false,
             foot: RangeHit::default(),
             foot_us: 0,
@@ -524,7 +524,7 @@ impl Track {
             axis.jump(position, velocity, bias);
         }
         self.resets = fix.resets;
-        self.jumps = self.jumps.wrapping_add(1);
+        self.reset_count = self.reset_count.wrapping_add(1);
     }
 
     fn of(&self, value: impl Fn(&Axis) -> f32) -> Vec3 {
@@ -552,7 +552,7 @@ impl Track {
             yaw_offset: self.yaw_offset,
             age: seconds(self.fixed_us, self.at_us),
             by_pressure,
-            jumps: self.jumps,
+            reset_count: self.reset_count,
             foot: match self.foot_us {
                 0 => RangeHit::default(),
                 at => RangeHit {

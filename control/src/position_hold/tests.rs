@@ -222,7 +222,7 @@ fn a_jump_of_the_origin_moves_the_held_point_and_a_push_leaves_it_in_reach() {
     let mut w = World::new(0.0, 0.0);
     w.run(1.0);
     w.e.position = Vec3::new(50.0, 20.0, -3.0);
-    w.e.jumps = 1;
+    w.e.reset_count = 1;
     w.run(3.0);
     assert!((w.e.position - Vec3::new(50.0, 20.0, -3.0)).norm() < 0.02);
     w.e.position.x += 5.0;

@@ -59,7 +59,7 @@ impl Approach {
     /// Searches from where `law` holds.
     pub fn search(law: Option<PositionHold>, step: &mut Step<'_>) -> Self {
         Self::begin(law, step, |step, view, e| {
-            ApproachPlanner::begin(&step.context.params, view, heading(step, e), e.jumps)
+            ApproachPlanner::begin(&step.context.params, view, heading(step, e), e.reset_count)
         })
     }
 
@@ -69,10 +69,10 @@ impl Approach {
         Self::begin(None, step, |step, view, e| {
             let (params, heading) = (&step.context.params, heading(step, e));
             match crown {
-                Some((crown, jumps)) if jumps == e.jumps => {
-                    ApproachPlanner::back_to(crown, params, view, heading, jumps)
+                Some((crown, reset_count)) if reset_count == e.reset_count => {
+                    ApproachPlanner::back_to(crown, params, view, heading, reset_count)
                 }
-                _ => ApproachPlanner::again(params, view, heading, e.jumps, left),
+                _ => ApproachPlanner::again(params, view, heading, e.reset_count, left),
             }
         })
     }
@@ -128,7 +128,7 @@ impl Approach {
         if step.context.vertical_fallback.misfit() && !self.planner.leaves() {
             self.misfit(false, &seen, estimate, step);
         }
-        let result = if self.planner.jumped(estimate.jumps) {
+        let result = if self.planner.jumped(estimate.reset_count) {
             Err(ApproachAbort::NotCentred)
         } else {
             self.planner.step(&seen, step.dt)
@@ -136,7 +136,7 @@ impl Approach {
         if self.planner.has_left() {
             self.abort_reason = self.pending_abort_reason;
         }
-        let crown = self.planner.crown().map(|crown| (crown, estimate.jumps));
+        let crown = self.planner.crown().map(|crown| (crown, estimate.reset_count));
         step.context.auto_perch.crown = crown.or(step.context.auto_perch.crown);
         step.context.vertical_fallback.steady = self.planner.near_crown(&seen);
         let wish = result.unwrap_or_else(|doubt| {
@@ -156,7 +156,8 @@ impl Approach {
         self.again(Reason::RangeMisfit, view, e, step);
         if before && !self.aborted_in_contact {
             (self.abort_reason, self.pending_abort_reason) = (None, Some(Reason::RangeMisfit));
-            self.planner = ApproachPlanner::cleared(&step.context.params, view, heading(step, e), e.jumps);
+            self.planner =
+                ApproachPlanner::cleared(&step.context.params, view, heading(step, e), e.reset_count);
         }
     }
 
@@ -177,7 +178,9 @@ impl Approach {
         } else {
             *tries += 1;
             let heading = heading(step, e);
-            self.planner = self.planner.retried(&step.context.params, view, heading, e.jumps);
+            self.planner = self
+                .planner
+                .retried(&step.context.params, view, heading, e.reset_count);
         }
     }
 }

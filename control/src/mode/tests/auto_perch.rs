@@ -108,7 +108,7 @@ impl World {
         self.r.inputs.position = Some(Estimate {
             position: self.at,
             velocity: Vec3::new(0.0, 0.0, self.bent.map_or(0.0, |bent| self.r.falling + bent)),
-            jumps: self.jumps,
+            reset_count: self.jumps,
             age: 0.02,
             foot: if self.ranged { foot } else { RangeHit::default() },
             ..Estimate::default()

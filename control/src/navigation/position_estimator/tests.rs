@@ -198,7 +198,7 @@ fn a_jump_that_the_sender_tells_is_taken_at_once_with_its_turn() {
     r.step(fix);
     r.run(0.5);
     let e = r.out.unwrap();
-    assert!(e.jumps == 1 && (e.yaw_offset - 1.0).abs() < 0.01, "{e:?}");
+    assert!(e.reset_count == 1 && (e.yaw_offset - 1.0).abs() < 0.01, "{e:?}");
 }
 
 #[test]

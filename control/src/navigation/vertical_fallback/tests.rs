@@ -175,7 +175,7 @@ fn over_a_crown_and_near_it_less_is_another_way() {
 
 #[test]
 fn what_was_flown_by_it_is_given_back_or_is_another_origin() {
-    for (seconds, jumps) in [(0.3, 0), (1.0, 1)] {
+    for (seconds, reset_count) in [(0.3, 0), (1.0, 1)] {
         let mut w = World::learnt();
         w.bent = 0.4;
         w.run(seconds);
@@ -186,10 +186,10 @@ fn what_was_flown_by_it_is_given_back_or_is_another_origin() {
         (w.bent, w.off) = (0.0, 0.4 * seconds);
         w.run(0.03);
         let out = w.out();
-        assert_eq!(out.jumps, jumps, "{seconds}");
+        assert_eq!(out.reset_count, reset_count, "{seconds}");
         assert_eq!(
             (out.position.z - before).abs() < 0.04,
-            jumps == 0,
+            reset_count == 0,
             "{seconds}: {out:?}"
         );
         w.run(5.0);

@@ -178,12 +178,12 @@ fn a_new_origin_that_no_one_announced_is_named_before_it_counts() {
     r.run(12.0);
     r.origin = Vec3::new(3.0, -2.0, 0.5);
     let named = until(&mut r, 1.0, |r| fault(r) == Some(PoseFault::Jumps)).expect("named");
-    assert!(named < 0.15 && r.out.unwrap().jumps == 0, "{named}");
+    assert!(named < 0.15 && r.out.unwrap().reset_count == 0, "{named}");
     let again = until(&mut r, 3.0, |r| fault(r).is_none()).expect("taken again");
     r.run(0.5);
     let [p, v] = r.errors();
     assert!(
-        (0.9..1.2).contains(&again) && r.out.unwrap().jumps == 1,
+        (0.9..1.2).contains(&again) && r.out.unwrap().reset_count == 1,
         "{again}"
     );
     assert!(p < 0.02 && v < 0.1, "{p} {v}");
@@ -229,7 +229,7 @@ fn sound_poses_are_blamed_for_nothing_however_noisy_rare_and_late() {
         (r.silent, r.origin) = (false, Vec3::new(1.0, 0.0, 0.0));
         r.run(1.0);
         assert_eq!(fault(&r), None);
-        assert_eq!(r.out.unwrap().jumps, 1);
+        assert_eq!(r.out.unwrap().reset_count, 1);
     }
 }
 
@@ -294,9 +294,9 @@ fn axes_that_turn_with_the_way_are_taken_once_it_agrees() {
     r.run(0.1);
     let e = r.out.unwrap();
     assert!(
-        e.jumps == 1 && (e.yaw_offset - 1.5).abs() < 0.05,
+        e.reset_count == 1 && (e.yaw_offset - 1.5).abs() < 0.05,
         "{} {}",
-        e.jumps,
+        e.reset_count,
         e.yaw_offset
     );
     // The next turn is measured from them.
@@ -314,7 +314,7 @@ fn axes_that_have_turned_in_a_silence_are_taken_at_once() {
     (r.silent, r.yaw_offset) = (false, 1.5);
     r.run(0.1);
     let e = r.out.unwrap();
-    assert_eq!((fault(&r), e.jumps), (None, 1));
+    assert_eq!((fault(&r), e.reset_count), (None, 1));
     assert!((e.yaw_offset - 1.5).abs() < 0.05, "{}", e.yaw_offset);
 }
 

@@ -639,12 +639,15 @@ fn flow_carries_on_where_poses_end_and_a_pose_sets_the_axes() {
     }
     let e = r.out.unwrap();
     let at = Rig::truth(r.now)[0] + Vec3::new(5.0, 0.0, 0.0);
-    assert!(e.jumps == 1 && (e.position - at).norm() < 0.02, "{e:?} {at:?}");
+    assert!(
+        e.reset_count == 1 && (e.position - at).norm() < 0.02,
+        "{e:?} {at:?}"
+    );
     r.run(3.0);
     let e = r.out.unwrap();
     let at = Rig::truth(r.now)[0] + Vec3::new(5.0, 0.0, 0.0);
     assert!(
-        e.jumps == 1 && e.age < 0.1 && (e.position - at).norm() < 0.15,
+        e.reset_count == 1 && e.age < 0.1 && (e.position - at).norm() < 0.15,
         "{e:?}"
     );
 }
