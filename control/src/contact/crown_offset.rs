@@ -25,9 +25,9 @@ pub enum CrownSide {
 
 /// Offset of the vehicle from the crown, m, right positive.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Crown(f32);
+pub struct CrownOffset(f32);
 
-impl Crown {
+impl CrownOffset {
     /// One step of `dt` s at the rotors' `lift` along body -z, N, and `roll_moment`, right side down positive, N m.
     pub fn step(&mut self, lift: f32, roll_moment: f32, contact_force: &ContactForce, dt: f32) {
         let load = contact_force.weight() - lift;

@@ -7,13 +7,13 @@ use super::inputs::dangers::Dangers;
 use super::inputs::remote::{self, Remote};
 use super::reason::Reason;
 use super::shared::collective::Collective;
-use super::shared::ground_probe::Probe;
+use super::shared::ground_probe::GroundProbe;
 use super::shared::on_pipe::held;
 use super::shared::power_up_grip::PowerUpGripCheck;
 use crate::arming::{ArmingInhibit, ArmingInhibits, Checks, Gesture, GestureWatch};
 use crate::chain::setpoint::ClampCommand;
 use crate::contact::contact_force::{ContactForce, InertialSample};
-use crate::contact::crown_offset::{Crown, CrownSide};
+use crate::contact::crown_offset::{CrownOffset, CrownSide};
 use crate::contact::fall::Fall;
 use crate::contact::lean::Lean;
 use crate::gripper::retained_grip::GripMemory;
@@ -82,13 +82,13 @@ pub struct Context {
     pub power_up_grip: PowerUpGripCheck,
     pub lean: Lean,
     pub fall: Fall,
-    pub crown: Crown,
+    pub crown: CrownOffset,
     /// Acceleration along world down, m/s².
     pub accel_down: f32,
     /// The same summed, beside the estimate's speed.
     pub vertical_fallback: VerticalFallback,
     pub collective: Collective,
-    pub probe: Probe,
+    pub ground_probe: GroundProbe,
     /// How often the arms have tightened since they closed.
     pub tightened: u8,
     pub bench: Bench,
@@ -121,11 +121,11 @@ impl Context {
             power_up_grip: PowerUpGripCheck::default(),
             lean: Lean::new(params),
             fall: Fall::default(),
-            crown: Crown::default(),
+            crown: CrownOffset::default(),
             accel_down: 0.0,
             vertical_fallback: VerticalFallback::default(),
             collective: Collective::default(),
-            probe: Probe::default(),
+            ground_probe: GroundProbe::default(),
             tightened: 0,
             bench: Bench::default(),
             remote: Remote::default(),

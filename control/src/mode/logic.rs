@@ -131,7 +131,7 @@ impl ModeLogic {
     fn decide(&mut self, inputs: &Inputs, dt: f32) -> Outputs {
         let (mode, state, context) = (self.state.mode(), self.state.behaviour(), &mut self.context);
         context
-            .probe
+            .ground_probe
             .step(mode == Mode::Failsafe, &context.contact_force, dt);
         let wish = state.rotors(context, inputs);
         let rotors = context.collective.finish(wish, &context.params, dt);

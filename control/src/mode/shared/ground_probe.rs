@@ -9,9 +9,9 @@ const PROBE_RATE: f32 = 0.5;
 
 /// Share of the weight removed, 0..1.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Probe(f32);
+pub struct GroundProbe(f32);
 
-impl Probe {
+impl GroundProbe {
     pub fn step(&mut self, failsafe: bool, contact_force: &ContactForce, dt: f32) {
         let hint = failsafe && contact_force.force() > HINT_FORCE;
         let rate = match (hint, contact_force.resting()) {

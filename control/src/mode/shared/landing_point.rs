@@ -57,13 +57,13 @@ fn sideways(step: &Step<'_>) -> Option<Vec3> {
 
 /// Holds the vehicle over the spot.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Spot {
+pub struct LandingPoint {
     hold: CoastingHold,
     aside: Option<Aside>,
     wanted: Setpoint,
 }
 
-impl Spot {
+impl LandingPoint {
     /// Where `hold` holds the vehicle.
     pub fn held(hold: CoastingHold, step: &mut Step<'_>) -> Self {
         Self::begin(hold, None, step)

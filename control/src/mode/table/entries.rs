@@ -5,7 +5,7 @@ use crate::maths::scalar;
 use crate::mode::context::Step;
 use crate::mode::inputs::auto_perch::AutoPerch;
 use crate::mode::reason::Reason;
-use crate::mode::shared::landing_point::Spot;
+use crate::mode::shared::landing_point::LandingPoint;
 use crate::mode::shared::on_pipe::{Hold, Spool, pressed};
 use crate::mode::state::State;
 use crate::mode::states::approach::Approach;
@@ -254,15 +254,15 @@ pub fn giving_up(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Escapi
 /// The failsafe acts for the reason of the transition.
 pub fn failsafe(from: &State, step: &mut Step<'_>, why: Option<Reason>) -> Failsafe {
     Failsafe::begin(why.unwrap_or(Reason::RADIO_LOST), step, |step| match from {
-        State::Failsafe(before) => before.spot,
-        State::Hold(hold) => Some(Spot::held(hold.place, step)),
+        State::Failsafe(before) => before.landing_point,
+        State::Hold(hold) => Some(LandingPoint::held(hold.place, step)),
         State::Approach(approach) => {
             let position = step.inputs.position;
             let off_pipe = position.and_then(|e| approach.off_pipe(e.position));
-            Some(Spot::off_approach(approach.law, off_pipe, step))
+            Some(LandingPoint::off_approach(approach.law, off_pipe, step))
         }
-        State::Releasing(_) | State::Escaping(_) => Spot::beside_pipe(step),
-        _ => Spot::here(step),
+        State::Releasing(_) | State::Escaping(_) => LandingPoint::beside_pipe(step),
+        _ => LandingPoint::here(step),
     })
 }
 
