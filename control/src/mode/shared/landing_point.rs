@@ -1,4 +1,4 @@
-//! The spot on which the failsafe comes down where the position is known: straight below, or beside the pipe that is there.
+//! The point on which the failsafe comes down where the position is known: straight below, or beside the pipe that is there.
 
 use super::coasting_hold::CoastingHold;
 use super::collective::HAND_OVER_TIME;

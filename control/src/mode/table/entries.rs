@@ -6,7 +6,7 @@ use crate::mode::context::Step;
 use crate::mode::inputs::auto_perch::AutoPerch;
 use crate::mode::reason::Reason;
 use crate::mode::shared::landing_point::LandingPoint;
-use crate::mode::shared::on_pipe::{Hold, Spool, pressed};
+use crate::mode::shared::on_pipe::{PipeAttitudeHold, Spool, pressed};
 use crate::mode::state::State;
 use crate::mode::states::approach::Approach;
 use crate::mode::states::armed::Armed;
@@ -271,17 +271,17 @@ fn present_heading(step: &Step<'_>) -> f32 {
 }
 
 /// The present attitude, held with `arms`.
-fn present(step: &Step<'_>, arms: ArmChoice) -> Hold {
+fn present(step: &Step<'_>, arms: ArmChoice) -> PipeAttitudeHold {
     let (roll, pitch, _) = step.inputs.motion.map_or((0.0, 0.0, 0.0), |m| m.q.to_euler());
-    Hold { roll, pitch, arms }
+    PipeAttitudeHold { roll, pitch, arms }
 }
 
 /// What `from` holds on the pipe.
-fn hold(from: &State) -> Hold {
+fn hold(from: &State) -> PipeAttitudeHold {
     match from {
         State::Contact(Contact { hold })
         | State::Clamping(Clamping { hold, .. })
         | State::Releasing(Releasing { hold, .. }) => *hold,
-        _ => Hold::default(),
+        _ => PipeAttitudeHold::default(),
     }
 }
