@@ -39,7 +39,7 @@ const LEASH: f32 = 1.0;
 
 /// What the pilot wants.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Wish {
+pub struct VelocityCommand {
     /// Forward, right and down along the heading, m/s: within [`SPEED_MAX`] and [`CLIMB_MAX`].
     pub velocity: Vec3,
     /// Clockwise from above, rad/s.
@@ -50,7 +50,7 @@ pub struct Wish {
 
 /// What the inertial sensor says of the vehicle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Felt {
+pub struct BodyMotion {
     /// Body to world.
     pub q: Quat,
     /// Angular rate, rad/s, body.
@@ -113,23 +113,23 @@ pub struct PositionHold {
     course: Course,
     /// Learnt wind, m/s², in the estimate's axes.
     wind: Vec3,
-    jumps: u8,
+    reset_count: u8,
 }
 
 impl PositionHold {
     /// Holds where the vehicle is.
-    pub fn begin(p: &Params, e: &Estimate, felt: &Felt) -> Self {
+    pub fn begin(p: &Params, e: &Estimate, motion: &BodyMotion) -> Self {
         let weight = p.mass * GRAVITY;
         let full = 4.0 * p.thrust_max;
         Self {
             mass: p.mass,
             thrust: (0.4 * weight, scalar::clamp(1.6 * weight, weight, 0.95 * full)),
-            lag: Lag::at(p, tilt(felt.q)),
+            lag: Lag::at(p, tilt(motion.q)),
             height: Height::default(),
             anchor: e.position,
             course: Course::default(),
             wind: Vec3::new(e.disturbance.x, e.disturbance.y, 0.0),
-            jumps: e.jumps,
+            reset_count: e.reset_count,
         }
     }
 
@@ -137,7 +137,7 @@ impl PositionHold {
     pub fn anchor_at(&mut self, e: &Estimate) {
         self.anchor = e.position;
         self.course = Course::default();
-        self.jumps = e.jumps;
+        self.reset_count = e.reset_count;
     }
 
     /// Where the wished velocities have led the point that is held, m, in the estimate's axes; it comes there behind them.
@@ -146,9 +146,16 @@ impl PositionHold {
     }
 
     /// One step of `dt` s; without `known` the position is none, and the sticks tilt.
-    pub fn step(&mut self, e: &Estimate, felt: &Felt, wish: &Wish, known: bool, dt: f32) -> Setpoint {
-        let heading = felt.q.to_euler().2 + e.turn;
-        if e.jumps != self.jumps {
+    pub fn step(
+        &mut self,
+        e: &Estimate,
+        motion: &BodyMotion,
+        wish: &VelocityCommand,
+        known: bool,
+        dt: f32,
+    ) -> Setpoint {
+        let heading = motion.q.to_euler().2 + e.yaw_offset;
+        if e.reset_count != self.reset_count {
             self.anchor_at(e);
         }
         let wished = about_down(wish.velocity, heading);
@@ -156,7 +163,7 @@ impl PositionHold {
         let speed = self.course.speed;
         self.anchor += speed * dt;
         self.leash(e.position);
-        let d = self.disturbance(e, felt.carried, dt);
+        let d = self.disturbance(e, motion.carried, dt);
         let ahead = |v: Vec3| {
             let v = about_down(v, -heading);
             [v.x, v.y]
@@ -171,12 +178,12 @@ impl PositionHold {
                 ..
             } = self.course;
             let course = [asked, turning, gained].map(ahead);
-            self.feedback(p, v, ahead(d), wind, &course, felt)
+            self.feedback(p, v, ahead(d), wind, &course, motion)
         } else {
             core::array::from_fn(|i| at(&wish.lean, i) - at(&wind, i))
         };
         let u = limited(u);
-        self.lag.step(u, tilt(felt.q), tilt_rate(felt.rate), dt);
+        self.lag.step(u, tilt(motion.q), tilt_rate(motion.rate), dt);
         let up = self.height.step(
             &height::State {
                 error: self.anchor.z - e.position.z,
@@ -184,11 +191,11 @@ impl PositionHold {
                 gained: self.course.asked.z,
                 velocity: e.velocity.z,
                 disturbance: e.disturbance.z,
-                landing: felt.carried && wish.velocity.z > 0.0,
+                landing: motion.carried && wish.velocity.z > 0.0,
             },
             dt,
         );
-        self.setpoint(u, up, felt.q, wish.yaw_rate)
+        self.setpoint(u, up, motion.q, wish.yaw_rate)
     }
 
     /// Keeps the held point within reach.
@@ -225,9 +232,9 @@ impl PositionHold {
         d: [f32; 2],
         wind: [f32; 2],
         course: &[[f32; 2]; 3],
-        felt: &Felt,
+        motion: &BodyMotion,
     ) -> [f32; 2] {
-        let (a, rate) = (tilt(felt.q), tilt_rate(felt.rate));
+        let (a, rate) = (tilt(motion.q), tilt_rate(motion.rate));
         let Lag {
             first,
             second,

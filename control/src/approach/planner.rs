@@ -14,13 +14,13 @@ use crate::maths::frames::about_down;
 use crate::maths::hold_timer::HoldTimer;
 use crate::maths::scalar::{self, clamp, clamp_abs};
 use crate::maths::vector::Vec3;
-use crate::navigation::range_hit::Foot;
+use crate::navigation::range_hit::RangeHit;
 use crate::params::Params;
-use crate::position_hold::Wish;
+use crate::position_hold::VelocityCommand;
 
 /// Why a try ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Doubt {
+pub enum ApproachAbort {
     /// No pipe across the whole sweep.
     NoPipe,
     /// Between its ends there is no room.
@@ -59,7 +59,7 @@ pub struct View {
     /// Age of the newest fix or flow, s.
     pub age: f32,
     /// Where the range sees something.
-    pub foot: Foot,
+    pub foot: RangeHit,
     /// Where the pipe is said to be; with it no range is asked.
     pub target: Option<PipeTarget>,
 }
@@ -90,20 +90,20 @@ enum Phase {
 /// lasted, s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Other {
-    doubt: Doubt,
+    doubt: ApproachAbort,
     from: f32,
     seconds: f32,
 }
 
 /// The law and its state.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Approach {
+pub struct ApproachPlanner {
     diameter: f32,
     /// Where the range looks down from, of the centre of mass, m: forward, right, down, as the nose is along the pipe.
     lens: Vec3,
     origin: Vec3,
     heading: f32,
-    jumps: u8,
+    reset_count: u8,
     phase: Phase,
     /// Time in it, s.
     since: f32,
@@ -150,20 +150,20 @@ pub struct Approach {
     slow: f32,
     left: bool,
     /// The pipe is where it is said to be: nothing is searched.
-    given: bool,
+    has_target: bool,
     /// Asked for, m/s.
     speed: Vec3,
 }
 
-impl Approach {
+impl ApproachPlanner {
     /// Begins where the vehicle is, over or beside a pipe along `heading`, rad.
-    pub fn begin(p: &Params, v: &View, heading: f32, jumps: u8) -> Self {
+    pub fn begin(p: &Params, v: &View, heading: f32, reset_count: u8) -> Self {
         let law = Self {
             diameter: p.pipe_diameter,
             lens: p.flow_lens(),
             origin: v.position,
             heading,
-            jumps,
+            reset_count,
             phase: Phase::Search,
             since: 0.0,
             leaves: false,
@@ -193,7 +193,7 @@ impl Approach {
             settled: HoldTimer::default(),
             slow: 0.0,
             left: false,
-            given: false,
+            has_target: false,
             speed: Vec3::ZERO,
         };
         match &v.target {
@@ -203,20 +203,20 @@ impl Approach {
     }
 
     /// Climbs first: another try, or with `leaves` the way off the pipe.
-    pub fn again(p: &Params, v: &View, heading: f32, jumps: u8, leaves: bool) -> Self {
+    pub fn again(p: &Params, v: &View, heading: f32, reset_count: u8, leaves: bool) -> Self {
         Self {
             phase: Phase::Climb,
             leaves,
             returns: true,
             up: if leaves { -HIGH } else { -RISE },
-            ..Self::begin(p, v, heading, jumps)
+            ..Self::begin(p, v, heading, reset_count)
         }
     }
 
     /// Climbs to where it crosses `crown`, the place at which it was last taken to be, and sweeps about it: an escape has
     /// carried the vehicle a metre or two away.
-    pub fn back_to(crown: Vec3, p: &Params, v: &View, heading: f32, jumps: u8) -> Self {
-        let law = Self::again(p, v, heading, jumps, false);
+    pub fn back_to(crown: Vec3, p: &Params, v: &View, heading: f32, reset_count: u8) -> Self {
+        let law = Self::again(p, v, heading, reset_count, false);
         let off = law.local(crown);
         Self {
             up: clamp(off.z - HIGH, -2.0 * HIGH, 0.0),
@@ -233,16 +233,16 @@ impl Approach {
     }
 
     /// Up and away from where the range misleads, to be left there.
-    pub fn cleared(p: &Params, v: &View, heading: f32, jumps: u8) -> Self {
+    pub fn cleared(p: &Params, v: &View, heading: f32, reset_count: u8) -> Self {
         Self {
             up: -CLEAR,
-            ..Self::again(p, v, heading, jumps, true)
+            ..Self::again(p, v, heading, reset_count, true)
         }
     }
 
     /// Another try from the top, over the crown where that is known; what leaves goes on doing so.
-    pub fn retried(&self, p: &Params, v: &View, heading: f32, jumps: u8) -> Self {
-        let again = Self::again(p, v, heading, jumps, self.leaves);
+    pub fn retried(&self, p: &Params, v: &View, heading: f32, reset_count: u8) -> Self {
+        let again = Self::again(p, v, heading, reset_count, self.leaves);
         if self.leaves {
             return again;
         }
@@ -250,7 +250,7 @@ impl Approach {
         let top = if known { self.top } else { self.edges.top() };
         let over = self.origin.z + top - HIGH - v.position.z;
         Self {
-            given: self.given,
+            has_target: self.has_target,
             steps: self.steps,
             farthest: self.farthest,
             up: clamp(over, -2.0 * HIGH, 0.0),
@@ -267,7 +267,7 @@ impl Approach {
     pub fn near_crown(&self, v: &View) -> bool {
         let at = self.local(v.position);
         let over = (at.y - self.crown).abs() < NEAR_OFF;
-        self.phase == Phase::Descend && !self.given && over && self.clearance(at) < STEADY
+        self.phase == Phase::Descend && !self.has_target && over && self.clearance(at) < STEADY
     }
 
     /// It is on its way up.
@@ -292,7 +292,7 @@ impl Approach {
         let off = match (self.phase, self.met) {
             (Phase::Search, Some(met)) => here - met,
             // Over something from the beginning: on, as the sweep goes.
-            (Phase::Search, None) if self.origin.z + self.edges.level() < -RAISED => self.side,
+            (Phase::Search, None) if self.origin.z + self.edges.surface_depth() < -RAISED => self.side,
             (Phase::Search, None) => return None,
             _ => here - self.crown,
         };
@@ -301,24 +301,24 @@ impl Approach {
     }
 
     /// Origin of the estimate's axes has jumped since the beginning.
-    pub fn jumped(&self, jumps: u8) -> bool {
-        self.jumps != jumps
+    pub fn jumped(&self, reset_count: u8) -> bool {
+        self.reset_count != reset_count
     }
 
     /// One step of `dt` s: what to ask for.
     ///
     /// # Errors
     /// Why the try ends.
-    pub fn step(&mut self, v: &View, dt: f32) -> Result<Wish, Doubt> {
+    pub fn step(&mut self, v: &View, dt: f32) -> Result<VelocityCommand, ApproachAbort> {
         self.since += dt;
         let asks = !self.leaves && self.phase != Phase::Commit;
-        if asks && self.given {
+        if asks && self.has_target {
             self.follow(v, dt)?;
         } else if asks && v.foot.age > RANGE_AGE {
-            return Err(Doubt::RangeStale);
+            return Err(ApproachAbort::RangeStale);
         }
-        let before = self.edges.level();
-        let edge = self.look(v).filter(|_| !self.given);
+        let before = self.edges.surface_depth();
+        let edge = self.look(v).filter(|_| !self.has_target);
         let at = self.local(v.position);
         if let Some(edge) = edge {
             self.other = self.other.filter(|other| !self.at_known(other.from));
@@ -356,7 +356,7 @@ impl Approach {
             wanted.z,
         );
         let off = scalar::wrap_pi(self.heading - v.heading);
-        Ok(Wish {
+        Ok(VelocityCommand {
             velocity: about_down(self.speed, -off),
             yaw_rate: clamp_abs(HEADING_GAIN * off, YAW_RATE_MAX),
             lean: [0.0; 2],
@@ -374,7 +374,7 @@ impl Approach {
         (self.settled, self.lost) = Default::default();
     }
 
-    fn late(&self, limit: f32, doubt: Doubt) -> Result<(), Doubt> {
+    fn late(&self, limit: f32, doubt: ApproachAbort) -> Result<(), ApproachAbort> {
         if self.since > limit { Err(doubt) } else { Ok(()) }
     }
 
@@ -396,36 +396,36 @@ impl Approach {
     /// What is below is `before`, m down, again, or the pipe, or the ground at its sides.
     fn at_known(&self, before: f32) -> bool {
         let [onto, off] = self.steps.map(|step| self.top + step);
-        let near = |known: f32| (self.edges.level() - known).abs() < 0.5 * self.diameter;
+        let near = |known: f32| (self.edges.surface_depth() - known).abs() < 0.5 * self.diameter;
         self.sees_pipe() || [before, onto, off].into_iter().any(near)
     }
 
     /// Compares the step at `edge`, seen from `at`, with those by which the pipe was crossed first.
-    fn compare(&self, edge: Edge, at: Vec3) -> Result<(), Doubt> {
+    fn compare(&self, edge: Edge, at: Vec3) -> Result<(), ApproachAbort> {
         let [onto, off] = self.steps;
         if !(onto + off).is_finite() {
             return Ok(());
         }
         let most = onto.max(off);
         let falls = matches!(edge, Edge::Off(_));
-        let from_crown = |step| self.edges.level() - step - self.edges.top() < 0.5 * self.diameter;
+        let from_crown = |step| self.edges.surface_depth() - step - self.edges.top() < 0.5 * self.diameter;
         match self.edges.height() {
-            Some(step) if step > HIGHER * most + 0.5 * self.diameter => Err(Doubt::RangeLong),
+            Some(step) if step > HIGHER * most + 0.5 * self.diameter => Err(ApproachAbort::RangeLong),
             Some(step) if falls && from_crown(step) && step < LOWEST * onto.min(off) => {
-                Err(Doubt::RangeMisfit)
+                Err(ApproachAbort::RangeMisfit)
             }
             // From as high what is below was within reach.
-            None if falls && self.edges.top() + most - at.z < self.farthest => Err(Doubt::RangeLong),
+            None if falls && self.edges.top() + most - at.z < self.farthest => Err(ApproachAbort::RangeLong),
             _ => Ok(()),
         }
     }
 
     /// Velocity from the held point to `target`, level at most `speed` and vertically at most `climb`, m/s.
-    fn way(held: Vec3, target: Vec3, speed: f32, climb: f32) -> Vec3 {
+    fn velocity_towards(held: Vec3, target: Vec3, speed: f32, climb: f32) -> Vec3 {
         let off = target - held;
         Vec3::new(
-            level(off.x, speed),
-            level(off.y, speed),
+            braking_speed(off.x, speed),
+            braking_speed(off.y, speed),
             clamp_abs(HEIGHT_GAIN * off.z, climb),
         )
     }
@@ -434,9 +434,13 @@ impl Approach {
         let target = Vec3::new(0.0, 0.0, self.up);
         if (at.z - self.up).abs() < OVER || self.since > WAY_TIME {
             self.left = self.leaves;
-            self.enter(if self.given { Phase::Over } else { Phase::Search });
+            self.enter(if self.has_target {
+                Phase::Over
+            } else {
+                Phase::Search
+            });
         }
-        Self::way(held, target, CROSS_SPEED, CLIMB_SPEED)
+        Self::velocity_towards(held, target, CROSS_SPEED, CLIMB_SPEED)
     }
 
     /// The middle of the pipe, right, m, where this `edge` ends a crossing.
@@ -468,8 +472,8 @@ impl Approach {
         }
     }
 
-    fn search(&mut self, edge: Option<Edge>, held: Vec3) -> Result<Vec3, Doubt> {
-        self.late(SEARCH_TIME, Doubt::NoPipe)?;
+    fn search(&mut self, edge: Option<Edge>, held: Vec3) -> Result<Vec3, ApproachAbort> {
+        self.late(SEARCH_TIME, ApproachAbort::NoPipe)?;
         self.met = match edge {
             Some(Edge::Onto(at)) => Some(at.y + self.side * self.half),
             Some(Edge::Off(at)) => Some(at.y - self.side * self.half),
@@ -488,10 +492,10 @@ impl Approach {
             self.reach += if self.side < 0.0 { SWEEP } else { 0.0 };
             self.side = -self.side;
             if self.reach > SWEEP_MAX {
-                return Err(Doubt::NoPipe);
+                return Err(ApproachAbort::NoPipe);
             }
         }
-        Ok(Self::way(held, target, SWEEP_SPEED, 0.0))
+        Ok(Self::velocity_towards(held, target, SWEEP_SPEED, 0.0))
     }
 
     /// The place over the crown, `height` m above it.
@@ -499,12 +503,12 @@ impl Approach {
         Vec3::new(self.along, self.crown, self.top - height)
     }
 
-    fn over(&mut self, at: Vec3, held: Vec3, askew: f32) -> Result<Vec3, Doubt> {
-        self.late(WAY_TIME, Doubt::NotCentred)?;
+    fn over(&mut self, at: Vec3, held: Vec3, askew: f32) -> Result<Vec3, ApproachAbort> {
+        self.late(WAY_TIME, ApproachAbort::NotCentred)?;
         let target = self.spot(LOW);
         let off = target - at;
         if off.y.abs() < OVER && off.z.abs() < OVER && self.since > OVER_TIME {
-            if self.given {
+            if self.has_target {
                 if off.x.abs() < OVER && askew.abs() < ALONG {
                     self.enter(Phase::Centre);
                 }
@@ -515,7 +519,7 @@ impl Approach {
                 self.turn_across();
             }
         }
-        Ok(Self::way(held, target, CROSS_SPEED, DESCENT))
+        Ok(Self::velocity_towards(held, target, CROSS_SPEED, DESCENT))
     }
 
     /// The crossings begin.
@@ -526,11 +530,11 @@ impl Approach {
 
     /// The range sees the pipe's back.
     fn sees_pipe(&self) -> bool {
-        self.given || (self.edges.level() - self.top).abs() < 0.5 * self.diameter
+        self.has_target || (self.edges.surface_depth() - self.top).abs() < 0.5 * self.diameter
     }
 
-    fn look_along(&mut self, edge: Option<Edge>, held: Vec3, dt: f32) -> Result<Vec3, Doubt> {
-        self.late(WAY_TIME, Doubt::NotCentred)?;
+    fn look_along(&mut self, edge: Option<Edge>, held: Vec3, dt: f32) -> Result<Vec3, ApproachAbort> {
+        self.late(WAY_TIME, ApproachAbort::NotCentred)?;
         let fore = self.phase == Phase::Fore;
         let middle = self.middle.x;
         let goal = middle + if fore { LOOK } else { -LOOK };
@@ -561,21 +565,21 @@ impl Approach {
                 let most = front.map_or(middle + LOOK, |end| end - END);
                 let least = rear.map_or(middle - LOOK, |end| end + END);
                 if most < least {
-                    return Err(Doubt::TooShort);
+                    return Err(ApproachAbort::TooShort);
                 }
                 self.along = clamp(middle, least, most);
                 self.looked = true;
                 self.turn_across();
             }
         }
-        Ok(Self::way(held, target, CROSS_SPEED, DESCENT))
+        Ok(Self::velocity_towards(held, target, CROSS_SPEED, DESCENT))
     }
 
-    fn cross(&mut self, edge: Option<Edge>, held: Vec3) -> Result<Vec3, Doubt> {
-        self.late(2.0 * WAY_TIME, Doubt::NotCentred)?;
+    fn cross(&mut self, edge: Option<Edge>, held: Vec3) -> Result<Vec3, ApproachAbort> {
+        self.late(2.0 * WAY_TIME, ApproachAbort::NotCentred)?;
         if let Some(middle) = self.crossed(edge) {
             if self.before.is_some_and(|before| (before - middle).abs() > AGREE) {
-                return Err(Doubt::NotCentred);
+                return Err(ApproachAbort::NotCentred);
             }
             self.before = Some(middle);
             self.crown = middle;
@@ -587,17 +591,17 @@ impl Approach {
             self.legs = self.legs.saturating_add(1);
             if self.legs >= LEGS {
                 if self.before.is_none() {
-                    return Err(Doubt::PipeLost);
+                    return Err(ApproachAbort::PipeLost);
                 }
                 self.crossed = true;
                 self.enter(if self.looked { Phase::Centre } else { Phase::Over });
             }
         }
-        Ok(Self::way(held, target, CROSS_SPEED, DESCENT))
+        Ok(Self::velocity_towards(held, target, CROSS_SPEED, DESCENT))
     }
 
-    fn centre(&mut self, edge: Option<Edge>, at: Vec3, held: Vec3) -> Result<Vec3, Doubt> {
-        self.late(CENTRE_TIME, Doubt::NotCentred)?;
+    fn centre(&mut self, edge: Option<Edge>, at: Vec3, held: Vec3) -> Result<Vec3, ApproachAbort> {
+        self.late(CENTRE_TIME, ApproachAbort::NotCentred)?;
         match edge {
             // From the side at which the last crossing ended: what has drifted since shows.
             Some(Edge::Onto(onto)) => {
@@ -608,7 +612,7 @@ impl Approach {
                 };
                 let middle = onto.y + inwards;
                 if (middle - self.crown).abs() > AGREE {
-                    return Err(Doubt::NotCentred);
+                    return Err(ApproachAbort::NotCentred);
                 }
                 self.crown += NEWER * (middle - self.crown);
             }
@@ -619,7 +623,7 @@ impl Approach {
         if (at.y - self.crown).abs() < NEAR_OFF && self.sees_pipe() {
             self.enter(Phase::Descend);
         }
-        Ok(Self::way(held, self.spot(LOW), CROSS_SPEED, DESCENT))
+        Ok(Self::velocity_towards(held, self.spot(LOW), CROSS_SPEED, DESCENT))
     }
 
     fn descend(
@@ -628,10 +632,10 @@ impl Approach {
         (at, velocity, held): (Vec3, Vec3, Vec3),
         age: f32,
         dt: f32,
-    ) -> Result<Vec3, Doubt> {
-        self.late(GATE_WAIT, Doubt::NotCentred)?;
+    ) -> Result<Vec3, ApproachAbort> {
+        self.late(GATE_WAIT, ApproachAbort::NotCentred)?;
         if matches!(edge, Some(Edge::Off(_))) || !self.sees_pipe() {
-            return Err(Doubt::PipeLost);
+            return Err(ApproachAbort::PipeLost);
         }
         let off = at.y - self.crown;
         let range = self.clearance(at);
@@ -649,10 +653,10 @@ impl Approach {
         if self.settled.step(at_gate && over && !blind, dt) >= GATE_TIME {
             self.enter(Phase::Commit);
         }
-        let mut way = Self::way(held, self.spot(LOW), CORRECT_SPEED, DESCENT);
+        let mut way = Self::velocity_towards(held, self.spot(LOW), CORRECT_SPEED, DESCENT);
         let waits = off.abs() > NEAR_OFF;
         // Flow sees again from a little higher. A pose comes back or not: what drifts must not do so beside the pipe.
-        let (goal, back) = match (blind, self.given) {
+        let (goal, back) = match (blind, self.has_target) {
             (false, _) => (GATE, BACK_SPEED),
             (true, false) => (SEEING, BACK_SPEED),
             (true, true) => (LOW, CLIMB_SPEED),
@@ -666,19 +670,19 @@ impl Approach {
         Ok(way)
     }
 
-    fn commit(&mut self, at: Vec3, held: Vec3) -> Result<Vec3, Doubt> {
-        self.late(TOUCH_WAIT, Doubt::NotTouched)?;
+    fn commit(&mut self, at: Vec3, held: Vec3) -> Result<Vec3, ApproachAbort> {
+        self.late(TOUCH_WAIT, ApproachAbort::NotTouched)?;
         if (at.y - self.crown).abs() > ASTRAY {
-            return Err(Doubt::NotCentred);
+            return Err(ApproachAbort::NotCentred);
         }
-        let mut way = Self::way(held, self.spot(LOW), CORRECT_SPEED, DESCENT);
+        let mut way = Self::velocity_towards(held, self.spot(LOW), CORRECT_SPEED, DESCENT);
         way.z = LAST_SPEED;
         Ok(way)
     }
 }
 
 /// Speed towards what is `off` m away that a stop at [`SLEW`] still ends there, at most `speed`, m/s.
-fn level(off: f32, speed: f32) -> f32 {
+fn braking_speed(off: f32, speed: f32) -> f32 {
     let most = 1.6 * SLEW * off.abs();
     let braked = most * scalar::inv_sqrt(most);
     clamp(braked, 0.0, speed) * if off < 0.0 { -1.0 } else { 1.0 }

@@ -22,7 +22,7 @@ pub enum Edge {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Edges {
     /// Depth of the present surface, m; `None` before the first range.
-    level: Option<f32>,
+    surface_depth: Option<f32>,
     /// Highest of the one that was come onto last, m.
     top: f32,
     last: Vec3,
@@ -35,25 +35,25 @@ pub struct Edges {
 impl Edges {
     /// Takes the next foot of the beam.
     pub fn step(&mut self, foot: Vec3) -> Option<Edge> {
-        let Some(level) = self.level else {
-            (self.level, self.top, self.last) = (Some(foot.z), foot.z, foot);
+        let Some(surface_depth) = self.surface_depth else {
+            (self.surface_depth, self.top, self.last) = (Some(foot.z), foot.z, foot);
             return None;
         };
-        let off = foot.z - level;
+        let off = foot.z - surface_depth;
         if off.abs() < STEP {
-            let level = level + FOLLOW * off;
-            (self.level, self.last, self.other) = (Some(level), foot, None);
-            self.top = self.top.min(level);
+            let surface_depth = surface_depth + FOLLOW * off;
+            (self.surface_depth, self.last, self.other) = (Some(surface_depth), foot, None);
+            self.top = self.top.min(surface_depth);
             return None;
         }
         let other = self.other.replace(foot)?;
-        if (other.z - level) * off < 0.0 || (other.z - foot.z).abs() > STEP {
+        if (other.z - surface_depth) * off < 0.0 || (other.z - foot.z).abs() > STEP {
             return None;
         }
         // Of the two surfaces' feet the higher one's: a tilted beam meets the ground a hand's breadth beside the edge.
         let last = self.last;
         self.height = off.abs();
-        (self.level, self.last, self.other) = (Some(foot.z), foot, None);
+        (self.surface_depth, self.last, self.other) = (Some(foot.z), foot, None);
         if off < 0.0 {
             self.top = foot.z;
             Some(Edge::Onto(other))
@@ -68,8 +68,8 @@ impl Edges {
     }
 
     /// Depth of the present surface, m.
-    pub fn level(&self) -> f32 {
-        self.level.unwrap_or(BEYOND)
+    pub fn surface_depth(&self) -> f32 {
+        self.surface_depth.unwrap_or(BEYOND)
     }
 
     /// Height of the last step, m; `None` where nothing was within reach beside it.

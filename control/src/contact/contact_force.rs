@@ -1,6 +1,6 @@
 //! Evidence from the inertial sensor that something carries the vehicle.
 //!
-//! [`Support::step`] runs at 100 Hz in the mode logic. Forces are along the body's thrust axis (N). A missed step
+//! [`ContactForce::step`] runs at 100 Hz in the mode logic. Forces are along the body's thrust axis (N). A missed step
 //! delays the evidence; 50 ms without an inertial sample end it.
 //!
 //! In free air, mass times specific force along the thrust axis is the thrust; on the ground or the pipe it is about
@@ -43,7 +43,7 @@ const SINK_MAX: f32 = 10.0;
 
 /// Measurements of one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Felt {
+pub struct InertialSample {
     /// Specific force along body z, m/s²; -9.81 at rest.
     pub specific_force_z: f32,
     /// Acceleration along world down, m/s².
@@ -56,7 +56,7 @@ pub struct Felt {
 
 /// The support filter.
 #[derive(Clone, Copy, Debug)]
-pub struct Support {
+pub struct ContactForce {
     mass: f32,
     motor_tau: f32,
     lift: f32,
@@ -69,7 +69,7 @@ pub struct Support {
     resting: bool,
 }
 
-impl Support {
+impl ContactForce {
     /// No evidence yet.
     pub fn new(params: &Params) -> Self {
         Self {
@@ -87,28 +87,28 @@ impl Support {
     }
 
     /// One step of `dt` s; `None` without a fresh inertial sample.
-    pub fn step(&mut self, felt: Option<Felt>, dt: f32) {
-        let felt = felt.filter(|f| {
+    pub fn step(&mut self, sample: Option<InertialSample>, dt: f32) {
+        let sample = sample.filter(|f| {
             f.specific_force_z.is_finite() && f.down.is_finite() && f.rate.is_finite() && f.lift.is_finite()
         });
-        let silent = self.silent.step(felt.is_none(), dt) >= SILENCE_MAX;
-        let Some(felt) = felt else {
+        let silent = self.silent.step(sample.is_none(), dt) >= SILENCE_MAX;
+        let Some(sample) = sample else {
             if silent {
                 (self.pressed, self.unloaded, self.full) = Default::default();
                 self.resting = false;
             }
             return;
         };
-        self.lift += (felt.lift - self.lift) * dt / (dt + self.motor_tau);
-        let support = -self.mass * felt.specific_force_z - self.lift;
-        self.force += (support - self.force) * dt / (dt + 1.0 / (2.0 * PI * CUTOFF));
+        self.lift += (sample.lift - self.lift) * dt / (dt + self.motor_tau);
+        let contact_force = -self.mass * sample.specific_force_z - self.lift;
+        self.force += (contact_force - self.force) * dt / (dt + 1.0 / (2.0 * PI * CUTOFF));
         self.sink = clamp(
-            self.sink + (felt.down - self.sink / SINK_MEMORY) * dt,
+            self.sink + (sample.down - self.sink / SINK_MEMORY) * dt,
             -SINK_MAX,
             SINK_MAX,
         );
 
-        let still = felt.rate < RATE_MAX;
+        let still = sample.rate < RATE_MAX;
         let pressed = self.pressed.step(still && self.force > RESTING_FORCE, dt);
         let unloaded = self.unloaded.step(self.force < LEAVING_FORCE, dt);
         self.full
@@ -161,11 +161,11 @@ impl Support {
 mod tests {
     use super::*;
 
-    fn run(s: &mut Support, specific_force_z: f32, lift: f32, seconds: f32) {
+    fn run(s: &mut ContactForce, specific_force_z: f32, lift: f32, seconds: f32) {
         for _ in 0..(seconds * 100.0) as u32 {
             let down = GRAVITY + specific_force_z;
             s.step(
-                Some(Felt {
+                Some(InertialSample {
                     specific_force_z,
                     down,
                     rate: 0.0,
@@ -179,7 +179,7 @@ mod tests {
     #[test]
     fn free_air_gives_no_support_at_any_thrust() {
         let p = Params::default();
-        let mut s = Support::new(&p);
+        let mut s = ContactForce::new(&p);
         for share in [0.0, 0.3, 0.6, 1.0] {
             let lift = share * 4.0 * p.thrust_max;
             run(&mut s, -lift / p.mass, lift, 2.0);
@@ -194,7 +194,7 @@ mod tests {
     #[test]
     fn the_pipe_carries_what_the_rotors_do_not() {
         let p = Params::default();
-        let mut s = Support::new(&p);
+        let mut s = ContactForce::new(&p);
         run(&mut s, -GRAVITY, 10.0, 0.25);
         assert!(!s.resting(), "too soon");
         run(&mut s, -GRAVITY, 10.0, 2.0);
@@ -213,13 +213,13 @@ mod tests {
     #[test]
     fn a_bump_a_tumble_and_a_silent_sensor_are_no_rest() {
         let p = Params::default();
-        let mut s = Support::new(&p);
+        let mut s = ContactForce::new(&p);
         run(&mut s, -2.0 * GRAVITY, 17.7, 0.1);
         run(&mut s, -GRAVITY, 17.7, 0.5);
         assert!(!s.resting(), "a bump of 0.1 s");
         for _ in 0..300 {
             s.step(
-                Some(Felt {
+                Some(InertialSample {
                     specific_force_z: -GRAVITY,
                     down: 0.0,
                     rate: 2.0,
@@ -238,7 +238,7 @@ mod tests {
         }
         assert!(!s.resting() && !s.grounded());
         s.step(
-            Some(Felt {
+            Some(InertialSample {
                 specific_force_z: f32::NAN,
                 down: 0.0,
                 rate: 0.0,
@@ -252,7 +252,7 @@ mod tests {
     #[test]
     fn the_support_follows_with_five_hertz() {
         // 32 ms: a step of 10 ms goes 0.01/(0.01 + 0.0318) = 0.239 of the way, three of them 0.559 of 17.701 N.
-        let mut s = Support::new(&Params::default());
+        let mut s = ContactForce::new(&Params::default());
         run(&mut s, -GRAVITY, 0.0, 0.031);
         assert!((s.force() - 9.90).abs() < 0.03, "{}", s.force());
     }
@@ -260,14 +260,14 @@ mod tests {
     #[test]
     fn what_no_longer_rests_must_not_rest_for_as_long_as_what_rests_must() {
         let p = Params::default();
-        let mut s = Support::new(&p);
+        let mut s = ContactForce::new(&p);
         run(&mut s, -GRAVITY, 5.0, 1.0);
         assert!(s.resting());
         // 17.701 N of weight less 15.7 N: 2.0 N neither begins nor ends resting.
         run(&mut s, -GRAVITY, 15.7, 5.0);
         assert!((s.force() - 2.0).abs() < 0.01 && s.resting(), "{}", s.force());
         // A bounce of the soft arms: 0.2 N for less than the 0.3 s below 1.5 N. Motor and filter take 0.08 s to return.
-        let bounce = |s: &mut Support, steps: i32| {
+        let bounce = |s: &mut ContactForce, steps: i32| {
             let mut below = 0;
             while below < steps {
                 run(s, -GRAVITY, 17.5, 0.011);
@@ -289,11 +289,11 @@ mod tests {
     #[test]
     fn a_tumble_under_full_weight_is_not_the_ground() {
         let p = Params::default();
-        let mut s = Support::new(&p);
+        let mut s = ContactForce::new(&p);
         let mut turn = |rate, seconds: f32| {
             for _ in 0..(seconds * 100.0) as u32 {
                 s.step(
-                    Some(Felt {
+                    Some(InertialSample {
                         specific_force_z: -GRAVITY,
                         down: 0.0,
                         rate,
@@ -313,7 +313,7 @@ mod tests {
     #[test]
     fn the_sink_rate_follows_a_short_fall() {
         let p = Params::default();
-        let mut s = Support::new(&p);
+        let mut s = ContactForce::new(&p);
         run(&mut s, -0.9 * GRAVITY, 0.9 * 17.7, 1.0);
         assert!(
             (s.sink() - 0.957).abs() < 0.02,

@@ -3,7 +3,7 @@
 //! Upright beside the crown the vehicle stands on one pad, and the rotors hold what of the weight they do not carry: the offset
 //! is y = -M / (W - T), positive to the right of the crown.
 
-use crate::contact::contact_force::Support;
+use crate::contact::contact_force::ContactForce;
 use crate::maths::scalar::clamp;
 
 /// Time constant of the offset, s.
@@ -25,14 +25,14 @@ pub enum CrownSide {
 
 /// Offset of the vehicle from the crown, m, right positive.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Crown(f32);
+pub struct CrownOffset(f32);
 
-impl Crown {
+impl CrownOffset {
     /// One step of `dt` s at the rotors' `lift` along body -z, N, and `roll_moment`, right side down positive, N m.
-    pub fn step(&mut self, lift: f32, roll_moment: f32, support: &Support, dt: f32) {
-        let load = support.weight() - lift;
+    pub fn step(&mut self, lift: f32, roll_moment: f32, contact_force: &ContactForce, dt: f32) {
+        let load = contact_force.weight() - lift;
         let offset = -roll_moment / load;
-        if !support.resting() || load < LOAD_MIN || !offset.is_finite() {
+        if !contact_force.resting() || load < LOAD_MIN || !offset.is_finite() {
             self.0 = 0.0;
             return;
         }

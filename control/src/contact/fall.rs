@@ -2,7 +2,7 @@
 //!
 //! The sink rate since take-off drifts with the accelerometer, so only what was gained lately counts.
 
-use crate::contact::contact_force::{RESTING_FORCE, Support};
+use crate::contact::contact_force::{ContactForce, RESTING_FORCE};
 use crate::maths::scalar::clamp;
 
 /// Decay time of the gained speed, s: well beyond a fall, and 10 mg of bias come to 5 cm/s.
@@ -22,10 +22,10 @@ pub struct Fall {
 
 impl Fall {
     /// One step of `dt` s at `down` m/s² along world down.
-    pub fn step(&mut self, down: f32, support: &Support, dt: f32) {
+    pub fn step(&mut self, down: f32, contact_force: &ContactForce, dt: f32) {
         let gained = self.speed + (down - self.speed / MEMORY) * dt;
         self.speed = clamp(gained, -SPEED_MAX, SPEED_MAX);
-        self.carried = support.force() > RESTING_FORCE;
+        self.carried = contact_force.force() > RESTING_FORCE;
     }
 
     /// Downward speed gained lately, m/s, within ±10.

@@ -18,12 +18,12 @@ const HEIGHT: f32 = 0.04;
 
 /// The seat on the pipe that the parameters describe.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Seat {
+pub struct FrictionLimit {
     /// K of the module's text.
     slope: f32,
 }
 
-impl Seat {
+impl FrictionLimit {
     /// From friction and diameter.
     pub fn from_params(p: &Params) -> Self {
         let radius = clamp(0.5 * p.pipe_diameter, 1.5 * PAD, 10.0);
@@ -47,8 +47,8 @@ mod tests {
     use super::*;
     use crate::maths::scalar::deg;
 
-    fn seat(diameter: f32, friction: f32) -> Seat {
-        Seat::from_params(&Params {
+    fn friction_limit(diameter: f32, friction: f32) -> FrictionLimit {
+        FrictionLimit::from_params(&Params {
             pipe_diameter: diameter,
             pipe_friction: friction,
             ..Params::default()
@@ -56,8 +56,8 @@ mod tests {
     }
 
     /// Largest lean that is held, °.
-    fn largest(seat: Seat, share: f32) -> f32 {
-        let held = (0..900).take_while(|&i| seat.holds(deg(0.1 * i as f32), share));
+    fn largest(friction_limit: FrictionLimit, share: f32) -> f32 {
+        let held = (0..900).take_while(|&i| friction_limit.holds(deg(0.1 * i as f32), share));
         0.1 * held.count() as f32 - 0.1
     }
 
@@ -72,7 +72,7 @@ mod tests {
             (0.2, 0.6, 0.0, 53.0, 135.4),
             (0.4, 0.6, 0.0, 104.0, 237.7),
         ] {
-            let got = largest(seat(diameter, friction), share);
+            let got = largest(friction_limit(diameter, friction), share);
             let wanted = (beside / lever as f32).asin().to_degrees();
             assert!(
                 (got - wanted).abs() < 0.5,
@@ -83,15 +83,15 @@ mod tests {
 
     #[test]
     fn a_vehicle_that_hangs_on_its_rotors_is_held_by_nothing() {
-        assert!(!seat(0.3, 0.6).holds(0.0, 1.1));
-        assert!(seat(0.3, 0.6).holds(0.0, 0.9));
-        assert!(!seat(0.3, 0.6).holds(f32::INFINITY, 0.0));
+        assert!(!friction_limit(0.3, 0.6).holds(0.0, 1.1));
+        assert!(friction_limit(0.3, 0.6).holds(0.0, 0.9));
+        assert!(!friction_limit(0.3, 0.6).holds(f32::INFINITY, 0.0));
     }
 
     #[test]
     fn parameters_at_their_ends_give_a_limit() {
         for (diameter, friction) in [(0.0, 0.0), (1e6, 1e6), (0.05, 0.1)] {
-            let limit = largest(seat(diameter, friction), 0.0);
+            let limit = largest(friction_limit(diameter, friction), 0.0);
             assert!((0.0..89.0).contains(&limit), "{limit}");
         }
     }

@@ -7,8 +7,8 @@
 //! slope, and so does the heading, of which nothing else is known.
 
 use crate::attitude::motion::Motion;
-use crate::contact::contact_force::{LEAVING_FORCE, RESTING_FORCE, Support};
-use crate::contact::friction_limit::Seat;
+use crate::contact::contact_force::{ContactForce, LEAVING_FORCE, RESTING_FORCE};
+use crate::contact::friction_limit::FrictionLimit;
 use crate::maths::hold_timer::HoldTimer;
 use crate::maths::scalar::{GRAVITY, deg, sqrt, wrap_pi};
 use crate::params::Params;
@@ -47,7 +47,7 @@ const FALL_SHARE: f32 = 0.8;
 
 #[derive(Clone, Copy, Debug)]
 pub struct Lean {
-    seat: Seat,
+    friction_limit: FrictionLimit,
     /// Share of the weight on the rotors while the arms close, and at least while they open.
     closing_share: f32,
     release_share: f32,
@@ -56,7 +56,7 @@ pub struct Lean {
     /// Last known turn about the pipe, rad, at least 0.
     lean: f32,
     /// Least lean since the arms began to close or to let go, rad.
-    seated: f32,
+    lean_at_contact: f32,
     creeping: HoldTimer,
     giving: HoldTimer,
     sliding: HoldTimer,
@@ -70,12 +70,12 @@ pub struct Lean {
 impl Lean {
     pub fn new(p: &Params) -> Self {
         Self {
-            seat: Seat::from_params(p),
+            friction_limit: FrictionLimit::from_params(p),
             closing_share: p.perch_lift,
             release_share: release_thrust(p) / (p.mass * GRAVITY),
             before: None,
             lean: 0.0,
-            seated: 0.0,
+            lean_at_contact: 0.0,
             creeping: HoldTimer::default(),
             giving: HoldTimer::default(),
             sliding: HoldTimer::default(),
@@ -87,12 +87,12 @@ impl Lean {
     }
 
     /// One step of `dt` s with the rotors' collective (N).
-    pub fn step(&mut self, motion: Option<Motion>, support: &Support, collective: f32, dt: f32) {
-        self.follow(motion, collective / support.weight(), dt);
-        let idle = support.force() < LEAVING_FORCE;
-        let low = collective < FALL_SHARE * support.weight();
+    pub fn step(&mut self, motion: Option<Motion>, contact_force: &ContactForce, collective: f32, dt: f32) {
+        self.follow(motion, collective / contact_force.weight(), dt);
+        let idle = contact_force.force() < LEAVING_FORCE;
+        let low = collective < FALL_SHARE * contact_force.weight();
         self.falling.step(idle && low, dt);
-        self.apart.step(support.force() <= RESTING_FORCE, dt);
+        self.apart.step(contact_force.force() <= RESTING_FORCE, dt);
     }
 
     fn follow(&mut self, motion: Option<Motion>, share: f32, dt: f32) {
@@ -113,12 +113,12 @@ impl Lean {
         // Body rates are those of roll, pitch and yaw near enough for a growth.
         let outward = (roll * motion.rate.x + nod * motion.rate.y) / lean.max(LEAN_MIN);
         self.lean = lean;
-        let grows = outward > GROWING_RATE && !self.seat.holds(lean, share);
+        let grows = outward > GROWING_RATE && !self.friction_limit.holds(lean, share);
         self.sliding.step(lean > HOPELESS_LEAN || grows, dt);
-        self.seated = lean.min(self.seated);
-        let creeps = lean > self.seated + CREEP && outward > CREEP_RATE;
+        self.lean_at_contact = lean.min(self.lean_at_contact);
+        let creeps = lean > self.lean_at_contact + CREEP && outward > CREEP_RATE;
         self.creeping.step(creeps, dt);
-        let gives = lean > self.seated + GIVEN && outward > CREEP_RATE;
+        let gives = lean > self.lean_at_contact + GIVEN && outward > CREEP_RATE;
         self.giving.step(gives, dt);
         let twists =
             twist > TWIST && motion.rate.z > TWIST_RATE || twist < -TWIST && motion.rate.z < -TWIST_RATE;
@@ -129,12 +129,12 @@ impl Lean {
 
     /// Friction holds the vehicle while the arms close.
     pub fn may_close(&self) -> bool {
-        self.seat.holds(self.lean, self.closing_share)
+        self.friction_limit.holds(self.lean, self.closing_share)
     }
 
     /// Friction holds the vehicle once the rotors stand.
     pub fn may_stay(&self) -> bool {
-        self.seat.holds(self.lean, 0.0)
+        self.friction_limit.holds(self.lean, 0.0)
     }
 
     /// No seat holds such a lean while the arms close.
@@ -158,8 +158,8 @@ impl Lean {
     }
 
     /// The arms begin to close, or to let go, here.
-    pub fn sit(&mut self) {
-        self.seated = self.lean;
+    pub fn capture_lean(&mut self) {
+        self.lean_at_contact = self.lean;
     }
 
     /// The lean has grown since the arms began to close, and still does: less friction than the parameter's.
@@ -174,7 +174,7 @@ impl Lean {
 
     /// Friction does not hold the vehicle while the arms let go: the rotors must lift it off.
     pub fn lifts_off(&self) -> bool {
-        !self.seat.holds(self.lean, self.release_share)
+        !self.friction_limit.holds(self.lean, self.release_share)
     }
 
     pub fn too_far_to_release(&self) -> bool {

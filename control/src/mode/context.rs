@@ -1,25 +1,25 @@
 //! What outlives a state: parameters, the pilot's switches, evidence of support and lean, dangers, the collective.
 
 use super::inputs::Inputs;
-use super::inputs::auto_perch::ByItself;
+use super::inputs::auto_perch::AutoPerch;
 use super::inputs::bench::Bench;
 use super::inputs::dangers::Dangers;
 use super::inputs::remote::{self, Remote};
 use super::reason::Reason;
 use super::shared::collective::Collective;
-use super::shared::ground_probe::Probe;
+use super::shared::ground_probe::GroundProbe;
 use super::shared::on_pipe::held;
 use super::shared::power_up_grip::PowerUpGripCheck;
 use crate::arming::{ArmingInhibit, ArmingInhibits, Checks, Gesture, GestureWatch};
 use crate::chain::setpoint::ClampCommand;
-use crate::contact::contact_force::{Felt, Support};
-use crate::contact::crown_offset::{Crown, CrownSide};
+use crate::contact::contact_force::{ContactForce, InertialSample};
+use crate::contact::crown_offset::{CrownOffset, CrownSide};
 use crate::contact::fall::Fall;
 use crate::contact::lean::Lean;
 use crate::gripper::retained_grip::GripMemory;
 use crate::maths::hold_timer::HoldTimer;
 use crate::maths::scalar::clamp;
-use crate::navigation::vertical_fallback::Rise;
+use crate::navigation::vertical_fallback::VerticalFallback;
 use crate::params::Params;
 use crate::pilot::rc::Sticks;
 use crate::pilot::remote::RemoteOrder;
@@ -67,7 +67,7 @@ pub struct Context {
     pub params: Params,
     /// Time in this mode, s.
     pub since: f32,
-    pub support: Support,
+    pub contact_force: ContactForce,
     pub dangers: Dangers,
     gestures: GestureWatch,
     /// The gesture completed in this step.
@@ -82,18 +82,18 @@ pub struct Context {
     pub power_up_grip: PowerUpGripCheck,
     pub lean: Lean,
     pub fall: Fall,
-    pub crown: Crown,
+    pub crown: CrownOffset,
     /// Acceleration along world down, m/s².
-    pub sinking: f32,
+    pub accel_down: f32,
     /// The same summed, beside the estimate's speed.
-    pub rise: Rise,
+    pub vertical_fallback: VerticalFallback,
     pub collective: Collective,
-    pub probe: Probe,
+    pub ground_probe: GroundProbe,
     /// How often the arms have tightened since they closed.
     pub tightened: u8,
     pub bench: Bench,
     pub remote: Remote,
-    pub by_itself: ByItself,
+    pub auto_perch: AutoPerch,
     /// A reason and its remaining display time, s.
     note: (Option<Reason>, f32),
     /// Specific force at rest, m/s².
@@ -105,7 +105,7 @@ impl Context {
         Self {
             params: *params,
             since: 0.0,
-            support: Support::new(params),
+            contact_force: ContactForce::new(params),
             dangers: Dangers::default(),
             gestures: GestureWatch::default(),
             gesture: None,
@@ -121,15 +121,15 @@ impl Context {
             power_up_grip: PowerUpGripCheck::default(),
             lean: Lean::new(params),
             fall: Fall::default(),
-            crown: Crown::default(),
-            sinking: 0.0,
-            rise: Rise::default(),
+            crown: CrownOffset::default(),
+            accel_down: 0.0,
+            vertical_fallback: VerticalFallback::default(),
             collective: Collective::default(),
-            probe: Probe::default(),
+            ground_probe: GroundProbe::default(),
             tightened: 0,
             bench: Bench::default(),
             remote: Remote::default(),
-            by_itself: ByItself::default(),
+            auto_perch: AutoPerch::default(),
             note: (None, 0.0),
             gravity: crate::maths::scalar::GRAVITY,
         }
@@ -158,17 +158,18 @@ impl Context {
             let seen = clamp(-down, GRAVITY_BOUNDS.0, GRAVITY_BOUNDS.1);
             self.gravity += (seen - self.gravity) * dt / (dt + GRAVITY_TIME);
         }
-        let felt = i.motion.map(|m| Felt {
+        let sample = i.motion.map(|m| InertialSample {
             specific_force_z: m.accel.z,
             down: down + self.gravity,
             rate: m.rate.norm(),
             lift: i.lift,
         });
-        self.support.step(felt, dt);
-        self.crown.step(i.lift, i.roll_moment, &self.support, dt);
-        self.sinking = felt.map_or(0.0, |f| f.down);
-        self.fall.step(self.sinking, &self.support, dt);
-        self.lean.step(i.motion, &self.support, self.collective.now(), dt);
+        self.contact_force.step(sample, dt);
+        self.crown.step(i.lift, i.roll_moment, &self.contact_force, dt);
+        self.accel_down = sample.map_or(0.0, |f| f.down);
+        self.fall.step(self.accel_down, &self.contact_force, dt);
+        self.lean
+            .step(i.motion, &self.contact_force, self.collective.now(), dt);
         self.dangers.step(i, &self.params, dt);
     }
 
@@ -304,8 +305,8 @@ impl Context {
     /// The collective on the pipe while the arms close, N: `perch_lift` of the weight; not more than the pilot's throttle,
     /// unless that is centred for a perch by itself.
     pub fn set_down_thrust(&self) -> f32 {
-        let most = self.params.perch_lift * self.support.weight();
-        if self.by_itself.active {
+        let most = self.params.perch_lift * self.contact_force.weight();
+        if self.auto_perch.active {
             most
         } else {
             clamp(self.throttle * self.full_thrust(), 0.0, most)
@@ -315,12 +316,12 @@ impl Context {
 
 impl Step<'_> {
     /// Motion of the body, for the position hold.
-    pub fn felt(&self) -> position_hold::Felt {
+    pub fn body_motion(&self) -> position_hold::BodyMotion {
         let motion = self.inputs.motion.unwrap_or_default();
-        position_hold::Felt {
+        position_hold::BodyMotion {
             q: motion.q,
             rate: motion.rate,
-            carried: self.context.support.resting(),
+            carried: self.context.contact_force.resting(),
         }
     }
 

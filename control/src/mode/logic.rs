@@ -45,8 +45,8 @@ impl ModeLogic {
     }
 
     #[cfg(test)]
-    pub(super) fn forget_rise(&mut self) {
-        self.context.rise = crate::navigation::vertical_fallback::Rise::default();
+    pub(super) fn forget_vertical_fallback(&mut self) {
+        self.context.vertical_fallback = crate::navigation::vertical_fallback::VerticalFallback::default();
     }
 
     /// One step, `dt` s after the last.
@@ -62,11 +62,13 @@ impl ModeLogic {
         let refused = remote.and_then(|request| self.weigh(request.order, &inputs, dt));
         let inputs = &self.context.remote.apply(inputs);
         self.context.observe(inputs, rotors_locked(before), dt);
-        let sinking = self.context.sinking;
+        let accel_down = self.context.accel_down;
         let position = inputs.position.as_ref();
-        self.context.rise.step(flies_free(before), sinking, position, dt);
+        self.context
+            .vertical_fallback
+            .step(flies_free(before), accel_down, position, dt);
         let inputs = &Inputs {
-            position: inputs.position.map(|e| self.context.rise.apply(e)),
+            position: inputs.position.map(|e| self.context.vertical_fallback.apply(e)),
             ..*inputs
         };
         let table = Table::new(
@@ -84,16 +86,16 @@ impl ModeLogic {
             inputs,
             dt,
         };
-        step.context.by_itself.follow(before, inputs);
+        step.context.auto_perch.follow(before, inputs);
         self.state.behaviour_mut().observe(step);
         match Transition::first(&self.state, step) {
             Some(transition) => {
                 self.state = transition.enter(&self.state, step);
                 if self.state.mode() != before {
                     self.context.since = 0.0;
-                    self.context.by_itself.enters(self.state.mode());
-                    let by_itself = self.context.by_itself.active;
-                    let dropped = self.context.remote.enters(self.state.mode(), by_itself);
+                    self.context.auto_perch.enters(self.state.mode());
+                    let auto_perch = self.context.auto_perch.active;
+                    let dropped = self.context.remote.enters(self.state.mode(), auto_perch);
                     self.context.perch_switch.forget(dropped);
                     let time = self.state.behaviour().hand_over_time(before);
                     self.context.collective.hand_over(time);
@@ -128,7 +130,9 @@ impl ModeLogic {
 
     fn decide(&mut self, inputs: &Inputs, dt: f32) -> Outputs {
         let (mode, state, context) = (self.state.mode(), self.state.behaviour(), &mut self.context);
-        context.probe.step(mode == Mode::Failsafe, &context.support, dt);
+        context
+            .ground_probe
+            .step(mode == Mode::Failsafe, &context.contact_force, dt);
         let wish = state.rotors(context, inputs);
         let rotors = context.collective.finish(wish, &context.params, dt);
         let grip_memory = state.grip_memory();

@@ -21,7 +21,7 @@ pub fn refusal(order: RemoteOrder, state: &State, step: &Step<'_>) -> Option<Rem
         _ if step.inputs.sticks.is_none() => Some(RemoteRefusal::RadioLost),
         RemoteOrder::Grab => match mode {
             Mode::Contact | Mode::Clamping | Mode::Perched => None,
-            Mode::Approach if !step.context.by_itself.leaving => None,
+            Mode::Approach if !step.context.auto_perch.leaving => None,
             Mode::Flight | Mode::Releasing | Mode::Hold if !step.context.perch_switch.seen_off => {
                 Some(RemoteRefusal::SwitchNotOff)
             }
@@ -61,7 +61,7 @@ fn not_approached(step: &Step<'_>) -> Option<RemoteRefusal> {
 fn not_released(step: &Step<'_>) -> Option<RemoteRefusal> {
     let sticks = step.inputs.sticks?;
     let context = &step.context;
-    let by_itself = context.by_itself.active && keeps_hold(&sticks) && centred(&sticks);
+    let auto_perch = context.auto_perch.active && keeps_hold(&sticks) && centred(&sticks);
     if !context.perch_switch.seen_on {
         Some(RemoteRefusal::SwitchNotOn)
     } else if !sticks.arm_switch {
@@ -70,7 +70,7 @@ fn not_released(step: &Step<'_>) -> Option<RemoteRefusal> {
         Some(RemoteRefusal::MustStay)
     } else if context.lean.too_far_to_release() {
         Some(RemoteRefusal::LeansTooFar)
-    } else if !(by_itself || Perched::throttle_set(&sticks, &context.params)) {
+    } else if !(auto_perch || Perched::throttle_set(&sticks, &context.params)) {
         Some(RemoteRefusal::Throttle)
     } else {
         None

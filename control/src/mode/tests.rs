@@ -1,12 +1,13 @@
 //! The mode logic: a vehicle in a world of two switches ([`rig`]), a flight without trouble ([`mission`]), and every
 //! trouble.
 
+mod auto_perch;
 mod bench;
-mod by_itself;
 mod diagram;
 mod docs;
 mod hand_over;
 mod holding;
+mod landing_point;
 mod leaving;
 mod letting_go;
 mod losses;
@@ -17,5 +18,4 @@ mod reasons;
 mod remote;
 mod restart;
 mod rig;
-mod spot;
 mod trouble;

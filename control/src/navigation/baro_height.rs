@@ -62,7 +62,7 @@ impl PressureFault {
 
 /// What is known of the barometer.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Aloft {
+pub struct BaroHeight {
     /// Pressure that heights are above, Pa.
     ground: Option<f32>,
     /// Newest pressure: when, µs, its value, Pa, and where that is, m down.
@@ -84,7 +84,7 @@ pub struct Aloft {
     used_us: u64,
 }
 
-impl Aloft {
+impl BaroHeight {
     /// What is wrong at present.
     pub fn fault(&self) -> Option<PressureFault> {
         self.fault

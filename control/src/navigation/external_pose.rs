@@ -6,7 +6,7 @@
 
 use super::fix::Fix;
 use super::fix_age::{TAINTED_AGE, UNKNOWN_AGE};
-use super::history::Moment;
+use super::history::StateSnapshot;
 use super::inertial::Inertial;
 use crate::maths::elapsed::seconds;
 use crate::maths::frames::about_down;
@@ -144,7 +144,7 @@ struct Before {
 
 /// What is known of the source.
 #[derive(Clone, Debug, Default)]
-pub struct Trust {
+pub struct ExternalPoseMonitor {
     /// The felt way's band, and when the inertial sensor was last looked at, µs.
     felt: [Low; 4],
     felt_us: u64,
@@ -156,7 +156,7 @@ pub struct Trust {
     level: Departure,
     down: Departure,
     /// Heading less the vehicle's own, rad; `None` before the first pose.
-    turn: Option<f32>,
+    yaw_offset: Option<f32>,
     /// Weight of the poses that are off it, and since when they are doubted, µs: until the heading is back, or the level way
     /// agrees with the new one.
     turns: u32,
@@ -174,14 +174,14 @@ pub struct Trust {
     unsound_us: u64,
 }
 
-impl Trust {
+impl ExternalPoseMonitor {
     /// What is wrong at present.
     pub fn fault(&self) -> Option<PoseFault> {
         self.fault
     }
 
     /// Takes what the inertial sensor feels; gives the way in the band, m, in the axes of the vehicle's attitude.
-    pub fn feel(&mut self, felt: &Inertial) -> Vec3 {
+    pub fn predict(&mut self, felt: &Inertial) -> Vec3 {
         let dt = seconds(self.felt_us, felt.at_us);
         if dt > super::inertial::STEP_MAX {
             self.felt = Default::default();
@@ -200,7 +200,7 @@ impl Trust {
     }
 
     /// Looks at `fix`, measured at the moment `then`, of a vehicle whose rotors carry it where it `flies`.
-    pub fn look(&mut self, fix: &Fix, then: Option<&Moment>, flies: bool) {
+    pub fn update(&mut self, fix: &Fix, then: Option<&StateSnapshot>, flies: bool) {
         let at = fix.at_us;
         let mut sound = true;
         let dt = self.before.map_or(0, |before| at.saturating_sub(before.at_us));
@@ -248,7 +248,7 @@ impl Trust {
         if let Some(then) = then.filter(|_| self.same == 0) {
             // Of a vehicle that is carried, after a silence and in new axes it may be any.
             let anew = !flies || announced || self.before.is_none_or(|b| seconds(b.at_us, at) > UNKNOWN_AGE);
-            self.face(scalar::wrap_pi(fix.heading - then.yaw()), at, anew);
+            self.check_heading(scalar::wrap_pi(fix.heading - then.yaw()), at, anew);
         }
         self.before = Some(Before {
             at_us: at,
@@ -273,20 +273,20 @@ impl Trust {
         self.settle(at, sound && found.is_none());
     }
 
-    /// Looks at the heading less the vehicle's own, `turn` rad, at `at` µs; `anew` where it may be any.
-    fn face(&mut self, turn: f32, at: u64, anew: bool) {
-        let known = self.turn.unwrap_or(turn);
-        let off = scalar::wrap_pi(turn - known);
+    /// Looks at the heading less the vehicle's own, `yaw_offset` rad, at `at` µs; `anew` where it may be any.
+    fn check_heading(&mut self, yaw_offset: f32, at: u64, anew: bool) {
+        let known = self.yaw_offset.unwrap_or(yaw_offset);
+        let off = scalar::wrap_pi(yaw_offset - known);
         let same = off.abs() < TURN_STEP;
         if self.turned_us.is_some() {
             if same || !self.level.wrong {
                 self.turned_us = None;
                 self.level.wrong = false;
-                self.turn = Some(turn);
+                self.yaw_offset = Some(yaw_offset);
             }
         } else if self.level.wrong || anew || same {
             let gain = if same { TURN_GAIN } else { 1.0 };
-            self.turn = Some(scalar::wrap_pi(known + gain * off));
+            self.yaw_offset = Some(scalar::wrap_pi(known + gain * off));
             self.turns = self.turns.saturating_sub(1);
         } else {
             self.turns += REFUSED;
@@ -308,7 +308,7 @@ impl Trust {
     }
 
     /// A pose at `at` µs is `off` where the vehicle was taken to be, or is not.
-    pub fn gate(&mut self, at: u64, off: bool) {
+    pub fn note_gate(&mut self, at: u64, off: bool) {
         self.refused = if off {
             self.refused + REFUSED
         } else {
@@ -354,7 +354,7 @@ impl Trust {
         last.step(high, dt)
     }
 
-    fn compare(&mut self, seen: Vec3, fix: &Fix, then: &Moment, dt: f32) {
+    fn compare(&mut self, seen: Vec3, fix: &Fix, then: &StateSnapshot, dt: f32) {
         let seen = about_down(seen, then.yaw() - fix.heading);
         let felt = then.swing;
         let level = |v: Vec3| Vec3::new(v.x, v.y, 0.0);

@@ -2,8 +2,8 @@
 
 use super::consistency::Agreement;
 use super::frozen_range::Frozen;
-use super::history::Moment;
-use super::pipe_footprint::{Band, Depth};
+use super::history::StateSnapshot;
+use super::pipe_footprint::{Depth, PipeFootprint};
 use super::range_scale::{Below, RangeScale};
 use crate::maths::elapsed::seconds;
 use crate::maths::frames::about_down;
@@ -57,7 +57,7 @@ const UNSURE_TIME: u64 = 600_000;
 
 /// What is wrong with flow or range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SightFault {
+pub enum FlowRangeFault {
     /// The flow says the same whatever the vehicle does.
     FlowFrozen,
     /// The flow does not follow the vehicle's own turning: mirrored, turned, dead or of another scale.
@@ -70,7 +70,7 @@ pub enum SightFault {
     RangeScaled,
 }
 
-impl SightFault {
+impl FlowRangeFault {
     /// Every fault.
     pub const ALL: [Self; 5] = [
         Self::FlowFrozen,
@@ -94,7 +94,7 @@ impl SightFault {
 
 /// Why flow cannot be used where the vehicle is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SightLimit {
+pub enum FlowRangeLimit {
     /// Its lens sees no picture so near.
     TooLow,
     /// The error of its scale would swing the hold.
@@ -105,7 +105,7 @@ pub enum SightLimit {
     TooDark,
 }
 
-impl SightLimit {
+impl FlowRangeLimit {
     /// Every limit.
     pub const ALL: [Self; 4] = [Self::TooLow, Self::TooHigh, Self::NoRange, Self::TooDark];
 
@@ -143,7 +143,7 @@ pub struct Seen {
 
 /// What is known of the ground and of the module.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Sight {
+pub struct FlowRangeFusion {
     /// Half the width of what the vehicle perches on, m.
     radius: f32,
     /// Lens from the centre of mass, m, body. Both sensors look from there.
@@ -177,7 +177,7 @@ pub struct Sight {
     /// Ranges for which the height of what is narrow below is not known yet: its flank was seen alone.
     flank: u32,
     /// What is narrow, where its edge was seen; when it was met below last, µs, and where.
-    pub(crate) band: Option<Band>,
+    pub(crate) band: Option<PipeFootprint>,
     met: (u64, Vec3),
     pub(crate) frozen: Frozen,
     same_flows: u32,
@@ -188,7 +188,7 @@ pub struct Sight {
     disagrees: bool,
 }
 
-impl Sight {
+impl FlowRangeFusion {
     /// Over pipes of `diameter` m, from a `lens` that lies so far from the centre of mass, m, body.
     pub fn new(diameter: f32, lens: Vec3) -> Self {
         Self {
@@ -199,13 +199,13 @@ impl Sight {
     }
 
     /// What is wrong at present.
-    pub fn fault(&self) -> Option<SightFault> {
+    pub fn fault(&self) -> Option<FlowRangeFault> {
         let faults = [
-            (self.frozen.holds(), SightFault::RangeFrozen),
-            (self.distrusted_us > self.range_us, SightFault::RangeJumps),
-            (self.scale.wrong(), SightFault::RangeScaled),
-            (self.same_flows >= FROZEN_FLOWS, SightFault::FlowFrozen),
-            (self.disagrees, SightFault::FlowDisagrees),
+            (self.frozen.holds(), FlowRangeFault::RangeFrozen),
+            (self.distrusted_us > self.range_us, FlowRangeFault::RangeJumps),
+            (self.scale.wrong(), FlowRangeFault::RangeScaled),
+            (self.same_flows >= FROZEN_FLOWS, FlowRangeFault::FlowFrozen),
+            (self.disagrees, FlowRangeFault::FlowDisagrees),
         ];
         faults.iter().find(|(holds, _)| *holds).map(|(_, fault)| *fault)
     }
@@ -291,13 +291,13 @@ impl Sight {
 
     /// What the height of the lens at `then` is off by a range of `distance`, m, with its variance, m²; `None` while it is not
     /// clear what is below. Where a pose is fresh the surface follows the height instead. A little `earlier` the beam was on its
-    /// way there; the axes are turned by `turn`, rad.
+    /// way there; the axes are turned by `yaw_offset`, rad.
     pub fn height(
         &mut self,
-        (earlier, then): (&Moment, &Moment),
+        (earlier, then): (&StateSnapshot, &StateSnapshot),
         distance: f32,
         posed: bool,
-        turn: f32,
+        yaw_offset: f32,
     ) -> Option<(f32, f32)> {
         let cos = then.q.down_in_body().z;
         if cos < COS_MIN {
@@ -315,12 +315,12 @@ impl Sight {
             self.band = None;
             return None;
         }
-        let foot = then.position + beam(then.q, distance, turn);
+        let foot = then.position + beam(then.q, distance, yaw_offset);
         // The range's own place is that of a surface at `level`.
         let off = self.level - surface;
         let raised = self.raised();
-        let heading = then.yaw() + turn;
-        let below = Band::below(foot, heading, self.radius, self.level);
+        let heading = then.yaw() + yaw_offset;
+        let below = PipeFootprint::below(foot, heading, self.radius, self.level);
         if !self.scale.begun() {
             self.unproven = Some(foot);
         }
@@ -339,7 +339,7 @@ impl Sight {
         if off.abs() <= STEP || flank {
             (self.agreed, self.foot) = (0, foot);
             // Where the beam passes its height: the ground is met farther off.
-            let at = |top: f32| then.position + beam(then.q, (top - then.position.z) / cos, turn);
+            let at = |top: f32| then.position + beam(then.q, (top - then.position.z) / cos, yaw_offset);
             self.band = self.band.map(|band| band.bounded(at(band.top), raised));
             self.band = self.band.filter(|band| raised || !band.is_mistaken());
             if !raised {
@@ -387,9 +387,9 @@ impl Sight {
             let mut band = self.band.unwrap_or(below);
             band.top = self.level.min(before);
             let reach = band.top - then.position.z;
-            let at = |m: &Moment| m.position + beam(m.q, reach, turn);
+            let at = |m: &StateSnapshot| m.position + beam(m.q, reach, yaw_offset);
             let way = at(then) - at(earlier);
-            self.band = Some(Band::at_edge(band, self.stepped_at, onto, way, heading));
+            self.band = Some(PipeFootprint::at_edge(band, self.stepped_at, onto, way, heading));
             self.foot = foot;
             self.flank = if onto && !known { FLANK_RANGES } else { 0 };
         }
@@ -427,15 +427,15 @@ impl Sight {
 
     /// How far what the flow sees from `to` is. Beside something narrow the rest of the view is farther, and where an edge
     /// of it was seen its share is known.
-    pub(crate) fn depth(&self, to: &Moment, cos: f32, turn: f32) -> Depth {
+    pub(crate) fn depth(&self, to: &StateSnapshot, cos: f32, yaw_offset: f32) -> Depth {
         let far = |level: f32| {
             let (least, most) = FLOW_HEIGHT;
             scalar::clamp((level - to.position.z) / cos, least, 2.0 * most)
         };
         let near = far(self.level);
-        let foot = to.position + beam(to.q, near, turn);
+        let foot = to.position + beam(to.q, near, yaw_offset);
         let seen = match self.band {
-            Some(band) => band.sight(to.position, foot, far(self.base)),
+            Some(band) => band.depth(to.position, foot, far(self.base)),
             None => Depth {
                 distance: near,
                 doubt: 0.0,
@@ -448,9 +448,15 @@ impl Sight {
         }
     }
 
-    /// What the velocity of the lens between `from` and `to`, in axes turned by `turn` rad, is off by `flow`; `None` where it
+    /// What the velocity of the lens between `from` and `to`, in axes turned by `yaw_offset` rad, is off by `flow`; `None` where it
     /// says nothing.
-    pub fn velocity(&mut self, flow: &Flow, from: &Moment, to: &Moment, turn: f32) -> Option<Seen> {
+    pub fn velocity(
+        &mut self,
+        flow: &Flow,
+        from: &StateSnapshot,
+        to: &StateSnapshot,
+        yaw_offset: f32,
+    ) -> Option<Seen> {
         self.watch_frozen(flow);
         let cos = to.q.down_in_body().z;
         let (at, distance) = self.range.filter(|_| !self.range_faulty())?;
@@ -463,15 +469,15 @@ impl Sight {
             distance: depth,
             doubt,
             lean,
-        } = self.depth(to, cos, turn);
+        } = self.depth(to, cos, yaw_offset);
         // What the vehicle has turned by, body.
         let turned = from.q.conjugate() * to.q;
         let half = if turned.w < 0.0 { -2.0 } else { 2.0 };
         let turned = [half * turned.x, half * turned.y];
-        let way = about_down(to.position - from.position, -turn);
+        let way = about_down(to.position - from.position, -yaw_offset);
         let way = to.q.rotate_inverse(way);
         // On the way down what is near on one side of the view seems to move to that side.
-        let aside = to.q.rotate_inverse(about_down(lean, -turn)) * way.z;
+        let aside = to.q.rotate_inverse(about_down(lean, -yaw_offset)) * way.z;
         let [roll, pitch] = flow.angle;
         let angle = [roll - aside.y / depth, pitch + aside.x / depth];
         let [roll, pitch] = angle;
@@ -493,7 +499,7 @@ impl Sight {
         }
         // Along the down axis of the body flow sees nothing: there the estimate stands.
         let seen = Vec3::new((pitch - turned[1]) * depth, (turned[0] - roll) * depth, way.z);
-        let off = about_down(to.q.rotate(seen - way), turn) * per;
+        let off = about_down(to.q.rotate(seen - way), yaw_offset) * per;
         let speed = FLOW_NOISE * depth * per;
         let scale = (SCALE_NOISE + doubt) * (seen.x.abs() + seen.y.abs()) * per;
         Some(Seen {
@@ -518,9 +524,9 @@ impl Sight {
     }
 }
 
-/// From the lens of a vehicle with the attitude `q` to what its range sees `distance` m away, in axes turned by `turn` rad.
-pub fn beam(q: Quat, distance: f32, turn: f32) -> Vec3 {
-    about_down(q.rotate(Vec3::new(0.0, 0.0, distance)), turn)
+/// From the lens of a vehicle with the attitude `q` to what its range sees `distance` m away, in axes turned by `yaw_offset` rad.
+pub fn beam(q: Quat, distance: f32, yaw_offset: f32) -> Vec3 {
+    about_down(q.rotate(Vec3::new(0.0, 0.0, distance)), yaw_offset)
 }
 
 #[cfg(test)]
@@ -531,29 +537,32 @@ mod tests {
     /// judged.
     #[test]
     fn nothing_of_the_axes_before_is_left_where_an_estimate_begins() {
-        let mut sight = Sight::new(0.3, Vec3::ZERO);
-        let at = |us: u64, y: f32| Moment {
+        let mut flow_range = FlowRangeFusion::new(0.3, Vec3::ZERO);
+        let at = |us: u64, y: f32| StateSnapshot {
             at_us: us,
             position: Vec3::new(7.0, y, -1.9),
             q: Quat::IDENTITY,
-            ..Moment::default()
+            ..StateSnapshot::default()
         };
         for (y, distance) in [(0.5, 1.9), (0.7, 0.4)] {
             for _ in 0..5 {
-                let _ = sight.height((&at(0, y - 0.02), &at(0, y)), distance, false, 0.0);
+                let _ = flow_range.height((&at(0, y - 0.02), &at(0, y)), distance, false, 0.0);
             }
         }
-        assert!(sight.flank > 0 && sight.unproven.is_some() && sight.foot.x > 6.9);
-        sight.range = Some((20_000, 1.0));
+        assert!(flow_range.flank > 0 && flow_range.unproven.is_some() && flow_range.foot.x > 6.9);
+        flow_range.range = Some((20_000, 1.0));
         let flow = Flow {
             until_us: 20_000,
             seconds: 0.02,
             angle: [0.0; 2],
             quality: 100,
         };
-        assert_eq!(sight.begin(&flow, Quat::IDENTITY), Some(1.0));
-        assert_eq!((sight.flank, sight.agreed, sight.step), (0, 0, 0.0));
-        assert!(sight.foot.norm() < 1e-6, "{:?}", sight.foot);
-        assert!(sight.unproven.is_some_and(|first| first.norm() < 1e-6));
+        assert_eq!(flow_range.begin(&flow, Quat::IDENTITY), Some(1.0));
+        assert_eq!(
+            (flow_range.flank, flow_range.agreed, flow_range.step),
+            (0, 0, 0.0)
+        );
+        assert!(flow_range.foot.norm() < 1e-6, "{:?}", flow_range.foot);
+        assert!(flow_range.unproven.is_some_and(|first| first.norm() < 1e-6));
     }
 }

@@ -11,7 +11,7 @@ pub const LENGTH: usize = 50;
 
 /// The estimate at one step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Moment {
+pub struct StateSnapshot {
     /// µs.
     pub at_us: u64,
     /// m.
@@ -22,11 +22,11 @@ pub struct Moment {
     pub swing: Vec3,
 }
 
-impl Moment {
-    /// The same moment of the point that lies `lever` m from the centre of mass, body, in axes turned by `turn` rad.
-    pub fn of(self, lever: Vec3, turn: f32) -> Self {
+impl StateSnapshot {
+    /// The same moment of the point that lies `lever` m from the centre of mass, body, in axes turned by `yaw_offset` rad.
+    pub fn of(self, lever: Vec3, yaw_offset: f32) -> Self {
         Self {
-            position: self.position + about_down(self.q.rotate(lever), turn),
+            position: self.position + about_down(self.q.rotate(lever), yaw_offset),
             ..self
         }
     }
@@ -39,12 +39,12 @@ impl Moment {
 
 /// The last moments in a ring.
 #[derive(Clone, Debug)]
-pub struct Past {
-    moments: [Option<Moment>; LENGTH],
+pub struct StateHistory {
+    moments: [Option<StateSnapshot>; LENGTH],
     next: usize,
 }
 
-impl Default for Past {
+impl Default for StateHistory {
     fn default() -> Self {
         Self {
             moments: [None; LENGTH],
@@ -53,14 +53,14 @@ impl Default for Past {
     }
 }
 
-impl Past {
+impl StateHistory {
     /// Forgets all.
     pub fn clear(&mut self) {
         self.moments.fill(None);
     }
 
     /// Adds the newest.
-    pub fn push(&mut self, moment: Moment) {
+    pub fn push(&mut self, moment: StateSnapshot) {
         if let Some(slot) = self.moments.get_mut(self.next) {
             *slot = Some(moment);
         }
@@ -68,7 +68,7 @@ impl Past {
     }
 
     /// The moment at `at_us` µs, its position between the two about it; `None` before the oldest and after the newest.
-    pub fn at(&self, at_us: u64) -> Option<Moment> {
+    pub fn at(&self, at_us: u64) -> Option<StateSnapshot> {
         let known = || self.moments.iter().flatten();
         let before = known().filter(|m| m.at_us <= at_us).max_by_key(|m| m.at_us)?;
         if before.at_us == at_us {
@@ -76,7 +76,7 @@ impl Past {
         }
         let after = known().filter(|m| m.at_us > at_us).min_by_key(|m| m.at_us)?;
         let share = seconds(before.at_us, at_us) / seconds(before.at_us, after.at_us);
-        Some(Moment {
+        Some(StateSnapshot {
             at_us,
             position: before.position + (after.position - before.position) * share,
             q: between(before.q, after.q, share),

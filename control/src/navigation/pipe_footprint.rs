@@ -30,7 +30,7 @@ pub struct Depth {
 
 /// A band along the vehicle, or across it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Band {
+pub struct PipeFootprint {
     /// Point in its middle, and the direction across it, level, in the estimate's axes.
     middle: Vec3,
     across: Vec3,
@@ -44,7 +44,7 @@ pub struct Band {
     pushed: f32,
 }
 
-impl Band {
+impl PipeFootprint {
     /// The band whose edge is at `foot`, `onto` or off which the beam has come on its `way` of a vehicle at `heading`, rad: as
     /// it mostly moves, forward or sideways, leads across. Where the place `known` before says which of the two edges it
     /// is, a gust to the other side does not.
@@ -142,7 +142,7 @@ impl Band {
 
     /// What the view from `place` sees, whose middle falls at `foot`: rays across the round band, `far` m to the ground
     /// beside it.
-    pub fn sight(&self, place: Vec3, foot: Vec3, far: f32) -> Depth {
+    pub fn depth(&self, place: Vec3, foot: Vec3, far: f32) -> Depth {
         let side = self.side(place);
         let slope = (foot - place).dot(self.across) / scalar::clamp(foot.z - place.z, NEAREST, 100.0);
         let near = scalar::clamp(self.top - place.z, NEAREST, far);
@@ -189,8 +189,8 @@ mod tests {
     const RIGHT: Vec3 = Vec3::new(0.0, 0.3, 0.0);
 
     /// One of 0.3 m along a heading of 0, whose middle is at 1 m to the right and its top at 1.5 m.
-    fn band() -> Band {
-        Band::below(Vec3::new(2.0, 1.0, 0.0), 0.0, 0.15, -1.5)
+    fn band() -> PipeFootprint {
+        PipeFootprint::below(Vec3::new(2.0, 1.0, 0.0), 0.0, 0.15, -1.5)
     }
 
     fn foot(y: f32) -> Vec3 {
@@ -200,7 +200,7 @@ mod tests {
     #[test]
     fn the_view_is_as_near_as_what_fills_it() {
         // Its middle is at 1 m, the ground 1.9 m below the vehicle.
-        let seen = |y: f32, z: f32, slope: f32| band().sight(Vec3::new(0.0, y, z), foot(y - slope * z), -z);
+        let seen = |y: f32, z: f32, slope: f32| band().depth(Vec3::new(0.0, y, z), foot(y - slope * z), -z);
         let depth = |y: f32, z: f32, slope: f32| seen(y, z, slope).distance;
         // From 0.4 m its tangents, 15.8° to each side, are 74 % of the view; from 0.7 m 47 %.
         let over = depth(1.0, -1.9, 0.0);
@@ -239,7 +239,7 @@ mod tests {
     fn either_edge_from_either_side_gives_the_same_band() {
         for radius in [0.1, 0.2] {
             // Only that something is below is known, somewhere else along the way.
-            let below = Band::below(foot(1.0), 0.0, radius, -1.5);
+            let below = PipeFootprint::below(foot(1.0), 0.0, radius, -1.5);
             for (side, onto, speed) in [
                 (-1.0, true, 0.3),
                 (1.0, true, -0.3),
@@ -247,7 +247,7 @@ mod tests {
                 (-1.0, false, -0.3),
             ] {
                 let edge = Vec3::new(5.0, 1.0 + side * radius, 0.0);
-                let band = Band::at_edge(below, edge, onto, Vec3::new(0.1, speed, 0.0), 0.0);
+                let band = PipeFootprint::at_edge(below, edge, onto, Vec3::new(0.1, speed, 0.0), 0.0);
                 for y in [0.7, 0.9, 1.0, 1.2] {
                     let off = band.side(foot(y)) - (y - 1.0);
                     assert!(off.abs() < 1e-6, "{radius} {side} {onto} {speed}");
@@ -269,14 +269,14 @@ mod tests {
     fn a_gust_to_the_other_side_does_not_mistake_one_edge_for_the_other() {
         // Its right edge is crossed outwards while the vehicle is taken to drift to the left, or mostly ahead.
         for way in [Vec3::new(0.0, -0.1, 0.0), Vec3::new(0.15, -0.1, 0.0)] {
-            let moved = Band::at_edge(band(), foot(1.17), false, way, 0.0);
+            let moved = PipeFootprint::at_edge(band(), foot(1.17), false, way, 0.0);
             assert!(moved.side(foot(1.02)).abs() < 1e-6, "{moved:?}");
         }
         // Far ahead of sideways it is the pipe's end.
-        let end = Band::at_edge(band(), foot(1.0), false, Vec3::new(0.3, 0.1, 0.0), 0.0);
+        let end = PipeFootprint::at_edge(band(), foot(1.0), false, Vec3::new(0.3, 0.1, 0.0), 0.0);
         assert!(end.side(Vec3::new(-0.15, 1.0, 0.0)).abs() < 1e-6, "{end:?}");
         // By its heading, not the axes'.
-        let turned = Band::below(foot(1.0), core::f32::consts::FRAC_PI_2, 0.15, -1.5);
+        let turned = PipeFootprint::below(foot(1.0), core::f32::consts::FRAC_PI_2, 0.15, -1.5);
         assert!((turned.side(Vec3::new(-0.1, 1.0, 0.0)) - 0.1).abs() < 1e-6);
         assert!(RIGHT.dot(turned.across).abs() < 1e-6);
     }
@@ -293,7 +293,7 @@ mod tests {
         };
         assert!(!pushed(0.2).is_mistaken() && pushed(0.5).is_mistaken());
         // An edge that is seen says where it is.
-        assert!(!Band::at_edge(pushed(0.5), foot(1.5), true, RIGHT, 0.0).is_mistaken());
+        assert!(!PipeFootprint::at_edge(pushed(0.5), foot(1.5), true, RIGHT, 0.0).is_mistaken());
     }
 
     #[test]
@@ -305,7 +305,7 @@ mod tests {
             assert!(beside.abs() > 0.15 - SLACK - 1e-6, "{y}: {beside}");
         }
         // What is met beside it is wide, or it is elsewhere: flat, as far as is known.
-        let table = Band::at_edge(band(), foot(1.15), false, RIGHT, 0.0);
+        let table = PipeFootprint::at_edge(band(), foot(1.15), false, RIGHT, 0.0);
         assert!(table.drop(foot(1.1)).0 > 0.02);
         assert!(table.bounded(foot(1.3), true).drop(foot(1.25)).0 < 1e-6);
         // What agrees moves nothing.

@@ -13,16 +13,16 @@ use crate::maths::scalar::{self, GRAVITY};
 use crate::maths::vector::Vec3;
 use crate::navigation::air_pressure::AirPressure;
 use crate::navigation::axis_filter::{Axis, Change};
-use crate::navigation::baro_height::{Aloft, PressureFault};
+use crate::navigation::baro_height::{BaroHeight, PressureFault};
 use crate::navigation::estimate::Estimate;
-use crate::navigation::external_pose::{PoseFault, TURN_GAIN, TURN_STEP, Trust};
+use crate::navigation::external_pose::{ExternalPoseMonitor, PoseFault, TURN_GAIN, TURN_STEP};
 use crate::navigation::fix::Fix;
 use crate::navigation::fix_age::{LOST_AGE, TAINTED_AGE, UNKNOWN_AGE};
-use crate::navigation::flow_range::{Sight, SightFault, beam};
+use crate::navigation::flow_range::{FlowRangeFault, FlowRangeFusion, beam};
 use crate::navigation::flow_range_sample::{Flow, GroundView};
-use crate::navigation::history::{Moment, Past};
+use crate::navigation::history::{StateHistory, StateSnapshot};
 use crate::navigation::inertial::{Inertial, STEP_MAX};
-use crate::navigation::range_hit::Foot;
+use crate::navigation::range_hit::RangeHit;
 use crate::params::Params;
 
 /// Fixes until the estimate is given out, half a second at 50 Hz, and the velocity's deviation by then, m/s.
@@ -55,7 +55,7 @@ pub enum Fault {
     /// The poses.
     Pose(PoseFault),
     /// Flow or range.
-    Sight(SightFault),
+    FlowRange(FlowRangeFault),
     /// The pressure of the air.
     Pressure(PressureFault),
 }
@@ -65,7 +65,7 @@ impl Fault {
     pub const fn text(self) -> &'static str {
         match self {
             Self::Pose(fault) => fault.text(),
-            Self::Sight(fault) => fault.text(),
+            Self::FlowRange(fault) => fault.text(),
             Self::Pressure(fault) => fault.text(),
         }
     }
@@ -76,12 +76,12 @@ impl Fault {
 pub struct PositionEstimator {
     mass: f32,
     motor_tau: f32,
-    past: Past,
+    history: StateHistory,
     /// `None` before the first fix and after the last one has aged.
     track: Option<Track>,
-    sight: Sight,
-    trust: Trust,
-    aloft: Aloft,
+    flow_range: FlowRangeFusion,
+    pose_monitor: ExternalPoseMonitor,
+    baro_height: BaroHeight,
     /// When the last track by flow ended, µs, and its axes, of which the biases are good for the next.
     learnt: Option<(u64, [Axis; 3])>,
     /// When the newest fix and the newest flow that were looked at were measured, µs: each is taken once.
@@ -95,11 +95,11 @@ impl PositionEstimator {
         Self {
             mass: p.mass,
             motor_tau: p.motor_tau,
-            past: Past::default(),
+            history: StateHistory::default(),
             track: None,
-            sight: Sight::new(p.pipe_diameter, p.flow_lens()),
-            trust: Trust::default(),
-            aloft: Aloft::default(),
+            flow_range: FlowRangeFusion::new(p.pipe_diameter, p.flow_lens()),
+            pose_monitor: ExternalPoseMonitor::default(),
+            baro_height: BaroHeight::default(),
             learnt: None,
             seen_us: 0,
             flow_us: 0,
@@ -108,126 +108,127 @@ impl PositionEstimator {
 
     /// What is left out at present, with an estimate or without one.
     pub fn fault(&self) -> Option<Fault> {
-        let pose = self.trust.fault().map(Fault::Pose);
-        pose.or_else(|| self.sight.fault().map(Fault::Sight))
-            .or_else(|| self.aloft.fault().map(Fault::Pressure))
+        let pose = self.pose_monitor.fault().map(Fault::Pose);
+        pose.or_else(|| self.flow_range.fault().map(Fault::FlowRange))
+            .or_else(|| self.baro_height.fault().map(Fault::Pressure))
     }
 
     /// Takes the newest pressure of the air, for the next step: the height of last resort. Without one nothing changes.
     pub fn hear(&mut self, air: &AirPressure) {
-        self.aloft.hear(air);
+        self.baro_height.hear(air);
     }
 
     /// One step with the inertial sensor, the thrust demanded along -z, N, the newest fix and the newest flow and range.
     /// `None` without a position.
     pub fn step(
         &mut self,
-        felt: &Inertial,
+        inertial: &Inertial,
         lift: f32,
         fix: Option<&Fix>,
         view: Option<&GroundView>,
     ) -> Option<Estimate> {
-        let at_us = felt.at_us;
+        let at_us = inertial.at_us;
         let new = fix.filter(|fix| fix.at_us > self.seen_us && fix.at_us <= at_us && fix.is_sane());
         self.seen_us = new.map_or(self.seen_us, |fix| fix.at_us);
         let flow = view.and_then(|view| view.flow).and_then(Flow::checked);
         let flow = flow.filter(|flow| flow.until_us > self.flow_us && flow.until_us <= at_us);
         self.flow_us = flow.map_or(self.flow_us, |flow| flow.until_us);
         let flies = lift > FLIES * GRAVITY * self.mass;
-        let before = self.sight.looked_us();
-        let range = view.and_then(|view| self.sight.new_range(view, at_us, flies));
-        let ranged = self.sight.looked_us();
-        let looked = (ranged != before && self.sight.range_is_sound()).then_some(ranged);
-        if !(felt.q.is_finite() && felt.accel.is_finite() && lift.is_finite()) {
+        let before = self.flow_range.looked_us();
+        let range = view.and_then(|view| self.flow_range.new_range(view, at_us, flies));
+        let ranged = self.flow_range.looked_us();
+        let looked = (ranged != before && self.flow_range.range_is_sound()).then_some(ranged);
+        if !(inertial.q.is_finite() && inertial.accel.is_finite() && lift.is_finite()) {
             return None;
         }
-        let down = felt.q.rotate(felt.accel).z + GRAVITY;
-        self.sight.feel(at_us, flies.then_some(down), felt.q);
+        let down = inertial.q.rotate(inertial.accel).z + GRAVITY;
+        self.flow_range.feel(at_us, flies.then_some(down), inertial.q);
         // A scaled range gives no height; how it changes may say that it is right again.
         let range = match range {
-            Some((at, distance)) if self.sight.scale.wrong() => {
-                if let Some(then) = self.past.at(at) {
-                    self.sight.watch_scaled(then.q, distance);
+            Some((at, distance)) if self.flow_range.scale.wrong() => {
+                if let Some(then) = self.history.at(at) {
+                    self.flow_range.watch_scaled(then.q, distance);
                 }
                 None
             }
             range => range,
         };
-        let swing = self.trust.feel(felt);
+        let swing = self.pose_monitor.predict(inertial);
         if let Some(fix) = new {
-            self.trust.look(fix, self.past.at(fix.at_us).as_ref(), flies);
+            self.pose_monitor
+                .update(fix, self.history.at(fix.at_us).as_ref(), flies);
         }
-        let left_out = self.trust.fault().is_some();
+        let left_out = self.pose_monitor.fault().is_some();
         let new = new.filter(|_| !left_out);
-        let here = Moment {
+        let here = StateSnapshot {
             at_us,
-            q: felt.q,
+            q: inertial.q,
             swing,
-            ..Moment::default()
+            ..StateSnapshot::default()
         };
         let track = match (&mut self.track, new) {
             (Some(track), _) if track.follows(at_us) => track,
             (track, Some(fix)) => {
-                self.past.clear();
-                self.aloft.forget();
-                *track = Some(Track::begin(at_us, felt.q.to_euler().2, fix));
+                self.history.clear();
+                self.baro_height.forget();
+                *track = Some(Track::begin(at_us, inertial.q.to_euler().2, fix));
                 return None;
             }
             (track, None) => {
                 // Where the first flow that is of use comes, the axes begin: on the ground below, as the vehicle's own.
-                let height = flow.and_then(|flow| self.sight.begin(&flow, felt.q));
+                let height = flow.and_then(|flow| self.flow_range.begin(&flow, inertial.q));
                 self.learnt = track.as_ref().map_or(self.learnt, Track::learnt);
                 *track = height.map(|height| {
-                    self.past.clear();
-                    self.aloft.forget();
+                    self.history.clear();
+                    self.baro_height.forget();
                     Track::above(at_us, height, self.learnt.as_ref())
                 });
                 // Its own place: the next flow's interval may begin here.
                 let position = track.as_ref().map_or(here.position, Track::position);
-                self.past.push(Moment { position, ..here });
+                self.history.push(StateSnapshot { position, ..here });
                 return None;
             }
         };
-        track.predict(felt, (lift / self.mass, self.motor_tau));
-        self.past.push(Moment {
+        track.predict(inertial, (lift / self.mass, self.motor_tau));
+        self.history.push(StateSnapshot {
             position: track.position(),
             ..here
         });
         track.left_out |= left_out;
-        let jumps = track.jumps;
-        if self.trust.fault() == Some(PoseFault::Disagrees) && !track.tainted {
+        let reset_count = track.reset_count;
+        if self.pose_monitor.fault() == Some(PoseFault::Disagrees) && !track.tainted {
             track.taint();
             track.tainted = true;
-            self.aloft.forget();
+            self.baro_height.forget();
         }
         if let Some(fix) = new {
-            track.take(&mut self.past, &mut self.trust, fix);
+            track.take(&mut self.history, &mut self.pose_monitor, fix);
         }
         if let Some(at) = looked {
             let distance = range.map(|(_, distance)| distance);
-            track.step_on(&self.past, self.sight.lens, at, distance);
+            track.step_on(&self.history, self.flow_range.lens, at, distance);
         }
         let posed = track.posed && seconds(track.pose_us, at_us) < POSE_FRESH;
         if let Some((at, distance)) = range {
-            track.take_range(&mut self.past, &mut self.sight, (at, distance), posed);
+            track.take_range(&mut self.history, &mut self.flow_range, (at, distance), posed);
         }
         if let Some(flow) = flow {
-            track.take_flow(&mut self.past, &mut self.sight, &flow, posed);
+            track.take_flow(&mut self.history, &mut self.flow_range, &flow, posed);
         }
-        let misled = self.sight.misleads() && !posed;
+        let misled = self.flow_range.misleads() && !posed;
         if misled && !track.misled {
             track.taint();
         }
         track.misled = misled;
-        if track.jumps != jumps {
-            self.aloft.forget();
+        if track.reset_count != reset_count {
+            self.baro_height.forget();
         }
-        if let Some(at) = self.aloft.news(at_us)
+        if let Some(at) = self.baro_height.news(at_us)
             && flies
         {
-            track.take_pressure(&mut self.past, &mut self.aloft, at);
+            track.take_pressure(&mut self.history, &mut self.baro_height, at);
         }
-        track.estimate(self.aloft.carries(at_us))
+        track.estimate(self.baro_height.carries(at_us))
     }
 }
 
@@ -236,7 +237,7 @@ impl PositionEstimator {
 struct Track {
     /// North or forward, east or right, down.
     axes: [Axis; 3],
-    turn: f32,
+    yaw_offset: f32,
     /// Thrust over mass, with the motors' lag, m/s².
     lift: f32,
     disturbance: Vec3,
@@ -258,9 +259,9 @@ struct Track {
     /// Flows refused in a row.
     flows_refused: u32,
     resets: u8,
-    jumps: u8,
+    reset_count: u8,
     ready: bool,
-    foot: Foot,
+    foot: RangeHit,
     /// When that was measured, µs; 0 before the first.
     foot_us: u64,
 }
@@ -270,7 +271,7 @@ impl Track {
         let axes = fix.position.to_array().map(Axis::at);
         Self {
             axes,
-            turn: scalar::wrap_pi(fix.heading - yaw),
+            yaw_offset: scalar::wrap_pi(fix.heading - yaw),
             lift: 0.0,
             disturbance: Vec3::ZERO,
             at_us,
@@ -284,9 +285,9 @@ impl Track {
             height_us: fix.at_us,
             flows_refused: 0,
             resets: fix.resets,
-            jumps: 0,
+            reset_count: 0,
             ready: false,
-            foot: Foot::default(),
+            foot: RangeHit::default(),
             foot_us: 0,
         }
     }
@@ -327,13 +328,14 @@ impl Track {
     fn predict(&mut self, a: &Inertial, (lift, motor_tau): (f32, f32)) {
         let dt = seconds(self.at_us, a.at_us);
         self.at_us = a.at_us;
-        let force = about_down(a.q.rotate(a.accel), self.turn);
+        let force = about_down(a.q.rotate(a.accel), self.yaw_offset);
         let acceleration = force + Vec3::new(0.0, 0.0, GRAVITY);
         for (axis, acceleration) in self.axes.iter_mut().zip(acceleration.to_array()) {
             axis.predict(acceleration, dt);
         }
         // Across the thrust axis rotors push little: what is felt there is the air, and the arms' lean.
-        let across = about_down(a.q.rotate(Vec3::new(a.accel.x, a.accel.y, 0.0)), self.turn) - self.bias();
+        let across =
+            about_down(a.q.rotate(Vec3::new(a.accel.x, a.accel.y, 0.0)), self.yaw_offset) - self.bias();
         self.lift += (lift - self.lift) * dt / (dt + motor_tau);
         let down = acceleration.z - self.bias().z - GRAVITY + self.lift * a.q.down_in_body().z;
         let follow = |from: f32, to: f32, cutoff: f32| from + (to - from) * cutoff * dt / (1.0 + cutoff * dt);
@@ -346,8 +348,8 @@ impl Track {
     }
 
     /// Compares `fix` with where the vehicle was taken to be when it was measured.
-    fn take(&mut self, past: &mut Past, trust: &mut Trust, fix: &Fix) {
-        let Some(then) = past.at(fix.at_us) else {
+    fn take(&mut self, history: &mut StateHistory, pose_monitor: &mut ExternalPoseMonitor, fix: &Fix) {
+        let Some(then) = history.at(fix.at_us) else {
             return;
         };
         let yaw = then.yaw();
@@ -356,26 +358,26 @@ impl Track {
         let close = |((axis, y), r): ((&Axis, f32), f32)| axis.accepts(y, r);
         let pairs = self.axes.iter().zip(innovation.to_array());
         let accepted = pairs.zip(variance.to_array()).all(close);
-        let off = scalar::wrap_pi(fix.heading - yaw - self.turn);
+        let off = scalar::wrap_pi(fix.heading - yaw - self.yaw_offset);
         let unknown = self.left_out || seconds(self.pose_us, fix.at_us) > UNKNOWN_AGE;
         let elsewhere = !accepted || off.abs() > TURN_STEP;
         if !self.posed || fix.resets != self.resets || (unknown && elsewhere) {
-            past.clear();
+            history.clear();
             self.jump(yaw, fix);
         } else if accepted {
-            trust.gate(fix.at_us, false);
+            pose_monitor.note_gate(fix.at_us, false);
             let lag = seconds(fix.at_us, self.at_us);
             let mut changes = [Change::default(); 3];
             let inputs = innovation.to_array().into_iter().zip(variance.to_array());
             for ((axis, change), (y, r)) in self.axes.iter_mut().zip(&mut changes).zip(inputs) {
                 *change = axis.correct(y, r, lag);
             }
-            past.change(fix.at_us, &changes);
+            history.change(fix.at_us, &changes);
             let gain = scalar::clamp(1.0 / (1.0 + self.fixes as f32), TURN_GAIN, 1.0);
-            self.turn = scalar::wrap_pi(self.turn + gain * off);
+            self.yaw_offset = scalar::wrap_pi(self.yaw_offset + gain * off);
             self.count();
         } else {
-            trust.gate(fix.at_us, true);
+            pose_monitor.note_gate(fix.at_us, true);
             return;
         }
         (self.left_out, self.tainted) = (false, false);
@@ -404,18 +406,24 @@ impl Track {
     }
 
     /// Notes where the beam of a range of `distance` m, measured at `at` µs, has met something.
-    fn step_on(&mut self, past: &Past, lens: Vec3, at: u64, distance: Option<f32>) {
-        let Some(then) = past.at(at).map(|moment| moment.of(lens, self.turn)) else {
+    fn step_on(&mut self, history: &StateHistory, lens: Vec3, at: u64, distance: Option<f32>) {
+        let Some(then) = history.at(at).map(|moment| moment.of(lens, self.yaw_offset)) else {
             return;
         };
-        self.foot.point = distance.map(|d| then.position + beam(then.q, d, self.turn));
+        self.foot.point = distance.map(|d| then.position + beam(then.q, d, self.yaw_offset));
         self.foot.count = self.foot.count.wrapping_add(1);
         self.foot_us = at;
     }
 
     /// Compares a range of `distance` m, measured at `at` µs, with the height; beside a pose it gives the height of the ground alone.
-    fn take_range(&mut self, past: &mut Past, sight: &mut Sight, (at, distance): (u64, f32), posed: bool) {
-        let Some(then) = past.at(at) else {
+    fn take_range(
+        &mut self,
+        history: &mut StateHistory,
+        flow_range: &mut FlowRangeFusion,
+        (at, distance): (u64, f32),
+        posed: bool,
+    ) {
+        let Some(then) = history.at(at) else {
             return;
         };
         if distance < STANDING && !posed {
@@ -423,48 +431,56 @@ impl Track {
             let lag = seconds(at, self.at_us);
             let [x, y, _] = &mut self.axes;
             let [along, across] = [x, y].map(|axis| axis.correct_speed(-axis.velocity(), STAND_SPEED, lag));
-            past.change(at, &[along, across, Change::default()]);
+            history.change(at, &[along, across, Change::default()]);
         }
-        let earlier = past.at(at.saturating_sub(EDGE_TIME)).unwrap_or(then);
+        let earlier = history.at(at.saturating_sub(EDGE_TIME)).unwrap_or(then);
         // The lever is rigid: what the lens is off, the vehicle is.
-        let [earlier, then] = [earlier, then].map(|moment| moment.of(sight.lens, self.turn));
+        let [earlier, then] = [earlier, then].map(|moment| moment.of(flow_range.lens, self.yaw_offset));
         let [_, _, axis] = &mut self.axes;
-        let Some((innovation, variance)) = sight.height((&earlier, &then), distance, posed, self.turn) else {
+        let Some((innovation, variance)) =
+            flow_range.height((&earlier, &then), distance, posed, self.yaw_offset)
+        else {
             return;
         };
         let change = axis.correct(innovation, variance, seconds(at, self.at_us));
-        past.change(at, &[Change::default(), Change::default(), change]);
+        history.change(at, &[Change::default(), Change::default(), change]);
         self.height_us = at;
     }
 
     /// Compares the newest pressure, measured at `at` µs, with the height; beside range or pose it is only learnt from.
-    fn take_pressure(&mut self, past: &mut Past, aloft: &mut Aloft, at: u64) {
-        let Some(then) = past.at(at) else {
+    fn take_pressure(&mut self, history: &mut StateHistory, baro_height: &mut BaroHeight, at: u64) {
+        let Some(then) = history.at(at) else {
             return;
         };
         let known = seconds(self.height_us, at);
-        let Some((innovation, variance)) = aloft.height(then.position.z, known) else {
+        let Some((innovation, variance)) = baro_height.height(then.position.z, known) else {
             return;
         };
         let [_, _, axis] = &mut self.axes;
         if axis.accepts(innovation, variance) {
             let change = axis.correct(innovation, variance, seconds(at, self.at_us));
-            past.change(at, &[Change::default(), Change::default(), change]);
+            history.change(at, &[Change::default(), Change::default(), change]);
         } else {
-            aloft.refuse();
+            baro_height.refuse();
         }
     }
 
     /// Compares a flow with the velocity in its middle; beside a pose it is only watched.
-    fn take_flow(&mut self, past: &mut Past, sight: &mut Sight, flow: &Flow, posed: bool) {
+    fn take_flow(
+        &mut self,
+        history: &mut StateHistory,
+        flow_range: &mut FlowRangeFusion,
+        flow: &Flow,
+        posed: bool,
+    ) {
         let begin = flow.until_us.saturating_sub((flow.seconds * 1e6) as u64);
         let middle = begin + flow.until_us.saturating_sub(begin) / 2;
-        let (Some(from), Some(to)) = (past.at(begin), past.at(flow.until_us)) else {
+        let (Some(from), Some(to)) = (history.at(begin), history.at(flow.until_us)) else {
             return;
         };
         // Between the lens' two places lies the vehicle's way, and what its turning adds.
-        let [from, to] = [from, to].map(|moment| moment.of(sight.lens, self.turn));
-        let Some(seen) = sight.velocity(flow, &from, &to, self.turn) else {
+        let [from, to] = [from, to].map(|moment| moment.of(flow_range.lens, self.yaw_offset));
+        let Some(seen) = flow_range.velocity(flow, &from, &to, self.yaw_offset) else {
             return;
         };
         if posed {
@@ -486,7 +502,7 @@ impl Track {
         } else {
             let lag = seconds(middle, self.at_us);
             let [along, across] = sides.map(|(axis, off)| axis.correct_speed(off, seen.variance, lag));
-            past.change(middle, &[along, across, Change::default()]);
+            history.change(middle, &[along, across, Change::default()]);
             self.count();
         }
         self.flows_refused = 0;
@@ -495,9 +511,9 @@ impl Track {
 
     /// The sender's origin has jumped: velocity and bias stay, but for their turn.
     fn jump(&mut self, yaw: f32, fix: &Fix) {
-        let before = self.turn;
-        self.turn = scalar::wrap_pi(fix.heading - yaw);
-        let by = self.turn - before;
+        let before = self.yaw_offset;
+        self.yaw_offset = scalar::wrap_pi(fix.heading - yaw);
+        let by = self.yaw_offset - before;
         let velocity = about_down(self.velocity(), by);
         let bias = about_down(self.bias(), by);
         self.disturbance = about_down(self.disturbance, by);
@@ -508,7 +524,7 @@ impl Track {
             axis.jump(position, velocity, bias);
         }
         self.resets = fix.resets;
-        self.jumps = self.jumps.wrapping_add(1);
+        self.reset_count = self.reset_count.wrapping_add(1);
     }
 
     fn of(&self, value: impl Fn(&Axis) -> f32) -> Vec3 {
@@ -533,13 +549,13 @@ impl Track {
             position: self.position(),
             velocity: self.velocity(),
             disturbance: self.disturbance,
-            turn: self.turn,
+            yaw_offset: self.yaw_offset,
             age: seconds(self.fixed_us, self.at_us),
             by_pressure,
-            jumps: self.jumps,
+            reset_count: self.reset_count,
             foot: match self.foot_us {
-                0 => Foot::default(),
-                at => Foot {
+                0 => RangeHit::default(),
+                at => RangeHit {
                     age: seconds(at, self.at_us),
                     ..self.foot
                 },

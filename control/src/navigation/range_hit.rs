@@ -4,7 +4,7 @@ use crate::maths::vector::Vec3;
 
 /// Where the beam of a range has met what is below.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Foot {
+pub struct RangeHit {
     /// In the estimate's axes, m; `None` where nothing was within reach.
     pub point: Option<Vec3>,
     /// Counts the ranges.
@@ -13,7 +13,7 @@ pub struct Foot {
     pub age: f32,
 }
 
-impl Default for Foot {
+impl Default for RangeHit {
     /// None yet.
     fn default() -> Self {
         Self {

@@ -35,7 +35,7 @@ const JUMP: f32 = 0.12;
 
 /// The felt vertical speed, and the way flown by it.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Rise {
+pub struct VerticalFallback {
     /// Downwards, m/s, and the error of the felt acceleration, m/s².
     speed: f32,
     bias: f32,
@@ -50,16 +50,16 @@ pub struct Rise {
     pub steady: bool,
     /// What the estimate's height lacks, down, m, and how often its origin has jumped by that.
     lacks: f32,
-    jumps: u8,
+    reset_count: u8,
 }
 
-impl Rise {
+impl VerticalFallback {
     /// One step of `dt` s at `down` m/s² along world down; it runs while the vehicle `flies` free.
     pub fn step(&mut self, flies: bool, down: f32, estimate: Option<&Estimate>, dt: f32) {
-        let (bias, jumps) = (self.bias, self.jumps);
+        let (bias, reset_count) = (self.bias, self.reset_count);
         let begun = Self {
             bias,
-            jumps,
+            reset_count,
             ..Self::default()
         };
         if !flies {
@@ -97,7 +97,7 @@ impl Rise {
         self.speed += off * dt / FOLLOW;
         self.bias = clamp_abs(self.bias - off * dt / (FOLLOW * LEARN), BIAS_MAX);
         if self.lacks.abs() > JUMP {
-            (self.lacks, self.jumps) = (0.0, self.jumps.wrapping_add(1));
+            (self.lacks, self.reset_count) = (0.0, self.reset_count.wrapping_add(1));
         }
         self.lacks -= self.lacks * clamp(dt / RETURN_TIME, 0.0, 1.0);
     }
@@ -105,7 +105,7 @@ impl Rise {
     /// The estimate with the inertial height and vertical speed, while these are in use.
     pub fn apply(&self, mut e: Estimate) -> Estimate {
         e.position.z += self.lacks;
-        e.jumps = e.jumps.wrapping_add(self.jumps);
+        e.reset_count = e.reset_count.wrapping_add(self.reset_count);
         if let Some(point) = &mut e.foot.point {
             point.z += self.lacks;
         }

@@ -14,40 +14,40 @@ struct World {
     tilt: [[f32; 3]; 2],
     stages: [[f32; 2]; 2],
     wind: Vec3,
-    wish: Wish,
+    wish: VelocityCommand,
     known: bool,
     yaw: f32,
     out: Setpoint,
 }
 
 impl World {
-    fn new(yaw: f32, turn: f32) -> Self {
+    fn new(yaw: f32, yaw_offset: f32) -> Self {
         let e = Estimate {
-            turn,
+            yaw_offset,
             ..Estimate::default()
         };
-        let felt = Felt {
+        let motion = BodyMotion {
             q: Quat::from_euler(0.0, 0.0, yaw),
             rate: Vec3::ZERO,
             carried: false,
         };
         Self {
-            law: PositionHold::begin(&Params::DEFAULT, &e, &felt),
+            law: PositionHold::begin(&Params::DEFAULT, &e, &motion),
             e,
             tilt: [[0.0; 3]; 2],
             stages: [[0.0; 2]; 2],
             wind: Vec3::ZERO,
-            wish: Wish::default(),
+            wish: VelocityCommand::default(),
             known: true,
             yaw,
             out: Setpoint::Stop,
         }
     }
 
-    fn felt(&self) -> Felt {
+    fn motion(&self) -> BodyMotion {
         let [[f, fr, _], [r, rr, _]] = self.tilt;
         let q = Quat::from_euler(scalar::asin(r / GRAVITY), -scalar::asin(f / GRAVITY), self.yaw);
-        Felt {
+        BodyMotion {
             q,
             rate: Vec3::new(rr / GRAVITY, -fr / GRAVITY, 0.0),
             carried: false,
@@ -56,7 +56,7 @@ impl World {
 
     fn step(&mut self) {
         let p = Params::DEFAULT;
-        self.out = self.law.step(&self.e, &self.felt(), &self.wish, self.known, DT);
+        self.out = self.law.step(&self.e, &self.motion(), &self.wish, self.known, DT);
         let Setpoint::Angle {
             roll, pitch, thrust, ..
         } = self.out
@@ -77,7 +77,7 @@ impl World {
             }
             let [[f, ..], [r, ..]] = self.tilt;
             let up = thrust / p.mass - GRAVITY;
-            let level = about_down(Vec3::new(f, r, 0.0), self.yaw + self.e.turn);
+            let level = about_down(Vec3::new(f, r, 0.0), self.yaw + self.e.yaw_offset);
             let a = level + self.wind - Vec3::new(0.0, 0.0, up);
             self.e.velocity += a * dt;
             self.e.position += self.e.velocity * dt;
@@ -95,8 +95,8 @@ impl World {
 
 #[test]
 fn a_displaced_vehicle_returns_with_little_overshoot_whatever_its_heading() {
-    for (yaw, turn) in [(0.0, 0.0), (1.2, 0.7), (3.0, -1.0)] {
-        let mut w = World::new(yaw, turn);
+    for (yaw, yaw_offset) in [(0.0, 0.0), (1.2, 0.7), (3.0, -1.0)] {
+        let mut w = World::new(yaw, yaw_offset);
         w.e.position = Vec3::new(0.3, -0.2, 0.1);
         let start = w.e.position;
         let mut over = 0.0f32;
@@ -104,8 +104,12 @@ fn a_displaced_vehicle_returns_with_little_overshoot_whatever_its_heading() {
             w.step();
             over = over.max(-w.e.position.dot(start) / start.norm());
         }
-        assert!(w.e.position.norm() < 0.01, "{yaw} {turn}: {:?}", w.e.position);
-        assert!(over < 0.05, "{yaw} {turn}: {over}");
+        assert!(
+            w.e.position.norm() < 0.01,
+            "{yaw} {yaw_offset}: {:?}",
+            w.e.position
+        );
+        assert!(over < 0.05, "{yaw} {yaw_offset}: {over}");
     }
 }
 
@@ -132,7 +136,7 @@ fn sticks_ask_for_velocities_along_the_heading_and_centred_they_stop() {
     let v = w.run(6.0).velocity;
     let wanted = about_down(w.wish.velocity, 1.5);
     assert!((v - wanted).norm() < 0.03, "{v:?} {wanted:?}");
-    w.wish = Wish::default();
+    w.wish = VelocityCommand::default();
     w.run(5.0);
     let held = w.e.position;
     w.run(5.0);
@@ -158,7 +162,7 @@ fn at_a_turn_the_vehicle_follows_the_held_point() {
     assert!(off < 0.04, "{off}");
     // Where the wishes have led it is where it comes to rest.
     assert!((w.law.held() - led).norm() < 0.03, "{:?} {led:?}", w.law.held());
-    w.wish = Wish::default();
+    w.wish = VelocityCommand::default();
     let goal = w.law.held();
     w.run(6.0);
     assert!((w.e.position - goal).norm() < 0.04, "{:?} {goal:?}", w.e.position);
@@ -185,7 +189,7 @@ fn a_step_of_no_time_asks_for_a_finite_tilt() {
     let mut w = World::new(0.0, 0.0);
     w.wish.velocity.y = 0.3;
     for dt in [DT, 0.0, DT] {
-        let asked = w.law.step(&w.e, &w.felt(), &w.wish, true, dt);
+        let asked = w.law.step(&w.e, &w.motion(), &w.wish, true, dt);
         assert!(asked.is_finite(), "{dt}: {asked:?}");
     }
 }
@@ -199,12 +203,12 @@ fn what_is_touched_is_not_learnt_as_wind() {
     let learnt = w.law.wind;
     w.e.disturbance = Vec3::new(2.5, 0.0, 0.0);
     for _ in 0..200 {
-        w.law.step(&w.e, &w.felt(), &w.wish, true, DT);
+        w.law.step(&w.e, &w.motion(), &w.wish, true, DT);
     }
     assert_eq!(w.law.wind, learnt);
-    let carried = Felt {
+    let carried = BodyMotion {
         carried: true,
-        ..w.felt()
+        ..w.motion()
     };
     w.e.disturbance = Vec3::new(0.6, 0.0, 0.0);
     for _ in 0..200 {
@@ -218,7 +222,7 @@ fn a_jump_of_the_origin_moves_the_held_point_and_a_push_leaves_it_in_reach() {
     let mut w = World::new(0.0, 0.0);
     w.run(1.0);
     w.e.position = Vec3::new(50.0, 20.0, -3.0);
-    w.e.jumps = 1;
+    w.e.reset_count = 1;
     w.run(3.0);
     assert!((w.e.position - Vec3::new(50.0, 20.0, -3.0)).norm() < 0.02);
     w.e.position.x += 5.0;
@@ -230,9 +234,9 @@ fn a_jump_of_the_origin_moves_the_held_point_and_a_push_leaves_it_in_reach() {
 fn sinking_onto_something_hands_over_the_weight() {
     let mut w = World::new(0.0, 0.0);
     w.wish.velocity.z = CLIMB_MAX;
-    let carried = Felt {
+    let carried = BodyMotion {
         carried: true,
-        ..w.felt()
+        ..w.motion()
     };
     let mut thrust = f32::MAX;
     for _ in 0..300 {

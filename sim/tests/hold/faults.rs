@@ -5,7 +5,8 @@ mod sample;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use sample::FaultSample;
-use sophie_control::navigation::{external_pose::PoseFault as Called, flow_range::SightFault};
+use sophie_control::navigation::external_pose::PoseFault as Called;
+use sophie_control::navigation::flow_range::FlowRangeFault;
 use sophie_sim::sensors::flow::FlowFault;
 use sophie_sim::sensors::pose::PoseFault;
 
@@ -72,12 +73,12 @@ impl Fault {
         let named = match self {
             Self::Flow(FlowFault::RangeLong | FlowFault::RangeShort) => return None,
             Self::Flow(FlowFault::Silent | FlowFault::Dark | FlowFault::RangeSilent) => (stale, 2.5),
-            Self::Flow(FlowFault::Frozen) => (SightFault::FlowFrozen.text(), 1.0),
+            Self::Flow(FlowFault::Frozen) => (FlowRangeFault::FlowFrozen.text(), 1.0),
             Self::Flow(FlowFault::Mirrored | FlowFault::Scaled | FlowFault::Jumps) => {
-                (SightFault::FlowDisagrees.text(), 6.0)
+                (FlowRangeFault::FlowDisagrees.text(), 6.0)
             }
-            Self::Flow(FlowFault::RangeFrozen) => (SightFault::RangeFrozen.text(), 1.0),
-            Self::Flow(FlowFault::RangeJumps) => (SightFault::RangeJumps.text(), 6.0),
+            Self::Flow(FlowFault::RangeFrozen) => (FlowRangeFault::RangeFrozen.text(), 1.0),
+            Self::Flow(FlowFault::RangeJumps) => (FlowRangeFault::RangeJumps.text(), 6.0),
             Self::Pose(PoseFault::Silent) => (stale, 2.5),
             Self::Pose(PoseFault::Frozen) => (Called::Frozen.text(), 1.0),
             Self::Pose(PoseFault::Jumps) => (Called::Jumps.text(), 1.0),

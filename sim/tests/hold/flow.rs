@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use sophie_control::mode::Reason;
-use sophie_control::navigation::flow_range::SightFault;
+use sophie_control::navigation::flow_range::FlowRangeFault;
 use sophie_sim::flight::fly;
 use sophie_sim::record::{FlightRecord, Sample, Silent};
 use sophie_sim::scenario::{PositionSensor, Scenario, Step};
@@ -73,7 +73,7 @@ fn judge(seeds: impl Iterator<Item = u64>, seconds: f64) {
 }
 
 pub(super) fn blamed(record: &FlightRecord) -> bool {
-    let texts = SightFault::ALL.map(SightFault::text);
+    let texts = FlowRangeFault::ALL.map(FlowRangeFault::text);
     record
         .events
         .iter()
@@ -108,11 +108,11 @@ fn a_module_that_fails_is_named_or_missed_and_the_vehicle_is_level_and_high() {
     let cases = [
         (FlowFault::Silent, Reason::PositionStale.text()),
         (FlowFault::Dark, Reason::PositionStale.text()),
-        (FlowFault::Mirrored, SightFault::FlowDisagrees.text()),
-        (FlowFault::Scaled, SightFault::FlowDisagrees.text()),
-        (FlowFault::Frozen, SightFault::FlowFrozen.text()),
-        (FlowFault::RangeFrozen, SightFault::RangeFrozen.text()),
-        (FlowFault::RangeJumps, SightFault::RangeJumps.text()),
+        (FlowFault::Mirrored, FlowRangeFault::FlowDisagrees.text()),
+        (FlowFault::Scaled, FlowRangeFault::FlowDisagrees.text()),
+        (FlowFault::Frozen, FlowRangeFault::FlowFrozen.text()),
+        (FlowFault::RangeFrozen, FlowRangeFault::RangeFrozen.text()),
+        (FlowFault::RangeJumps, FlowRangeFault::RangeJumps.text()),
     ];
     let mut wrong = vec![];
     for (fault, text) in cases {

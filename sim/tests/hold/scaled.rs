@@ -1,6 +1,6 @@
 //! A range with a scale of 1.6 or 0.6: the stack names it in a climb, and never a sound range.
 
-use sophie_control::navigation::flow_range::SightFault;
+use sophie_control::navigation::flow_range::FlowRangeFault;
 use sophie_sim::sensors::flow::FlowFault;
 
 use super::autonomous::{campaign, mission};
@@ -14,7 +14,7 @@ const FOR: f64 = 30.0;
 
 /// Time at which it was named, s; `None` if never.
 fn named(record: &FlightRecord) -> Option<f64> {
-    let text = SightFault::RangeScaled.text();
+    let text = FlowRangeFault::RangeScaled.text();
     record.events.iter().find(|e| e.text.ends_with(text)).map(|e| e.t)
 }
 

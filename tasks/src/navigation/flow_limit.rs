@@ -2,7 +2,7 @@
 
 use embassy_time::{Duration, Instant};
 use sophie_control::mode::Mode;
-use sophie_control::navigation::flow_range::SightLimit;
+use sophie_control::navigation::flow_range::FlowRangeLimit;
 
 use crate::links::Links;
 
@@ -14,21 +14,21 @@ const LAST: Duration = Duration::from_millis(500);
 /// The limit that has lasted.
 #[derive(Default)]
 pub struct FlowLimit {
-    newest: Option<SightLimit>,
+    newest: Option<FlowRangeLimit>,
     since: Option<Instant>,
-    shown: Option<SightLimit>,
+    shown: Option<FlowRangeLimit>,
 }
 
 impl FlowLimit {
     /// One step in `mode`: what is shown.
-    pub fn step(&mut self, links: &Links, mode: Mode, now: Instant) -> Option<SightLimit> {
+    pub fn step(&mut self, links: &Links, mode: Mode, now: Instant) -> Option<FlowRangeLimit> {
         let flies = matches!(mode, Mode::Flight | Mode::Hold);
         let placed = links.position.fresh_to(now, |e| e.age <= PLACED_AGE);
         let view = links.ground.fresh().filter(|_| flies && placed != Some(true));
-        self.follow(view.and_then(|view| SightLimit::of(&view)), now)
+        self.follow(view.and_then(|view| FlowRangeLimit::of(&view)), now)
     }
 
-    fn follow(&mut self, limit: Option<SightLimit>, now: Instant) -> Option<SightLimit> {
+    fn follow(&mut self, limit: Option<FlowRangeLimit>, now: Instant) -> Option<FlowRangeLimit> {
         if limit != self.newest || self.since.is_none() {
             (self.newest, self.since) = (limit, Some(now));
         }
@@ -50,18 +50,19 @@ mod tests {
     fn what_flickers_at_an_edge_is_not_shown_and_what_lasts_is() {
         let mut limit = FlowLimit::default();
         let at = |ms: u64| Instant::from_millis(1000 + ms);
-        let flickers = |ms: u64| Some([SightLimit::TooLow, SightLimit::NoRange][(ms / 40 % 2) as usize]);
+        let flickers =
+            |ms: u64| Some([FlowRangeLimit::TooLow, FlowRangeLimit::NoRange][(ms / 40 % 2) as usize]);
         for ms in (0..2000).step_by(10) {
             assert_eq!(limit.follow(flickers(ms), at(ms)), None);
         }
         for ms in (2000..3000).step_by(10) {
-            let shown = limit.follow(Some(SightLimit::TooHigh), at(ms));
+            let shown = limit.follow(Some(FlowRangeLimit::TooHigh), at(ms));
             assert_eq!(shown.is_some(), ms >= 2500, "{ms}");
         }
         // It stays through a moment without, and goes with what lasts.
         for ms in (3000..3600).step_by(10) {
             let limit = limit.follow(None, at(ms));
-            assert_eq!(limit == Some(SightLimit::TooHigh), ms < 3500, "{ms}");
+            assert_eq!(limit == Some(FlowRangeLimit::TooHigh), ms < 3500, "{ms}");
         }
     }
 }

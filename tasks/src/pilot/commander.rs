@@ -6,7 +6,7 @@ use embassy_time::{Duration, Instant};
 use sophie_control::attitude::motion::Motion;
 use sophie_control::gripper::tendon::ForceLimit;
 use sophie_control::mode::{Inputs, Mode, ModeLogic, Outputs};
-use sophie_control::navigation::flow_range::SightLimit;
+use sophie_control::navigation::flow_range::FlowRangeLimit;
 
 use crate::deadline::FixedRate;
 use crate::links::Links;
@@ -63,7 +63,7 @@ pub async fn run(links: &Links) -> ! {
 }
 
 /// Warning that does not affect the modes.
-fn warning(links: &Links, mode: Mode, limit: Option<SightLimit>) -> &'static str {
+fn warning(links: &Links, mode: Mode, limit: Option<FlowRangeLimit>) -> &'static str {
     let started = Warning::Restarted(links.start.cause);
     let servos = Warning::Servos(links.servo_supply());
     let clipped = links

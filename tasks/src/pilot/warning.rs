@@ -4,7 +4,7 @@ use sophie_control::arming::ArmingInhibit;
 use sophie_control::battery::ServoSupply;
 use sophie_control::navigation::baro_height::PressureFault;
 use sophie_control::navigation::external_pose::PoseFault;
-use sophie_control::navigation::flow_range::{SightFault, SightLimit};
+use sophie_control::navigation::flow_range::{FlowRangeFault, FlowRangeLimit};
 use sophie_control::navigation::position_estimator::Fault;
 
 use sophie_ports::retained::StartCause;
@@ -25,7 +25,7 @@ pub enum Warning {
     /// Pose, flow, range or air pressure is left out as faulty.
     Position(Fault),
     /// Flow cannot be used where the vehicle is.
-    Limit(SightLimit),
+    Limit(FlowRangeLimit),
     /// The servo cannot give the force limit of the parameters.
     ServoWeak,
     /// The arms are softer than any flown.
@@ -47,18 +47,18 @@ impl Warning {
         Self::Position(Fault::Pose(PoseFault::Frozen)),
         Self::Position(Fault::Pose(PoseFault::Jumps)),
         Self::Position(Fault::Pose(PoseFault::Disagrees)),
-        Self::Position(Fault::Sight(SightFault::FlowFrozen)),
-        Self::Position(Fault::Sight(SightFault::FlowDisagrees)),
-        Self::Position(Fault::Sight(SightFault::RangeFrozen)),
-        Self::Position(Fault::Sight(SightFault::RangeJumps)),
-        Self::Position(Fault::Sight(SightFault::RangeScaled)),
+        Self::Position(Fault::FlowRange(FlowRangeFault::FlowFrozen)),
+        Self::Position(Fault::FlowRange(FlowRangeFault::FlowDisagrees)),
+        Self::Position(Fault::FlowRange(FlowRangeFault::RangeFrozen)),
+        Self::Position(Fault::FlowRange(FlowRangeFault::RangeJumps)),
+        Self::Position(Fault::FlowRange(FlowRangeFault::RangeScaled)),
         Self::Position(Fault::Pressure(PressureFault::Frozen)),
         Self::Position(Fault::Pressure(PressureFault::Jumps)),
         Self::Position(Fault::Pressure(PressureFault::Disagrees)),
-        Self::Limit(SightLimit::TooLow),
-        Self::Limit(SightLimit::TooHigh),
-        Self::Limit(SightLimit::NoRange),
-        Self::Limit(SightLimit::TooDark),
+        Self::Limit(FlowRangeLimit::TooLow),
+        Self::Limit(FlowRangeLimit::TooHigh),
+        Self::Limit(FlowRangeLimit::NoRange),
+        Self::Limit(FlowRangeLimit::TooDark),
         Self::ServoWeak,
         Self::InfillLow,
     ];

@@ -1,13 +1,11 @@
 //! The warnings on the page of what the display says, each with what he is to do.
 
+use sophie_control::navigation::flow_range::FlowRangeFault;
+use sophie_control::navigation::flow_range::FlowRangeLimit;
 use std::fmt::Write;
 
 use sophie_control::battery::ServoSupply;
-use sophie_control::navigation::{
-    external_pose::PoseFault,
-    flow_range::{SightFault, SightLimit},
-    position_estimator::Fault,
-};
+use sophie_control::navigation::{external_pose::PoseFault, position_estimator::Fault};
 use sophie_ports::retained::StartCause;
 use sophie_tasks::pilot::warning::Warning;
 
@@ -43,26 +41,26 @@ fn to_do(warning: Warning) -> &'static str {
         Warning::Position(Fault::Pose(PoseFault::Disagrees)) => {
             "Steer it, land; the sender's axes, heading and scale ([holding](position-sources.md#external-poses))."
         }
-        Warning::Position(Fault::Sight(SightFault::FlowDisagrees)) => {
+        Warning::Position(Fault::FlowRange(FlowRangeFault::FlowDisagrees)) => {
             "Steer it, land; `flow_mounting`, `flow_scale`, the module's place ([holding](position-sources.md#flow-and-range))."
         }
-        Warning::Position(Fault::Sight(SightFault::FlowFrozen | SightFault::RangeFrozen)) => {
+        Warning::Position(Fault::FlowRange(FlowRangeFault::FlowFrozen | FlowRangeFault::RangeFrozen)) => {
             "Steer it, land: a new module."
         }
-        Warning::Position(Fault::Sight(SightFault::RangeJumps)) => {
+        Warning::Position(Fault::FlowRange(FlowRangeFault::RangeJumps)) => {
             "Steer it away from what is rough below; look at the lens."
         }
-        Warning::Position(Fault::Sight(SightFault::RangeScaled)) => {
+        Warning::Position(Fault::FlowRange(FlowRangeFault::RangeScaled)) => {
             "Steer it, land; the module's unit of length. It counts again once it has climbed as far as the vehicle."
         }
         Warning::Position(Fault::Pressure(_)) => {
             "Go on: it counts where pose or range are lost alone. Foam over the barometer, or a new board."
         }
-        Warning::Limit(SightLimit::TooLow | SightLimit::TooHigh) => {
+        Warning::Limit(FlowRangeLimit::TooLow | FlowRangeLimit::TooHigh) => {
             "Fly within 8 cm to 2.5 m of what is below, or by hand."
         }
-        Warning::Limit(SightLimit::NoRange) => "Come down, or off the edge.",
-        Warning::Limit(SightLimit::TooDark) => "By hand: more light, a floor with a pattern.",
+        Warning::Limit(FlowRangeLimit::NoRange) => "Come down, or off the edge.",
+        Warning::Limit(FlowRangeLimit::TooDark) => "By hand: more light, a floor with a pattern.",
         Warning::ServoWeak => {
             "`servo_torque_max` is above what `servo_stall` gives: a full grip may not hold."
         }

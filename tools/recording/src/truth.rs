@@ -184,7 +184,7 @@ impl Errors {
             return;
         };
         if self.laid.is_none() {
-            let turn = truth.attitude.map(|a| scalar::wrap_pi(a.z - yaw - e.turn));
+            let turn = truth.attitude.map(|a| scalar::wrap_pi(a.z - yaw - e.yaw_offset));
             self.laid = turn.map(|turn| {
                 let place = truth.place.unwrap_or_default();
                 (turn, place - about_down(e.position, turn))

@@ -67,12 +67,12 @@ impl World {
 }
 
 /// How a try ends: the law, where the vehicle is then, and after how long.
-fn flown(world: World, law: Approach) -> (Result<(), Doubt>, Vec3, Approach, f32) {
+fn flown(world: World, law: ApproachPlanner) -> (Result<(), ApproachAbort>, Vec3, ApproachPlanner, f32) {
     let (mut law, mut held, mut speed) = (law, law.origin, Vec3::ZERO);
-    let mut foot = Foot::default();
+    let mut foot = RangeHit::default();
     for i in 0..12_000 {
         if i % 2 == 0 {
-            foot = Foot {
+            foot = RangeHit {
                 point: world.below_lens(held, law.lens).and_then(|point| {
                     let (from, until, scale) = world.scaled;
                     let wrong = (from..until).contains(&(i as f32 * DT));
@@ -116,21 +116,21 @@ fn flown(world: World, law: Approach) -> (Result<(), Doubt>, Vec3, Approach, f32
     panic!("neither touch nor doubt in 120 s: {law:?}");
 }
 
-fn begun(world: &World) -> Approach {
+fn begun(world: &World) -> ApproachPlanner {
     begun_by(world, &Params::default())
 }
 
-fn begun_by(world: &World, p: &Params) -> Approach {
+fn begun_by(world: &World, p: &Params) -> ApproachPlanner {
     let view = View {
         position: Vec3::ZERO,
         velocity: Vec3::ZERO,
         heading: world.heading,
         held: Vec3::ZERO,
         age: 0.0,
-        foot: Foot::default(),
+        foot: RangeHit::default(),
         target: None,
     };
-    Approach::begin(p, &view, world.heading, 0)
+    ApproachPlanner::begin(p, &view, world.heading, 0)
 }
 
 #[test]
@@ -177,7 +177,7 @@ fn with_the_lens_beside_its_centre_it_touches_on_the_crown_as_far_from_the_ends(
         };
         assert_eq!(
             flown(short, begun_by(&short, &p)).0,
-            Err(Doubt::TooShort),
+            Err(ApproachAbort::TooShort),
             "{x} {y} {z}"
         );
     }
@@ -194,7 +194,7 @@ fn it_sinks_no_faster_than_it_may_and_only_over_the_crown() {
             heading: world.heading,
             held,
             age: 0.0,
-            foot: Foot {
+            foot: RangeHit {
                 point: world.below(held),
                 count: (i % 256) as u8,
                 age: 0.0,
@@ -229,7 +229,7 @@ fn it_keeps_away_from_an_end_and_refuses_a_pipe_that_is_too_short() {
         ends: (-0.2, 0.25),
         ..WORLD
     };
-    assert_eq!(flown(short, begun(&short)).0, Err(Doubt::TooShort));
+    assert_eq!(flown(short, begun(&short)).0, Err(ApproachAbort::TooShort));
 }
 
 #[test]
@@ -247,11 +247,11 @@ fn what_the_beam_comes_back_onto_has_not_ended() {
 fn what_is_no_pipe_or_too_wide_for_it_is_none() {
     let none = World { right: 5.0, ..WORLD };
     let (end, at, ..) = flown(none, begun(&none));
-    assert_eq!(end, Err(Doubt::NoPipe));
+    assert_eq!(end, Err(ApproachAbort::NoPipe));
     // Where it gives up the height is that of the beginning.
     assert!(at.z.abs() < 1e-3, "{at:?}");
     let wall = World { radius: 0.4, ..WORLD };
-    assert_eq!(flown(wall, begun(&wall)).0, Err(Doubt::NoPipe));
+    assert_eq!(flown(wall, begun(&wall)).0, Err(ApproachAbort::NoPipe));
 }
 
 /// One that had become too long was flown by: the vehicle hovered at the gate where flow sees nothing, or in another search lower
@@ -267,7 +267,10 @@ fn a_range_that_shows_higher_steps_than_before_ends_it() {
                 ..WORLD
             };
             let (end, at, law, seconds) = flown(world, begun(&world));
-            let found = matches!(end, Err(Doubt::RangeLong | Doubt::RangeMisfit | Doubt::PipeLost));
+            let found = matches!(
+                end,
+                Err(ApproachAbort::RangeLong | ApproachAbort::RangeMisfit | ApproachAbort::PipeLost)
+            );
             assert!(found, "{from} {ground}: {end:?} {law:?}");
             let above = world.crown - at.z;
             assert!(
@@ -290,7 +293,7 @@ fn a_range_that_is_back_soon_is_no_other_step() {
                 ..WORLD
             };
             let (end, ..) = flown(world, begun(&world));
-            let misfit = matches!(end, Err(Doubt::RangeLong | Doubt::RangeMisfit));
+            let misfit = matches!(end, Err(ApproachAbort::RangeLong | ApproachAbort::RangeMisfit));
             assert!(!misfit, "{from} {ground}: {end:?}");
         }
     }
@@ -316,7 +319,7 @@ fn uneven_ground_and_a_range_that_is_a_little_off_are_no_other_steps() {
                 ..WORLD
             };
             let (end, ..) = flown(world, begun(&world));
-            let misfit = matches!(end, Err(Doubt::RangeLong | Doubt::RangeMisfit));
+            let misfit = matches!(end, Err(ApproachAbort::RangeLong | ApproachAbort::RangeMisfit));
             assert!(!misfit, "{from} {scale}: {end:?}");
         }
     }
@@ -355,27 +358,27 @@ fn without_a_range_and_where_nothing_is_touched_it_gives_up() {
         heading: 0.4,
         held: Vec3::ZERO,
         age: 0.0,
-        foot: Foot {
+        foot: RangeHit {
             age: RANGE_AGE - 0.01,
-            ..Foot::default()
+            ..RangeHit::default()
         },
         target: None,
     };
     assert!(law.step(&view, DT).is_ok());
     view.foot.age = RANGE_AGE + 0.01;
-    assert_eq!(law.step(&view, DT), Err(Doubt::RangeStale));
+    assert_eq!(law.step(&view, DT), Err(ApproachAbort::RangeStale));
     law.phase = Phase::Commit;
     let steps = (0..1000).take_while(|_| law.step(&view, DT).is_ok()).count();
     assert!((steps as f32 * DT - TOUCH_WAIT).abs() < 0.05, "{steps}");
     view.position.y = 0.2;
     law.since = 0.0;
-    assert_eq!(law.step(&view, DT), Err(Doubt::NotCentred));
+    assert_eq!(law.step(&view, DT), Err(ApproachAbort::NotCentred));
     // The wind keeps it from sweeping.
     let mut law = begun(&WORLD);
     view.foot.age = 0.0;
     let steps = (0..10_000).take_while(|_| law.step(&view, DT).is_ok()).count();
     assert!((steps as f32 * DT - SEARCH_TIME).abs() < 0.1, "{steps}");
-    assert_eq!(law.step(&view, DT), Err(Doubt::NoPipe));
+    assert_eq!(law.step(&view, DT), Err(ApproachAbort::NoPipe));
 }
 
 #[test]
@@ -387,14 +390,14 @@ fn another_try_climbs_before_it_searches_and_leaving_only_climbs() {
         heading: world.heading,
         held: Vec3::new(0.0, 0.0, 0.5),
         age: 0.0,
-        foot: Foot::default(),
+        foot: RangeHit::default(),
         target: None,
     };
-    let law = Approach::again(&Params::default(), &view, world.heading, 0, true);
+    let law = ApproachPlanner::again(&Params::default(), &view, world.heading, 0, true);
     let (end, at, ..) = flown(world, law);
     assert_eq!(end, Ok(()));
     assert!((at.z - 0.5 + HIGH).abs() < 0.1, "{at:?}");
-    let law = Approach::again(&Params::default(), &view, world.heading, 0, false);
+    let law = ApproachPlanner::again(&Params::default(), &view, world.heading, 0, false);
     let (end, at, ..) = flown(world, law);
     assert_eq!(end, Ok(()));
     assert!(world.beside(at).0.abs() < 0.015, "{at:?}");
@@ -416,7 +419,7 @@ fn another_try_from_a_search_climbs_no_higher_than_over_what_it_has_met() {
             heading: world.heading,
             held: Vec3::ZERO,
             age: 0.0,
-            foot: Foot {
+            foot: RangeHit {
                 point: world.below(Vec3::ZERO),
                 count: 1,
                 age: 0.0,
@@ -437,7 +440,7 @@ fn another_try_from_a_search_climbs_no_higher_than_over_what_it_has_met() {
 }
 
 /// Over the crown on the way down: at `range` m, sinking at `sinks` m/s, the newest flow `age` s old.
-fn descending(range: f32, sinks: f32, age: f32) -> (Approach, View) {
+fn descending(range: f32, sinks: f32, age: f32) -> (ApproachPlanner, View) {
     let world = World { right: 0.0, ..WORLD };
     let place = Vec3::new(0.0, 0.0, world.crown - range);
     let view = View {
@@ -446,7 +449,7 @@ fn descending(range: f32, sinks: f32, age: f32) -> (Approach, View) {
         heading: world.heading,
         held: place,
         age,
-        foot: Foot {
+        foot: RangeHit {
             point: world.below(place),
             count: 1,
             age: 0.0,
@@ -545,18 +548,18 @@ fn a_search_about_where_the_pipe_was_finds_it_from_where_an_escape_ends() {
         heading: world.heading,
         held: Vec3::ZERO,
         age: 0.0,
-        foot: Foot::default(),
+        foot: RangeHit::default(),
         target: None,
     };
     let p = Params::default();
     assert_eq!(
-        flown(world, Approach::again(&p, &view, world.heading, 0, false)).0,
-        Err(Doubt::NoPipe)
+        flown(world, ApproachPlanner::again(&p, &view, world.heading, 0, false)).0,
+        Err(ApproachAbort::NoPipe)
     );
     // The flow has drifted by as much as 0.6 m meanwhile.
     for drift in [-0.6, 0.0, 0.6] {
         let crown = about_down(Vec3::new(0.1, world.right + drift, world.crown), world.heading);
-        let law = Approach::back_to(crown, &p, &view, world.heading, 0);
+        let law = ApproachPlanner::back_to(crown, &p, &view, world.heading, 0);
         let (end, at, law, seconds) = flown(world, law);
         assert_eq!(end, Ok(()), "{drift}: {law:?}");
         let (y, x) = world.beside(at);

@@ -10,7 +10,7 @@ use crate::pilot::stick_positions::{THROTTLE_CENTRE, centred};
 pub const TRIES: u8 = 5;
 /// What the vehicle does without the pilot's sticks.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ByItself {
+pub struct AutoPerch {
     /// It perches or leaves by itself, or has come here so.
     pub active: bool,
     /// It is leaving: there is no other try.
@@ -27,7 +27,7 @@ pub struct ByItself {
     pub crown: Option<(Vec3, u8)>,
 }
 
-impl ByItself {
+impl AutoPerch {
     /// The first try, at `heading` rad.
     pub fn begin(&mut self, heading: f32) {
         *self = Self {

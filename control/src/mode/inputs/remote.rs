@@ -78,12 +78,12 @@ impl Remote {
         }
     }
 
-    /// `mode` begins, which the vehicle has come to `by_itself` or not. True where the order ends with it.
-    pub fn enters(&mut self, mode: Mode, by_itself: bool) -> bool {
+    /// `mode` begins, which the vehicle has come to `auto_perch` or not. True where the order ends with it.
+    pub fn enters(&mut self, mode: Mode, auto_perch: bool) -> bool {
         let grips = match mode {
             Mode::Flight | Mode::Contact | Mode::Clamping | Mode::Perched | Mode::Releasing => true,
             // The way to the next try, and off the pipe.
-            Mode::Approach | Mode::Escaping => by_itself,
+            Mode::Approach | Mode::Escaping => auto_perch,
             _ => false,
         };
         !grips && self.perch.take().is_some()

@@ -13,9 +13,9 @@ const SINK_SHARE: f32 = 0.15;
 
 /// Level and sinking, at the roll, pitch and yaw rate of `steer`.
 pub fn descent(context: &Context, steer: Option<Sticks>) -> Setpoint {
-    let short = clamp(1.0 - context.support.sink() / SINK_RATE, 0.0, 1.0);
-    let share = clamp(1.0 - SINK_SHARE * short - context.probe.share(), 0.0, 1.0);
-    let thrust = share * context.support.weight();
+    let short = clamp(1.0 - context.contact_force.sink() / SINK_RATE, 0.0, 1.0);
+    let share = clamp(1.0 - SINK_SHARE * short - context.ground_probe.share(), 0.0, 1.0);
+    let thrust = share * context.contact_force.weight();
     let steer = Sticks {
         stick_mode: StickMode::Angle,
         ..steer.unwrap_or_default()

@@ -1,9 +1,9 @@
-//! The spot on which the failsafe comes down where the position is known: straight below, or beside the pipe that is there.
+//! The point on which the failsafe comes down where the position is known: straight below, or beside the pipe that is there.
 
 use super::coasting_hold::CoastingHold;
 use super::collective::HAND_OVER_TIME;
 use super::descent::descent;
-use super::stick_velocity::wished;
+use super::stick_velocity::velocity_from_sticks;
 use crate::chain::setpoint::Setpoint;
 use crate::contact::contact_force::HINT_FORCE;
 use crate::maths::frames::about_down;
@@ -12,7 +12,7 @@ use crate::maths::vector::Vec3;
 use crate::mode::context::{Context, Step};
 use crate::navigation::estimate::Estimate;
 use crate::pilot::rc::Sticks;
-use crate::position_hold::{PositionHold, Wish};
+use crate::position_hold::{PositionHold, VelocityCommand};
 
 /// Speed and climb of the way off the pipe, m/s, and its time with nothing that carries, s: with the stop 1 m, where the
 /// largest pipe and the propellers' reach take 0.5 m.
@@ -45,7 +45,7 @@ impl Aside {
 /// The level direction to the side of the nose to which the vehicle moves, length 1, in the estimate's axes.
 fn sideways(step: &Step<'_>) -> Option<Vec3> {
     let (estimate, motion) = (step.inputs.position?, step.inputs.motion?);
-    let nose = motion.q.to_euler().2 + estimate.turn;
+    let nose = motion.q.to_euler().2 + estimate.yaw_offset;
     let right = about_down(Vec3::new(0.0, 1.0, 0.0), nose);
     let onwards = if right.dot(estimate.velocity) < 0.0 {
         -1.0
@@ -57,13 +57,13 @@ fn sideways(step: &Step<'_>) -> Option<Vec3> {
 
 /// Holds the vehicle over the spot.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Spot {
+pub struct LandingPoint {
     hold: CoastingHold,
     aside: Option<Aside>,
     wanted: Setpoint,
 }
 
-impl Spot {
+impl LandingPoint {
     /// Where `hold` holds the vehicle.
     pub fn held(hold: CoastingHold, step: &mut Step<'_>) -> Self {
         Self::begin(hold, None, step)
@@ -90,7 +90,7 @@ impl Spot {
 
     fn from_here(aside: Option<Aside>, step: &mut Step<'_>) -> Option<Self> {
         let estimate = step.inputs.position.filter(|_| step.inputs.position_fresh())?;
-        let law = PositionHold::begin(&step.context.params, &estimate, &step.felt());
+        let law = PositionHold::begin(&step.context.params, &estimate, &step.body_motion());
         Some(Self::begin(CoastingHold::new(law), aside, step))
     }
 
@@ -112,15 +112,15 @@ impl Spot {
         let estimate = step.inputs.position.unwrap_or_default();
         let wish = match self.way_off(&estimate, step) {
             Some(wish) => wish,
-            None => wished(&pilot.unwrap_or_default(), 0.0, step.context),
+            None => velocity_from_sticks(&pilot.unwrap_or_default(), 0.0, step.context),
         };
         self.wanted = self.hold.step(&estimate, &wish, step);
     }
 
     /// What the way off the pipe asks for, until it has ended.
-    fn way_off(&mut self, estimate: &Estimate, step: &mut Step<'_>) -> Option<Wish> {
+    fn way_off(&mut self, estimate: &Estimate, step: &mut Step<'_>) -> Option<VelocityCommand> {
         let aside = self.aside.as_mut()?;
-        let carried = step.context.support.resting();
+        let carried = step.context.contact_force.resting();
         aside.left -= if carried { 0.0 } else { step.dt };
         aside.limit -= step.dt;
         if aside.left <= 0.0 || aside.limit <= 0.0 {
@@ -128,12 +128,12 @@ impl Spot {
             step.context.collective.hand_over(HAND_OVER_TIME);
             return None;
         }
-        let nose = step.inputs.motion.map_or(0.0, |m| m.q.to_euler().2) + estimate.turn;
+        let nose = step.inputs.motion.map_or(0.0, |m| m.q.to_euler().2) + estimate.yaw_offset;
         let speed = if carried { 0.0 } else { ASIDE_SPEED };
         let level = about_down(aside.direction, -nose) * speed;
-        Some(Wish {
+        Some(VelocityCommand {
             velocity: Vec3::new(level.x, level.y, -ASIDE_CLIMB),
-            ..Wish::default()
+            ..VelocityCommand::default()
         })
     }
 
@@ -147,7 +147,7 @@ impl Spot {
                 pitch,
                 yaw_rate,
                 ..
-            } if context.support.force() <= HINT_FORCE => Setpoint::Angle {
+            } if context.contact_force.force() <= HINT_FORCE => Setpoint::Angle {
                 roll,
                 pitch,
                 yaw_rate,

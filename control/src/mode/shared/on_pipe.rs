@@ -25,7 +25,7 @@ const LIFT_SHARE: f32 = 0.5;
 const HELD_SHARE: f32 = 0.6;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Hold {
+pub struct PipeAttitudeHold {
     /// Held roll, rad.
     pub roll: f32,
     /// Held pitch, rad.
@@ -34,7 +34,7 @@ pub struct Hold {
     pub arms: ArmChoice,
 }
 
-impl Hold {
+impl PipeAttitudeHold {
     /// Levels the roll by one step: on the crown of a pipe, an unstable seat, a held lean would grow as the rotors
     /// return the weight. Pitch stays: it is the pipe's slope.
     pub fn levelled(self, dt: f32) -> Self {
@@ -92,7 +92,7 @@ impl Spool {
 
     /// Setpoint at a full collective of `thrust` N. At the end of the ramp the rotors only lift: at little thrust a
     /// moment would come from single rotors and stop with a jolt.
-    pub fn rotors(self, hold: Hold, thrust: f32) -> Setpoint {
+    pub fn rotors(self, hold: PipeAttitudeHold, thrust: f32) -> Setpoint {
         let thrust = self.share * thrust;
         if self.down && self.share < LIFT_SHARE {
             Setpoint::Direct {

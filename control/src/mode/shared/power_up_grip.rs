@@ -17,7 +17,7 @@ use crate::pilot::rc::ArmChoice;
 pub const AVERAGING_TIME: f32 = 0.5;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Felt {
+struct PressureMean {
     /// Integral, Pa s.
     sum: f32,
     /// Duration, s.
@@ -27,7 +27,7 @@ struct Felt {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PowerUpGripCheck {
     time: f32,
-    felt: PerArm<Felt>,
+    mean: PerArm<PressureMean>,
 }
 
 impl PowerUpGripCheck {
@@ -38,13 +38,13 @@ impl PowerUpGripCheck {
             return None;
         }
         self.time += dt;
-        for (felt, pressure) in self.felt.iter_mut().zip(pressure) {
+        for (mean, pressure) in self.mean.iter_mut().zip(pressure) {
             if let Some(pressure) = pressure {
-                felt.sum += pressure * dt;
-                felt.time += dt;
+                mean.sum += pressure * dt;
+                mean.time += dt;
             }
         }
-        (self.time >= AVERAGING_TIME).then(|| self.felt.map(|felt| felt.sum > least * felt.time))
+        (self.time >= AVERAGING_TIME).then(|| self.mean.map(|mean| mean.sum > least * mean.time))
     }
 }
 

@@ -1,7 +1,7 @@
 //! Free flight onto the pipe, or off it, by itself.
 
 use crate::approach::limits::RANGE_AGE;
-use crate::approach::planner::{Approach as Law, Doubt, View};
+use crate::approach::planner::{ApproachAbort, ApproachPlanner, View};
 use crate::arming::ArmingInhibits;
 use crate::chain::setpoint::Setpoint;
 use crate::contact::contact_force::HINT_FORCE;
@@ -13,20 +13,20 @@ use crate::mode::inputs::auto_perch::TRIES;
 use crate::mode::reason::Reason;
 use crate::navigation::estimate::Estimate;
 use crate::pilot::stick_positions::{centred, keeps_hold};
-use crate::position_hold::{PositionHold, Wish};
+use crate::position_hold::{PositionHold, VelocityCommand};
 
 /// See [`crate::mode::Mode::Approach`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Approach {
     pub law: PositionHold,
-    way: Law,
+    planner: ApproachPlanner,
     wanted: Setpoint,
     /// Why no other try follows.
-    pub given_up: Option<Reason>,
+    pub abort_reason: Option<Reason>,
     /// The same, once it has climbed.
-    gives_up: Option<Reason>,
+    pending_abort_reason: Option<Reason>,
     /// The try ends at a touch.
-    astray: bool,
+    aborted_in_contact: bool,
 }
 
 /// The perch switch was turned on while the position is held.
@@ -47,7 +47,7 @@ pub fn obstacle(step: &Step<'_>) -> Option<Reason> {
     } else if !step.inputs.position_fresh() {
         Some(Reason::NoPosition)
     } else if let (Some(target), Some(e)) = (step.inputs.target, step.inputs.position) {
-        (!Law::reaches(&target, &e)).then_some(Reason::TargetFar)
+        (!ApproachPlanner::reaches(&target, &e)).then_some(Reason::TargetFar)
     } else if !step.inputs.position.is_some_and(ranged) {
         Some(Reason::NoRange)
     } else {
@@ -59,18 +59,20 @@ impl Approach {
     /// Searches from where `law` holds.
     pub fn search(law: Option<PositionHold>, step: &mut Step<'_>) -> Self {
         Self::begin(law, step, |step, view, e| {
-            Law::begin(&step.context.params, view, heading(step, e), e.jumps)
+            ApproachPlanner::begin(&step.context.params, view, heading(step, e), e.reset_count)
         })
     }
 
     /// Climbs, for another search or to be `left` there.
     pub fn climb(step: &mut Step<'_>, left: bool) -> Self {
-        let crown = step.context.by_itself.crown.filter(|_| !left);
+        let crown = step.context.auto_perch.crown.filter(|_| !left);
         Self::begin(None, step, |step, view, e| {
             let (params, heading) = (&step.context.params, heading(step, e));
             match crown {
-                Some((crown, jumps)) if jumps == e.jumps => Law::back_to(crown, params, view, heading, jumps),
-                _ => Law::again(params, view, heading, e.jumps, left),
+                Some((crown, reset_count)) if reset_count == e.reset_count => {
+                    ApproachPlanner::back_to(crown, params, view, heading, reset_count)
+                }
+                _ => ApproachPlanner::again(params, view, heading, e.reset_count, left),
             }
         })
     }
@@ -78,18 +80,19 @@ impl Approach {
     fn begin(
         law: Option<PositionHold>,
         step: &mut Step<'_>,
-        way: impl Fn(&Step<'_>, &View, &Estimate) -> Law,
+        planner: impl Fn(&Step<'_>, &View, &Estimate) -> ApproachPlanner,
     ) -> Self {
         let estimate = step.inputs.position.unwrap_or_default();
-        let law = law.unwrap_or_else(|| PositionHold::begin(&step.context.params, &estimate, &step.felt()));
-        let way = way(step, &view(&law, &estimate, step), &estimate);
+        let law =
+            law.unwrap_or_else(|| PositionHold::begin(&step.context.params, &estimate, &step.body_motion()));
+        let planner = planner(step, &view(&law, &estimate, step), &estimate);
         let mut approach = Self {
             law,
-            way,
+            planner,
             wanted: Setpoint::Stop,
-            given_up: None,
-            gives_up: None,
-            astray: false,
+            abort_reason: None,
+            pending_abort_reason: None,
+            aborted_in_contact: false,
         };
         approach.step(&estimate, step);
         approach
@@ -97,84 +100,87 @@ impl Approach {
 
     /// It is on the way down to the pipe.
     pub fn committed(&self) -> bool {
-        self.way.committed()
+        self.planner.committed()
     }
 
     /// It crosses the pipe at a height, and touches nothing.
-    pub fn unaware(&self) -> bool {
-        !self.committed() && !self.way.climbs()
+    pub fn not_committed(&self) -> bool {
+        !self.committed() && !self.planner.climbs()
     }
 
     /// Its try has ended while something seemed to carry it.
-    pub fn astray(&self) -> bool {
-        self.astray
+    pub fn aborted_in_contact(&self) -> bool {
+        self.aborted_in_contact
     }
 
     /// It has climbed off the pipe.
     pub fn has_left(&self) -> bool {
-        self.way.has_left()
+        self.planner.has_left()
     }
 
     /// The level way off the pipe for a vehicle at `position`, length 1, in the estimate's axes; `None` where none is known.
     pub fn off_pipe(&self, position: Vec3) -> Option<Vec3> {
-        self.way.off_pipe(position)
+        self.planner.off_pipe(position)
     }
 
     fn step(&mut self, estimate: &Estimate, step: &mut Step<'_>) {
         let seen = view(&self.law, estimate, step);
-        if step.context.rise.misfit() && !self.way.leaves() {
+        if step.context.vertical_fallback.misfit() && !self.planner.leaves() {
             self.misfit(false, &seen, estimate, step);
         }
-        let result = if self.way.jumped(estimate.jumps) {
-            Err(Doubt::NotCentred)
+        let result = if self.planner.jumped(estimate.reset_count) {
+            Err(ApproachAbort::NotCentred)
         } else {
-            self.way.step(&seen, step.dt)
+            self.planner.step(&seen, step.dt)
         };
-        if self.way.has_left() {
-            self.given_up = self.gives_up;
+        if self.planner.has_left() {
+            self.abort_reason = self.pending_abort_reason;
         }
-        let crown = self.way.crown().map(|crown| (crown, estimate.jumps));
-        step.context.by_itself.crown = crown.or(step.context.by_itself.crown);
-        step.context.rise.steady = self.way.near_crown(&seen);
+        let crown = self.planner.crown().map(|crown| (crown, estimate.reset_count));
+        step.context.auto_perch.crown = crown.or(step.context.auto_perch.crown);
+        step.context.vertical_fallback.steady = self.planner.near_crown(&seen);
         let wish = result.unwrap_or_else(|doubt| {
             match doubt {
-                Doubt::RangeMisfit => self.misfit(false, &seen, estimate, step),
-                Doubt::RangeLong => self.misfit(true, &seen, estimate, step),
+                ApproachAbort::RangeMisfit => self.misfit(false, &seen, estimate, step),
+                ApproachAbort::RangeLong => self.misfit(true, &seen, estimate, step),
                 _ => self.again(reason(doubt), &seen, estimate, step),
             }
-            Wish::default()
+            VelocityCommand::default()
         });
-        self.wanted = self.law.step(estimate, &step.felt(), &wish, true, step.dt);
+        self.wanted = self.law.step(estimate, &step.body_motion(), &wish, true, step.dt);
     }
 
     /// Another try, once, unless it is `proven`; then up and away.
     fn misfit(&mut self, proven: bool, view: &View, e: &Estimate, step: &mut Step<'_>) {
-        let before = core::mem::replace(&mut step.context.by_itself.misfit, true) || proven;
+        let before = core::mem::replace(&mut step.context.auto_perch.misfit, true) || proven;
         self.again(Reason::RangeMisfit, view, e, step);
-        if before && !self.astray {
-            (self.given_up, self.gives_up) = (None, Some(Reason::RangeMisfit));
-            self.way = Law::cleared(&step.context.params, view, heading(step, e), e.jumps);
+        if before && !self.aborted_in_contact {
+            (self.abort_reason, self.pending_abort_reason) = (None, Some(Reason::RangeMisfit));
+            self.planner =
+                ApproachPlanner::cleared(&step.context.params, view, heading(step, e), e.reset_count);
         }
     }
 
     /// Another try, or none.
     fn again(&mut self, why: Reason, view: &View, e: &Estimate, step: &mut Step<'_>) {
         step.context.note(Some(why));
-        if self.committed() && step.context.support.force() > HINT_FORCE {
-            (self.astray, self.given_up) = (true, Some(why));
+        if self.committed() && step.context.contact_force.force() > HINT_FORCE {
+            (self.aborted_in_contact, self.abort_reason) = (true, Some(why));
             return;
         }
-        let tries = &mut step.context.by_itself.tries;
+        let tries = &mut step.context.auto_perch.tries;
         let searched = matches!(
             why,
             Reason::NoPipe | Reason::RangeStale | Reason::TargetStale | Reason::TargetFar
         );
         if *tries >= TRIES || searched {
-            self.given_up = Some(why);
+            self.abort_reason = Some(why);
         } else {
             *tries += 1;
             let heading = heading(step, e);
-            self.way = self.way.retried(&step.context.params, view, heading, e.jumps);
+            self.planner = self
+                .planner
+                .retried(&step.context.params, view, heading, e.reset_count);
         }
     }
 }
@@ -184,7 +190,7 @@ fn view(law: &PositionHold, e: &Estimate, step: &Step<'_>) -> View {
     View {
         position: e.position,
         velocity: e.velocity,
-        heading: heading + e.turn,
+        heading: heading + e.yaw_offset,
         held: law.held(),
         age: e.age,
         foot: e.foot,
@@ -194,21 +200,21 @@ fn view(law: &PositionHold, e: &Estimate, step: &Step<'_>) -> View {
 
 /// Heading along the pipe in the estimate's axes, rad.
 fn heading(step: &Step<'_>, e: &Estimate) -> f32 {
-    step.context.by_itself.heading + e.turn
+    step.context.auto_perch.heading + e.yaw_offset
 }
 
-fn reason(doubt: Doubt) -> Reason {
+fn reason(doubt: ApproachAbort) -> Reason {
     match doubt {
-        Doubt::NoPipe => Reason::NoPipe,
-        Doubt::TooShort => Reason::PipeTooShort,
-        Doubt::PipeLost => Reason::PipeLost,
-        Doubt::NotCentred => Reason::NotCentred,
-        Doubt::NotTouched => Reason::NotTouched,
-        Doubt::RangeStale => Reason::RangeStale,
-        Doubt::RangeMisfit | Doubt::RangeLong => Reason::RangeMisfit,
-        Doubt::TargetStale => Reason::TargetStale,
-        Doubt::TargetFar => Reason::TargetFar,
-        Doubt::TargetJumps => Reason::TargetJumps,
+        ApproachAbort::NoPipe => Reason::NoPipe,
+        ApproachAbort::TooShort => Reason::PipeTooShort,
+        ApproachAbort::PipeLost => Reason::PipeLost,
+        ApproachAbort::NotCentred => Reason::NotCentred,
+        ApproachAbort::NotTouched => Reason::NotTouched,
+        ApproachAbort::RangeStale => Reason::RangeStale,
+        ApproachAbort::RangeMisfit | ApproachAbort::RangeLong => Reason::RangeMisfit,
+        ApproachAbort::TargetStale => Reason::TargetStale,
+        ApproachAbort::TargetFar => Reason::TargetFar,
+        ApproachAbort::TargetJumps => Reason::TargetJumps,
     }
 }
 

@@ -8,7 +8,7 @@ use crate::mode::behaviour::Behaviour;
 use crate::mode::context::{Context, Step};
 use crate::mode::inputs::Inputs;
 use crate::mode::reason::Reason;
-use crate::mode::shared::on_pipe::{Hold, SPOOL_DOWN_TIME, SPOOL_TIME, Spool, held, hopeless};
+use crate::mode::shared::on_pipe::{PipeAttitudeHold, SPOOL_DOWN_TIME, SPOOL_TIME, Spool, held, hopeless};
 
 /// Time from the ramp's end to standing rotors, s: six motor time constants.
 pub const STOP_TIME: f32 = 0.3;
@@ -24,7 +24,7 @@ const SPOOL_ALLOWANCE: f32 = 10.0;
 /// See [`crate::mode::Mode::Clamping`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clamping {
-    pub hold: Hold,
+    pub hold: PipeAttitudeHold,
     pub spool: Spool,
 }
 
@@ -56,7 +56,7 @@ impl Clamping {
         let context = &step.context;
         let limit = context.params.clamp_timeout + if self.spool.down { SPOOL_ALLOWANCE } else { 0.0 };
         let switched = !sticks.perch_switch && context.perch_switch.seen_on;
-        if switched || context.by_itself.taken {
+        if switched || context.auto_perch.taken {
             return Some(Reason::ClosingCancelled);
         }
         match self.hopeless(step) {

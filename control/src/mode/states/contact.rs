@@ -7,7 +7,7 @@ use crate::mode::context::{Context, Step};
 use crate::mode::inputs::Inputs;
 use crate::mode::modes::Mode;
 use crate::mode::reason::Reason;
-use crate::mode::shared::on_pipe::Hold;
+use crate::mode::shared::on_pipe::PipeAttitudeHold;
 
 /// Time on the pipe before the tendons close, s.
 pub const CONTACT_TIME: f32 = 0.2;
@@ -19,7 +19,7 @@ pub const CONTACT_MARGIN: f32 = 0.03;
 /// See [`crate::mode::Mode::Contact`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
-    pub hold: Hold,
+    pub hold: PipeAttitudeHold,
 }
 
 impl Behaviour for Contact {

@@ -82,7 +82,7 @@ impl Escaping {
 
     /// Overdue arms that still hold pull the vehicle down.
     pub fn stuck(&self, context: &Context) -> bool {
-        self.late(context) && context.support.force() < -HINT_FORCE
+        self.late(context) && context.contact_force.force() < -HINT_FORCE
     }
 
     /// The arms are free, and there was time to leave. Unless pulled down, the vehicle flies whatever an arm's sensors
@@ -113,9 +113,9 @@ impl Escaping {
 /// The throttle stick carries the vehicle.
 pub fn takes_over(step: &Step<'_>) -> bool {
     let context = &step.context;
-    step.inputs
-        .sticks
-        .is_some_and(|s| context.full_thrust() * s.throttle >= TAKE_OVER_SHARE * context.support.weight())
+    step.inputs.sticks.is_some_and(|s| {
+        context.full_thrust() * s.throttle >= TAKE_OVER_SHARE * context.contact_force.weight()
+    })
 }
 
 impl Behaviour for Escaping {
@@ -132,7 +132,7 @@ impl Behaviour for Escaping {
                 self.climb = -clamp(context.fall.speed(), 0.0, 10.0);
             }
             self.rise = clamp(self.rise + step.dt, 0.0, 1e3);
-            self.climb -= context.sinking * step.dt;
+            self.climb -= context.accel_down * step.dt;
         }
         // Below this only the arms keep the vehicle on the pipe.
         self.opening |= context.collective.now() >= release_thrust(&context.params);
@@ -164,7 +164,7 @@ impl Behaviour for Escaping {
         let share = clamp(1.0 + CLIMB_GAIN * (wanted - self.climb), LEAST_SHARE, MOST_SHARE);
         // Leaning rotors lift less.
         let upright = inputs.motion.map_or(1.0, |m| m.q.down_in_body().z);
-        let goal = share * context.support.weight() / clamp(upright, UPRIGHT_MIN, 1.0);
+        let goal = share * context.contact_force.weight() / clamp(upright, UPRIGHT_MIN, 1.0);
         let thrust = self.from.map_or(goal, |from| {
             let risen = clamp(self.rise / STAND_RAMP, 0.0, 1.0);
             from + (goal - from) * risen
@@ -185,7 +185,7 @@ impl Behaviour for Escaping {
 
     fn reason(&self, context: &Context, inputs: &Inputs, _: ArmingInhibits) -> Option<Reason> {
         let waits = self.rise >= self.clear_after() + WAIT_TIME && self.clear(context);
-        let adrift = waits && context.by_itself.acts() && !inputs.position_fresh();
+        let adrift = waits && context.auto_perch.acts() && !inputs.position_fresh();
         let lands = context.dangers.battery_critical() || inputs.sticks.is_none();
         if adrift && !lands {
             Some(Reason::PositionLost)

@@ -7,7 +7,7 @@ use crate::mode::context::{Context, Step};
 use crate::mode::inputs::Inputs;
 use crate::mode::reason::Reason;
 use crate::mode::shared::descent::descent;
-use crate::mode::shared::landing_point::Spot;
+use crate::mode::shared::landing_point::LandingPoint;
 use crate::pilot::rc::Sticks;
 use crate::pilot::stick_positions;
 
@@ -21,19 +21,22 @@ pub const RESUME_STICK: f32 = 0.3;
 pub struct Failsafe {
     pub cause: Reason,
     /// Where it comes down; `None` without a position, or where the pilot steers by angles.
-    pub spot: Option<Spot>,
+    pub landing_point: Option<LandingPoint>,
 }
 
 impl Failsafe {
-    /// Begins for `cause`; `spot` gives where it comes down, if a position is known.
+    /// Begins for `cause`; `landing_point` gives where it comes down, if a position is known.
     pub fn begin(
         cause: Reason,
         step: &mut Step<'_>,
-        spot: impl FnOnce(&mut Step<'_>) -> Option<Spot>,
+        landing_point: impl FnOnce(&mut Step<'_>) -> Option<LandingPoint>,
     ) -> Self {
-        let mut failsafe = Self { cause, spot: None };
+        let mut failsafe = Self {
+            cause,
+            landing_point: None,
+        };
         if failsafe.holds(step.inputs) {
-            failsafe.spot = spot(step);
+            failsafe.landing_point = landing_point(step);
         }
         failsafe
     }
@@ -56,20 +59,20 @@ impl Failsafe {
 
 impl Behaviour for Failsafe {
     fn advance(&mut self, step: &mut Step<'_>) {
-        self.spot = match (self.holds(step.inputs), self.spot) {
+        self.landing_point = match (self.holds(step.inputs), self.landing_point) {
             (false, _) => None,
-            (true, Some(mut spot)) => {
-                spot.step(self.pilot(step.inputs), step);
-                Some(spot)
+            (true, Some(mut landing_point)) => {
+                landing_point.step(self.pilot(step.inputs), step);
+                Some(landing_point)
             }
-            (true, None) => Spot::here(step),
+            (true, None) => LandingPoint::here(step),
         };
     }
 
     /// Level and sinking; with radio the pilot steers. What carries the vehicle is no place to be moved on.
     fn rotors(&self, context: &Context, inputs: &Inputs) -> Setpoint {
-        match &self.spot {
-            Some(spot) => spot.rotors(context),
+        match &self.landing_point {
+            Some(landing_point) => landing_point.rotors(context),
             None => descent(context, self.pilot(inputs)),
         }
     }

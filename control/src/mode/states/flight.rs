@@ -65,7 +65,7 @@ impl Behaviour for Flight {
             step.context.note(Some(Reason::Check(why)));
             return;
         }
-        if !step.context.support.resting() {
+        if !step.context.contact_force.resting() {
             return;
         }
         if !step.context.perch_switch.seen_off {

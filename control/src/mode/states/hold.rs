@@ -9,7 +9,7 @@ use crate::mode::context::{Context, Step};
 use crate::mode::inputs::Inputs;
 use crate::mode::reason::Reason;
 use crate::mode::shared::coasting_hold::CoastingHold;
-use crate::mode::shared::stick_velocity::wished;
+use crate::mode::shared::stick_velocity::velocity_from_sticks;
 use crate::navigation::estimate::Estimate;
 use crate::pilot::stick_positions::{THROTTLE_CENTRE, THROTTLE_ZONE};
 use crate::position_hold::PositionHold;
@@ -27,7 +27,7 @@ impl Hold {
     /// Holds where the vehicle is.
     pub fn here(step: &mut Step<'_>) -> Self {
         let estimate = step.inputs.position.unwrap_or_default();
-        let law = PositionHold::begin(&step.context.params, &estimate, &step.felt());
+        let law = PositionHold::begin(&step.context.params, &estimate, &step.body_motion());
         Self::begin(law, false, step)
     }
 
@@ -35,7 +35,7 @@ impl Hold {
     pub fn after(law: Option<PositionHold>, step: &mut Step<'_>) -> Self {
         let estimate = step.inputs.position.unwrap_or_default();
         let mut law =
-            law.unwrap_or_else(|| PositionHold::begin(&step.context.params, &estimate, &step.felt()));
+            law.unwrap_or_else(|| PositionHold::begin(&step.context.params, &estimate, &step.body_motion()));
         law.anchor_at(&estimate);
         Self::begin(law, true, step)
     }
@@ -55,7 +55,7 @@ impl Hold {
         let sticks = step.inputs.sticks.unwrap_or_default();
         self.centred |= (sticks.throttle - THROTTLE_CENTRE).abs() <= THROTTLE_ZONE;
         let climb = if self.centred { climb(sticks.throttle) } else { 0.0 };
-        let wish = wished(&sticks, climb, step.context);
+        let wish = velocity_from_sticks(&sticks, climb, step.context);
         self.wanted = self.place.step(estimate, &wish, step);
     }
 }

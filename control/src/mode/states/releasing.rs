@@ -7,7 +7,7 @@ use crate::mode::behaviour::Behaviour;
 use crate::mode::context::{Context, Step};
 use crate::mode::inputs::Inputs;
 use crate::mode::reason::Reason;
-use crate::mode::shared::on_pipe::{Hold, SPOOL_TIME, held};
+use crate::mode::shared::on_pipe::{PipeAttitudeHold, SPOOL_TIME, held};
 use crate::pilot::release_throttle::RELEASE_THROTTLE_MIN;
 
 /// Time of free arms before flight, s.
@@ -18,7 +18,7 @@ const STUCK_TIME: f32 = 10.0;
 /// See [`crate::mode::Mode::Releasing`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Releasing {
-    pub hold: Hold,
+    pub hold: PipeAttitudeHold,
     /// Reached share of the collective, 0..1.
     pub share: f32,
     pub free: f32,
@@ -103,7 +103,7 @@ impl Behaviour for Releasing {
     }
 
     fn rotors(&self, context: &Context, _: &Inputs) -> Setpoint {
-        let asked = if context.by_itself.active {
+        let asked = if context.auto_perch.active {
             RELEASE_THROTTLE_MIN
         } else {
             context.throttle

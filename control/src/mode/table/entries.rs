@@ -3,10 +3,10 @@
 use crate::gripper::retained_grip::GripMemory;
 use crate::maths::scalar;
 use crate::mode::context::Step;
-use crate::mode::inputs::auto_perch::ByItself;
+use crate::mode::inputs::auto_perch::AutoPerch;
 use crate::mode::reason::Reason;
-use crate::mode::shared::landing_point::Spot;
-use crate::mode::shared::on_pipe::{Hold, Spool, pressed};
+use crate::mode::shared::landing_point::LandingPoint;
+use crate::mode::shared::on_pipe::{PipeAttitudeHold, Spool, pressed};
 use crate::mode::state::State;
 use crate::mode::states::approach::Approach;
 use crate::mode::states::armed::Armed;
@@ -82,13 +82,13 @@ pub fn approach(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Approac
     step.context.perch_switch.seen_off = false;
     let nose = present_heading(step);
     // The pipe's, where it is known; else the nose lies along it.
-    let turn = step.inputs.position.map_or(0.0, |e| e.turn);
+    let turn = step.inputs.position.map_or(0.0, |e| e.yaw_offset);
     let pipe = step
         .inputs
         .target
         .and_then(|target| target.heading_near(nose + turn));
     let heading = pipe.map_or(nose, |pipe| scalar::wrap_pi(pipe - turn));
-    step.context.by_itself.begin(heading);
+    step.context.auto_perch.begin(heading);
     let law = match from {
         State::Hold(h) => Some(h.place.law),
         _ => None,
@@ -98,9 +98,9 @@ pub fn approach(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Approac
 
 /// Clear of the pipe: up, and another try, or only up after a release.
 pub fn approach_again(_: &State, step: &mut Step<'_>, _: Option<Reason>) -> Approach {
-    let by_itself = &mut step.context.by_itself;
-    by_itself.tries = by_itself.tries.saturating_add(1);
-    let leaves = by_itself.leaving;
+    let auto_perch = &mut step.context.auto_perch;
+    auto_perch.tries = auto_perch.tries.saturating_add(1);
+    let leaves = auto_perch.leaving;
     Approach::climb(step, leaves)
 }
 
@@ -119,7 +119,7 @@ pub fn contact(_: &State, step: &mut Step<'_>, _: Option<Reason>) -> Contact {
 
 /// The arms begin to close. A radio lost just now finishes the landing that the pilot began.
 pub fn closing(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Clamping {
-    step.context.lean.sit();
+    step.context.lean.capture_lean();
     step.context.tightened = 0;
     step.context.perch_switch.seen_on = step.inputs.sticks.is_some();
     Clamping {
@@ -130,7 +130,7 @@ pub fn closing(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Clamping
 
 /// The arms stay closed, or close again. Radio lost: hold on; a later release takes a new turn of the switch.
 pub fn closing_again(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Clamping {
-    step.context.lean.sit();
+    step.context.lean.capture_lean();
     step.context.perch_switch.seen_on = Releasing::called_back(step) && step.inputs.sticks.is_some();
     let share = match from {
         State::Releasing(r) => r.spooled(step.dt),
@@ -163,8 +163,8 @@ pub fn armed_on_pipe(from: &State, step: &mut Step<'_>, why: Option<Reason>) -> 
 
 /// The pilot wants to leave: rotors first.
 pub fn releasing(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Releasing {
-    step.context.by_itself = ByItself::default();
-    step.context.lean.sit();
+    step.context.auto_perch = AutoPerch::default();
+    step.context.lean.capture_lean();
     let grip_memory = from.behaviour().grip_memory();
     Releasing {
         hold: present(step, grip_memory.arms().unwrap_or_default()),
@@ -177,8 +177,8 @@ pub fn releasing(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Releas
 
 /// The same after a slip: a slow spool-up would take the belly off the pipe while the arms still close, and it slides on.
 pub fn leaving(from: &State, step: &mut Step<'_>, why: Option<Reason>) -> Escaping {
-    step.context.by_itself = ByItself::default();
-    step.context.lean.sit();
+    step.context.auto_perch = AutoPerch::default();
+    step.context.lean.capture_lean();
     giving_up(from, step, why)
 }
 
@@ -199,10 +199,10 @@ pub fn releasing_instead(from: &State, step: &mut Step<'_>, _: Option<Reason>) -
 }
 
 /// The same by itself, with the throttle centred.
-pub fn releasing_by_itself(from: &State, step: &mut Step<'_>, why: Option<Reason>) -> Releasing {
+pub fn releasing_autonomously(from: &State, step: &mut Step<'_>, why: Option<Reason>) -> Releasing {
     let releasing = releasing(from, step, why);
     let heading = present_heading(step);
-    step.context.by_itself.leave(heading);
+    step.context.auto_perch.leave(heading);
     releasing
 }
 
@@ -254,15 +254,15 @@ pub fn giving_up(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Escapi
 /// The failsafe acts for the reason of the transition.
 pub fn failsafe(from: &State, step: &mut Step<'_>, why: Option<Reason>) -> Failsafe {
     Failsafe::begin(why.unwrap_or(Reason::RADIO_LOST), step, |step| match from {
-        State::Failsafe(before) => before.spot,
-        State::Hold(hold) => Some(Spot::held(hold.place, step)),
+        State::Failsafe(before) => before.landing_point,
+        State::Hold(hold) => Some(LandingPoint::held(hold.place, step)),
         State::Approach(approach) => {
             let position = step.inputs.position;
             let off_pipe = position.and_then(|e| approach.off_pipe(e.position));
-            Some(Spot::off_approach(approach.law, off_pipe, step))
+            Some(LandingPoint::off_approach(approach.law, off_pipe, step))
         }
-        State::Releasing(_) | State::Escaping(_) => Spot::beside_pipe(step),
-        _ => Spot::here(step),
+        State::Releasing(_) | State::Escaping(_) => LandingPoint::beside_pipe(step),
+        _ => LandingPoint::here(step),
     })
 }
 
@@ -271,17 +271,17 @@ fn present_heading(step: &Step<'_>) -> f32 {
 }
 
 /// The present attitude, held with `arms`.
-fn present(step: &Step<'_>, arms: ArmChoice) -> Hold {
+fn present(step: &Step<'_>, arms: ArmChoice) -> PipeAttitudeHold {
     let (roll, pitch, _) = step.inputs.motion.map_or((0.0, 0.0, 0.0), |m| m.q.to_euler());
-    Hold { roll, pitch, arms }
+    PipeAttitudeHold { roll, pitch, arms }
 }
 
 /// What `from` holds on the pipe.
-fn hold(from: &State) -> Hold {
+fn hold(from: &State) -> PipeAttitudeHold {
     match from {
         State::Contact(Contact { hold })
         | State::Clamping(Clamping { hold, .. })
         | State::Releasing(Releasing { hold, .. }) => *hold,
-        _ => Hold::default(),
+        _ => PipeAttitudeHold::default(),
     }
 }

@@ -59,7 +59,7 @@ guards! {
     THROTTLE_LOW = "throttle low", |_, s| sticks(s, |t| t.throttle <= s.context.params.throttle_low);
     IDLED = "idle for too long", |_, s| s.context.since >= crate::mode::states::armed::IDLE_MAX;
     STOOD = "landed long enough", |_, s| s.context.since >= crate::mode::states::landed::LANDED_TIME;
-    GROUNDED = "the ground carries nearly all", |_, s| s.context.support.grounded();
+    GROUNDED = "the ground carries nearly all", |_, s| s.context.contact_force.grounded();
 
     HOLD_ON = "hold switch on, sticks in angle mode, perch switch off", |_, s| sticks(s, stick_positions::asks_hold);
     HOLD_OFF = "hold switch off, or sticks in another mode", |_, s| sticks(s, |t| !stick_positions::keeps_hold(t));
@@ -73,22 +73,22 @@ guards! {
     ASKED_TO_PERCH = "perch switch turned on", |_, s| approach::asked(s);
     SERVOS_FED = "servo battery, if measured, not low", |_, s| s.inputs.servo_trouble().is_none();
     MAY_APPROACH = "position and range or pipe known, sticks centred, servo battery not low", |_, s| approach::obstacle(s).is_none();
-    TAKEN_OVER = "a stick moved, or perch or hold switch turned", |_, s| s.context.by_itself.taken;
-    BY_ITSELF = "perching or leaving by itself", |_, s| s.context.by_itself.active;
-    BY_HAND = "flown by hand", |_, s| !s.context.by_itself.acts();
-    TRY_LEFT = "another try is left", |_, s| s.context.by_itself.may_try();
-    LEAVES = "leaving by itself", |_, s| s.context.by_itself.acts() && s.context.by_itself.leaving;
-    HAS_LEFT = "climbed off the pipe", |state, _| approaching(state, Approach::has_left);
-    GIVEN_UP = "no other try", |state, _| approaching(state, |a| a.given_up.is_some());
+    TAKEN_OVER = "a stick moved, or perch or hold switch turned", |_, s| s.context.auto_perch.taken;
+    AUTO_PERCH = "perching or leaving by itself", |_, s| s.context.auto_perch.active;
+    BY_HAND = "flown by hand", |_, s| !s.context.auto_perch.acts();
+    TRY_LEFT = "another try is left", |_, s| s.context.auto_perch.may_try();
+    DEPARTING = "leaving by itself", |_, s| s.context.auto_perch.acts() && s.context.auto_perch.leaving;
+    DEPARTED = "climbed off the pipe", |state, _| approaching(state, Approach::has_left);
+    APPROACH_ABORTED = "no other try", |state, _| approaching(state, |a| a.abort_reason.is_some());
     FEELS_PIPE = "on the way down, and something seems to carry it", |state, s| {
-        approaching(state, Approach::committed) && s.context.support.force() > HINT_FORCE
+        approaching(state, Approach::committed) && s.context.contact_force.force() > HINT_FORCE
     };
-    TOUCHED_ASTRAY = "a try ends while something seems to carry it", |state, _| approaching(state, Approach::astray);
-    UNAWARE = "nothing below by what it sees", |state, _| approaching(state, Approach::unaware);
+    ABORTED_IN_CONTACT = "a try ends while something seems to carry it", |state, _| approaching(state, Approach::aborted_in_contact);
+    NOT_COMMITTED = "nothing below by what it sees", |state, _| approaching(state, Approach::not_committed);
     COMMITTED = "on the way down", |state, _| approaching(state, Approach::committed);
-    RELEASE_BY_ITSELF = "perch switch off again, hold switch on, sticks centred, perched by itself", |_, s| {
+    AUTO_RELEASE = "perch switch off again, hold switch on, sticks centred, perched by itself", |_, s| {
         let sticks_ask = |t: &Sticks| t.arm_switch && !t.perch_switch && stick_positions::keeps_hold(t) && centred(t);
-        s.context.by_itself.active && s.context.perch_switch.seen_on && sticks(s, sticks_ask)
+        s.context.auto_perch.active && s.context.perch_switch.seen_on && sticks(s, sticks_ask)
     };
 
     MEANS_TO_PERCH = "perch switch on, throttle down", |_, s| Flight::means_to_perch(s);
@@ -98,8 +98,8 @@ guards! {
         s.context.fall.falls() && s.context.lean.beyond_seats()
     };
     SLIDES_AT_TOUCH = "leans where it feels the pipe", |_, s| s.context.lean.slides_at_touch();
-    TOUCHED = "feels the pipe", |_, s| s.context.support.touched();
-    LIFTED = "nothing carries it any more", |_, s| s.context.support.lifted();
+    TOUCHED = "feels the pipe", |_, s| s.context.contact_force.touched();
+    LIFTED = "nothing carries it any more", |_, s| s.context.contact_force.lifted();
     LEVEL = "nearly level", |_, s| Flight::is_level(s);
     CALLED_OFF = "perch switch off or throttle up", |_, s| {
         let most = s.context.params.perch_thr_max + CONTACT_MARGIN;
@@ -108,8 +108,8 @@ guards! {
     SLIDES = "slides", |_, s| s.context.lean.slides();
     CREEPS = "leans more and more", |_, s| s.context.lean.creeps();
     TWISTS = "turns on its pads", |_, s| s.context.lean.twists();
-    NOT_RESTING = "nothing carries", |_, s| !s.context.support.resting();
-    RESTED = "rested long enough", |_, s| s.context.since >= CONTACT_TIME && s.context.support.resting();
+    NOT_RESTING = "nothing carries", |_, s| !s.context.contact_force.resting();
+    RESTED = "rested long enough", |_, s| s.context.since >= CONTACT_TIME && s.context.contact_force.resting();
 
     ARMS_STAY = "arms hold and have not opened", |state, s| match state {
         State::Clamping(_) => s.grip_proven(),
@@ -149,7 +149,7 @@ guards! {
     NOT_TAKEN_OVER = "throttle not moved in time", |_, s| s.context.since >= TAKE_OVER_TIME;
 
     LOST_RADIO = "acting for the radio", |state, _| acts_for(state, Reason::RADIO_LOST);
-    LOST_PILOT = "acting for the throttle", |state, _| acts_for(state, Reason::NotTakenOver);
+    THROTTLE_NOT_TAKEN = "acting for the throttle", |state, _| acts_for(state, Reason::NotTakenOver);
     RESUMES = "radio back at once, or roll or pitch stick moved", |_, s| sticks(s, |t| {
         t.roll.abs() > RESUME_STICK || t.pitch.abs() > RESUME_STICK || s.context.since <= RESUME_TIME
     });

@@ -94,7 +94,7 @@ const DOUBTED: Notice = ShowOf(|state, step| match state {
 });
 /// Why the perching by itself ends.
 const HANDED_BACK: Notice = ShowOf(|state, _| match state {
-    State::Approach(a) => a.given_up,
+    State::Approach(a) => a.abort_reason,
     _ => None,
 });
 /// Why the failsafe has acted.
@@ -134,12 +134,12 @@ pub const TRANSITIONS: &[Transition] = &[
     // What it feels would slide from under a hold: up, as from the pipe.
     row(&[Approach], &[FEELS_PIPE, TAKEN_OVER], To::Escaping(entries::sliding), Show(Reason::TakenOver)),
     row(&[Approach], &[FEELS_PIPE, POSITION_ADRIFT], To::Escaping(entries::sliding), Show(Reason::PositionStale)),
-    row(&[Approach], &[TOUCHED_ASTRAY], To::Escaping(entries::sliding), HANDED_BACK),
-    row(&[Approach], &[UNAWARE, TOUCHED], To::Escaping(entries::sliding), Show(Reason::TouchedEarly)),
+    row(&[Approach], &[ABORTED_IN_CONTACT], To::Escaping(entries::sliding), HANDED_BACK),
+    row(&[Approach], &[NOT_COMMITTED, TOUCHED], To::Escaping(entries::sliding), Show(Reason::TouchedEarly)),
     row(&[Approach], &[TAKEN_OVER], To::Hold(entries::handed_back), Show(Reason::TakenOver)),
     row(&[Approach], &[POSITION_ADRIFT], To::Hold(entries::handed_back), Show(Reason::PositionStale)),
-    row(&[Approach], &[GIVEN_UP], To::Hold(entries::handed_back), HANDED_BACK),
-    row(&[Approach], &[HAS_LEFT], To::Hold(entries::handed_back), Clear),
+    row(&[Approach], &[APPROACH_ABORTED], To::Hold(entries::handed_back), HANDED_BACK),
+    row(&[Approach], &[DEPARTED], To::Hold(entries::handed_back), Clear),
     row(FLOWN, &[THROTTLE_LOW, GROUNDED], To::Landed(entries::landed), Keep),
     row(&[Hold], &[POSITION_LOST], To::Flight(entries::flight), Show(Reason::PositionLost)),
     row(&[Flight], &[SETS_DOWN, SWITCH_TURNED, SLIDES_AT_TOUCH],
@@ -151,7 +151,7 @@ pub const TRANSITIONS: &[Transition] = &[
     row(&[Approach], &[COMMITTED, SLIDES_AT_TOUCH], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
     row(&[Approach], &[COMMITTED, TOUCHED, LEVEL], To::Contact(entries::contact), Keep),
     // Onto the pipe.
-    row(&[Contact], &[BY_ITSELF, TAKEN_OVER], To::Escaping(entries::giving_up), Show(Reason::TakenOver)),
+    row(&[Contact], &[AUTO_PERCH, TAKEN_OVER], To::Escaping(entries::giving_up), Show(Reason::TakenOver)),
     row(&[Contact], &[BY_HAND, CALLED_OFF], To::Flight(entries::flight), Keep),
     row(&[Contact], &[SLIDES], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
     row(&[Contact], &[TWISTS], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
@@ -168,11 +168,11 @@ pub const TRANSITIONS: &[Transition] = &[
     row(&[Clamping], &[STANDS, LAST_RESORT], To::Disarmed(entries::stopped), Keep),
     // Off the pipe.
     row(&[Perched], &[ARM_SWITCH_OFF, DISARM_GESTURE], To::Disarmed(entries::stopped), Keep),
-    row(&[Perched], &[RELEASE_BY_ITSELF, MAY_FLY, UPRIGHT], To::Releasing(entries::releasing_by_itself), Keep),
+    row(&[Perched], &[AUTO_RELEASE, MAY_FLY, UPRIGHT], To::Releasing(entries::releasing_autonomously), Keep),
     row(&[Perched], &[RELEASE_ASKED, SLIPPED, MAY_FLY, UPRIGHT], To::Escaping(entries::leaving), Show(Reason::LiftsOff)),
     row(&[Perched], &[RELEASE_ASKED, MAY_FLY, UPRIGHT], To::Releasing(entries::releasing), Keep),
     row(&[Releasing], &[ARMS_FREE, RADIO_LOST], To::Failsafe(entries::failsafe), Lasting(Reason::RADIO_LOST)),
-    row(&[Releasing], &[ARMS_FREE, BY_ITSELF], To::Escaping(entries::lifting_off), Keep),
+    row(&[Releasing], &[ARMS_FREE, AUTO_PERCH], To::Escaping(entries::lifting_off), Keep),
     row(&[Releasing], &[ARMS_FREE], To::Flight(entries::flight), Keep),
     row(&[Releasing], &[LOOSE, SLIDES], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
     row(&[Releasing], &[GIVES_WAY], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
@@ -186,18 +186,18 @@ pub const TRANSITIONS: &[Transition] = &[
     row(&[Escaping], &[STUCK], To::Releasing(entries::releasing_stuck), Show(Reason::ArmsStuck)),
     row(&[Escaping], &[CLEAR, RADIO_LOST], To::Failsafe(entries::failsafe), Lasting(Reason::RADIO_LOST)),
     row(&[Escaping], &[CLEAR, MUST_LAND], To::Failsafe(entries::failsafe), LANDS),
-    row(&[Escaping], &[CLEAR, LEAVES, POSITION_FRESH], To::Approach(entries::approach_again), Keep),
+    row(&[Escaping], &[CLEAR, DEPARTING, POSITION_FRESH], To::Approach(entries::approach_again), Keep),
     row(&[Escaping], &[CLEAR, TRY_LEFT, SERVOS_FED, POSITION_FRESH], To::Approach(entries::approach_again), Keep),
-    row(&[Escaping], &[CLEAR, BY_ITSELF, HOLD_KEPT, POSITION_FRESH], To::Hold(entries::handed_back), Keep),
+    row(&[Escaping], &[CLEAR, AUTO_PERCH, HOLD_KEPT, POSITION_FRESH], To::Hold(entries::handed_back), Keep),
     row(&[Escaping], &[CLEAR, BY_HAND, TAKES_OVER], To::Flight(entries::flight), Keep),
     row(&[Escaping], &[CLEAR, NOT_TAKEN_OVER], To::Failsafe(entries::failsafe), Lasting(Reason::NotTakenOver)),
     // Not by its support alone: a vehicle lighter or stronger than its parameters would seem carried in free air. On
     // real ground the probe takes thrust away until most of the weight is carried.
     row(&[Failsafe], &[GROUNDED], To::Disarmed(entries::stopped), CAUSE),
     row(&[Failsafe], &[LOST_RADIO, RADIO, MUST_LAND], To::Failsafe(entries::failsafe), LANDS),
-    row(&[Failsafe], &[LOST_PILOT, RADIO, MUST_LAND], To::Failsafe(entries::failsafe), LANDS),
-    row(&[Failsafe], &[LOST_PILOT, TAKES_OVER], To::Flight(entries::flight), Keep),
-    row(&[Failsafe], &[LOST_PILOT, RADIO_LOST], To::Failsafe(entries::failsafe), Lasting(Reason::RADIO_LOST)),
+    row(&[Failsafe], &[THROTTLE_NOT_TAKEN, RADIO, MUST_LAND], To::Failsafe(entries::failsafe), LANDS),
+    row(&[Failsafe], &[THROTTLE_NOT_TAKEN, TAKES_OVER], To::Flight(entries::flight), Keep),
+    row(&[Failsafe], &[THROTTLE_NOT_TAKEN, RADIO_LOST], To::Failsafe(entries::failsafe), Lasting(Reason::RADIO_LOST)),
     row(&[Failsafe], &[LOST_RADIO, RESUMES], To::Flight(entries::flight), Keep),
 ];
 

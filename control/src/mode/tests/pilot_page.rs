@@ -10,7 +10,7 @@ use std::vec::Vec;
 use std::{format, fs};
 
 use crate::arming::{ArmingInhibit, GESTURE_TIME, TILT_MAX};
-use crate::contact::friction_limit::Seat;
+use crate::contact::friction_limit::FrictionLimit;
 use crate::gripper::grip_fault::GripFault;
 use crate::maths::scalar::deg;
 use crate::mode::*;
@@ -256,9 +256,9 @@ fn numbers() -> [String; 14] {
     let percent = |share: f32| format!("{:.0} %", share * 100.0);
     let degrees = |angle: f32| format!("{:.0}°", angle.to_degrees());
     let most = percent(p.perch_thr_max);
-    let seat = Seat::from_params(&p);
+    let friction_limit = FrictionLimit::from_params(&p);
     let level = (0..90)
-        .take_while(|&lean| seat.holds(deg(lean as f32), p.perch_lift))
+        .take_while(|&lean| friction_limit.holds(deg(lean as f32), p.perch_lift))
         .count();
     let least = percent(RELEASE_THROTTLE_MIN);
     [

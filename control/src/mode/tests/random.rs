@@ -17,7 +17,7 @@ use super::rig::Rig;
 use crate::gripper::grip::ArmState;
 use crate::mode::*;
 use crate::navigation::estimate::Estimate;
-use crate::navigation::range_hit::Foot;
+use crate::navigation::range_hit::RangeHit;
 use crate::pilot::rc::StickMode;
 use crate::pilot::release_throttle::RELEASE_THROTTLE_MIN;
 use crate::pilot::remote::RemoteOrder;
@@ -102,25 +102,34 @@ fn grip() -> impl Strategy<Value = Option<GripState>> {
 fn position() -> impl Strategy<Value = Option<Estimate>> {
     let age = prop_oneof![Just(0.02f32), 0.0f32..10.0];
     let vector = |size: f32| [-size..size, -size..size, -size..size].prop_map(Vec3::from);
-    let jumps = prop_oneof![9 => Just(0u8), 1 => any::<u8>()];
+    let reset_count = prop_oneof![9 => Just(0u8), 1 => any::<u8>()];
     let point = prop_oneof![3 => vector(20.0).prop_map(Some), 1 => Just(None)];
     let foot = (point, any::<u8>(), prop_oneof![3 => Just(0.02f32), 1 => number()])
-        .prop_map(|(point, count, age)| Foot { point, count, age });
+        .prop_map(|(point, count, age)| RangeHit { point, count, age });
     let age = (age, any::<bool>());
-    let some = (vector(20.0), vector(5.0), vector(8.0), number(), age, jumps, foot).prop_map(
-        |(position, velocity, disturbance, turn, (age, by_pressure), jumps, foot)| {
-            Some(Estimate {
-                position,
-                velocity,
-                disturbance,
-                turn,
-                age,
-                by_pressure,
-                jumps,
-                foot,
-            })
-        },
-    );
+    let some = (
+        vector(20.0),
+        vector(5.0),
+        vector(8.0),
+        number(),
+        age,
+        reset_count,
+        foot,
+    )
+        .prop_map(
+            |(position, velocity, disturbance, yaw_offset, (age, by_pressure), reset_count, foot)| {
+                Some(Estimate {
+                    position,
+                    velocity,
+                    disturbance,
+                    yaw_offset,
+                    age,
+                    by_pressure,
+                    reset_count,
+                    foot,
+                })
+            },
+        );
     prop_oneof![2 => some, 1 => Just(None)]
 }
 

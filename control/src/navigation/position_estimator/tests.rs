@@ -21,7 +21,7 @@ pub(super) struct Rig {
     pub(super) now: u64,
     pub(super) yaw: f32,
     /// Heading of the sender's axes.
-    pub(super) turn: f32,
+    pub(super) yaw_offset: f32,
     /// Bias of the accelerometer, m/s², body.
     pub(super) bias: Vec3,
     pub(super) lag_us: u64,
@@ -39,7 +39,7 @@ impl Rig {
             estimator: PositionEstimator::new(&Params::default()),
             now: 1_000_000,
             yaw: 0.0,
-            turn: 0.0,
+            yaw_offset: 0.0,
             bias: Vec3::ZERO,
             lag_us: 30_000,
             silent: false,
@@ -65,7 +65,7 @@ impl Rig {
     fn felt(&self) -> Inertial {
         let [_, _, acceleration] = Self::truth(self.now);
         let q = Quat::from_euler(0.0, 0.0, self.yaw);
-        let world = about_down(acceleration, -self.turn) - Vec3::new(0.0, 0.0, GRAVITY);
+        let world = about_down(acceleration, -self.yaw_offset) - Vec3::new(0.0, 0.0, GRAVITY);
         Inertial {
             at_us: self.now,
             q,
@@ -80,7 +80,7 @@ impl Rig {
             (self.spoil)(Fix {
                 at_us,
                 position: Self::truth(at_us)[0] + self.origin,
-                heading: scalar::wrap_pi(self.yaw + self.turn),
+                heading: scalar::wrap_pi(self.yaw + self.yaw_offset),
                 variance: None,
                 resets: self.resets,
             })
@@ -113,17 +113,17 @@ impl Rig {
 
 #[test]
 fn late_fixes_give_the_present_position_whatever_their_axes() {
-    for (turn, yaw) in [(0.0, 0.0), (1.0, 0.4), (-2.9, 3.0)] {
+    for (yaw_offset, yaw) in [(0.0, 0.0), (1.0, 0.4), (-2.9, 3.0)] {
         let mut r = Rig {
-            turn,
+            yaw_offset,
             yaw,
             ..Rig::new()
         };
         r.run(10.0);
         let [p, v] = r.errors();
         // Without their lag the fixes would be 18 mm off at this speed.
-        assert!(p < 0.006 && v < 0.03, "{turn} {yaw}: {p} {v}");
-        let off = scalar::wrap_pi(r.out.unwrap().turn - turn);
+        assert!(p < 0.006 && v < 0.03, "{yaw_offset} {yaw}: {p} {v}");
+        let off = scalar::wrap_pi(r.out.unwrap().yaw_offset - yaw_offset);
         assert!(off.abs() < 5e-3, "{off}");
     }
 }
@@ -192,13 +192,13 @@ fn a_jump_that_the_sender_tells_is_taken_at_once_with_its_turn() {
     let mut r = Rig::new();
     r.run(10.0);
     r.resets = 1;
-    r.turn = 1.0;
+    r.yaw_offset = 1.0;
     r.origin = Vec3::new(-4.0, 0.0, 0.0);
     let fix = r.fix();
     r.step(fix);
     r.run(0.5);
     let e = r.out.unwrap();
-    assert!(e.jumps == 1 && (e.turn - 1.0).abs() < 0.01, "{e:?}");
+    assert!(e.reset_count == 1 && (e.yaw_offset - 1.0).abs() < 0.01, "{e:?}");
 }
 
 #[test]

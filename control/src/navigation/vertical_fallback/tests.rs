@@ -3,12 +3,12 @@
 use super::*;
 use crate::maths::scalar::sin;
 use crate::maths::vector::Vec3;
-use crate::navigation::range_hit::Foot;
+use crate::navigation::range_hit::RangeHit;
 
 const DT: f32 = 0.01;
 
 struct World {
-    rise: Rise,
+    vertical_fallback: VerticalFallback,
     estimate: Option<Estimate>,
     /// Down, m and m/s.
     at: f32,
@@ -19,7 +19,7 @@ struct World {
     off: f32,
     /// Error of the felt acceleration, m/s².
     bias: f32,
-    foot: Foot,
+    foot: RangeHit,
     age: f32,
     /// Over a crown, near it.
     steady: bool,
@@ -29,7 +29,7 @@ struct World {
 impl World {
     fn new() -> Self {
         Self {
-            rise: Rise::default(),
+            vertical_fallback: VerticalFallback::default(),
             estimate: None,
             at: -2.0,
             speed: 0.0,
@@ -37,10 +37,10 @@ impl World {
             bent: 0.0,
             off: 0.0,
             bias: 0.05,
-            foot: Foot {
+            foot: RangeHit {
                 point: Some(Vec3::ZERO),
                 age: 0.02,
-                ..Foot::default()
+                ..RangeHit::default()
             },
             age: 0.02,
             steady: false,
@@ -71,9 +71,10 @@ impl World {
                 ..Estimate::default()
             };
             self.estimate = Some(estimate);
-            self.rise.steady = self.steady;
-            self.rise.step(true, down, self.estimate.as_ref(), DT);
-            self.named |= self.rise.misfit();
+            self.vertical_fallback.steady = self.steady;
+            self.vertical_fallback
+                .step(true, down, self.estimate.as_ref(), DT);
+            self.named |= self.vertical_fallback.misfit();
         }
     }
 
@@ -84,7 +85,7 @@ impl World {
     }
 
     fn out(&self) -> Estimate {
-        self.rise.apply(self.estimate.unwrap())
+        self.vertical_fallback.apply(self.estimate.unwrap())
     }
 }
 
@@ -119,7 +120,7 @@ fn where_nothing_gives_the_height_a_bent_speed_is_not_flown_by() {
 #[test]
 fn where_poses_have_gone_their_bent_speed_is_not_flown_by() {
     let mut w = World::new();
-    w.foot = Foot::default();
+    w.foot = RangeHit::default();
     w.run(30.0);
     (w.age, w.bent) = (0.2, -0.2);
     w.run(1.0);
@@ -149,7 +150,7 @@ fn a_range_that_goes_another_way_is_named_once_its_bias_is_learnt() {
     }
     // What a pose says of the speed is judged elsewhere.
     let mut w = World::learnt();
-    (w.foot, w.bent) = (Foot::default(), 0.5);
+    (w.foot, w.bent) = (RangeHit::default(), 0.5);
     w.run(1.0);
     assert_eq!(Some(w.out()), w.estimate);
 }
@@ -174,7 +175,7 @@ fn over_a_crown_and_near_it_less_is_another_way() {
 
 #[test]
 fn what_was_flown_by_it_is_given_back_or_is_another_origin() {
-    for (seconds, jumps) in [(0.3, 0), (1.0, 1)] {
+    for (seconds, reset_count) in [(0.3, 0), (1.0, 1)] {
         let mut w = World::learnt();
         w.bent = 0.4;
         w.run(seconds);
@@ -185,10 +186,10 @@ fn what_was_flown_by_it_is_given_back_or_is_another_origin() {
         (w.bent, w.off) = (0.0, 0.4 * seconds);
         w.run(0.03);
         let out = w.out();
-        assert_eq!(out.jumps, jumps, "{seconds}");
+        assert_eq!(out.reset_count, reset_count, "{seconds}");
         assert_eq!(
             (out.position.z - before).abs() < 0.04,
-            jumps == 0,
+            reset_count == 0,
             "{seconds}: {out:?}"
         );
         w.run(5.0);
@@ -203,6 +204,6 @@ fn on_the_pipe_it_stands() {
     w.bent = 0.4;
     w.run(0.5);
     assert!(w.out() != w.estimate.unwrap());
-    w.rise.step(false, 0.5, w.estimate.as_ref(), DT);
+    w.vertical_fallback.step(false, 0.5, w.estimate.as_ref(), DT);
     assert!(w.out().velocity == w.estimate.unwrap().velocity);
 }

@@ -14,7 +14,7 @@ use sophie_control::navigation::flow_range_sample::{Flow, GroundView, Range};
 use sophie_control::navigation::inertial::Inertial;
 use sophie_control::navigation::position_estimator::PositionEstimator;
 use sophie_control::params::Params;
-use sophie_control::position_hold::{Felt, PositionHold, Wish};
+use sophie_control::position_hold::{BodyMotion, PositionHold, VelocityCommand};
 use sophie_drivers::ground_module::GroundModule;
 use sophie_drivers::msp::Message;
 use sophie_ports::sensors::GroundDecoder;
@@ -34,7 +34,7 @@ const SWING: u32 = 24;
 
 /// What a step takes.
 struct Inputs {
-    felt: Inertial,
+    motion: Inertial,
     fix: Option<Fix>,
     view: Option<GroundView>,
 }
@@ -52,7 +52,7 @@ struct Estimator {
 
 #[inline(never)]
 fn estimate(e: &mut Estimator, i: &Inputs) {
-    e.out = e.law.step(&i.felt, 0.0, i.fix.as_ref(), i.view.as_ref());
+    e.out = e.law.step(&i.motion, 0.0, i.fix.as_ref(), i.view.as_ref());
 }
 
 struct Hold {
@@ -62,8 +62,8 @@ struct Hold {
 }
 
 #[inline(never)]
-fn hold(h: &mut Hold, (felt, wish): &(Felt, Wish)) {
-    h.out = h.law.step(&h.estimate, felt, wish, true, 0.01);
+fn hold(h: &mut Hold, (motion, wish): &(BodyMotion, VelocityCommand)) {
+    h.out = h.law.step(&h.estimate, motion, wish, true, 0.01);
 }
 
 struct Decoder {
@@ -118,7 +118,7 @@ fn inputs(noise: &mut Noise, step: u32, by: By) -> Inputs {
         }),
     };
     Inputs {
-        felt: Inertial { at_us: at, q, accel },
+        motion: Inertial { at_us: at, q, accel },
         fix: (by == By::Pose).then_some(fix),
         view: (by == By::Flow).then_some(view),
     }
@@ -152,19 +152,19 @@ pub fn run(print: &mut dyn FnMut(Arguments<'_>), overhead: u32) {
             } else {
                 quiet.add(count);
             }
-            let felt = Felt {
-                q: inputs.felt.q,
+            let motion = BodyMotion {
+                q: inputs.motion.q,
                 rate: Vec3::new(noise.unit(), noise.unit(), noise.unit()),
                 carried: false,
             };
             let law = law.get_or_insert_with(|| Hold {
-                law: PositionHold::begin(&p, &found, &felt),
+                law: PositionHold::begin(&p, &found, &motion),
                 estimate: found,
                 out: sophie_control::chain::setpoint::Setpoint::Idle,
             });
             law.estimate = found;
             if step.is_multiple_of(2) {
-                let input = black_box((felt, Wish::default()));
+                let input = black_box((motion, VelocityCommand::default()));
                 hold_tally.add(gross(hold, law, &input) - overhead);
             }
         }

@@ -130,7 +130,7 @@ fn each_fault_is_named_in_time_left_out_and_taken_again_when_it_is_over() {
     let mut wrong = Vec::new();
     for (name, spoil, called, limit) in FAULTS {
         let mut r = Rig::new();
-        (r.spoil, r.turn, r.yaw) = (noisy, 0.7, 0.3);
+        (r.spoil, r.yaw_offset, r.yaw) = (noisy, 0.7, 0.3);
         r.run(12.0);
         assert_eq!(fault(&r), None, "{name}");
         r.spoil = spoil;
@@ -178,12 +178,12 @@ fn a_new_origin_that_no_one_announced_is_named_before_it_counts() {
     r.run(12.0);
     r.origin = Vec3::new(3.0, -2.0, 0.5);
     let named = until(&mut r, 1.0, |r| fault(r) == Some(PoseFault::Jumps)).expect("named");
-    assert!(named < 0.15 && r.out.unwrap().jumps == 0, "{named}");
+    assert!(named < 0.15 && r.out.unwrap().reset_count == 0, "{named}");
     let again = until(&mut r, 3.0, |r| fault(r).is_none()).expect("taken again");
     r.run(0.5);
     let [p, v] = r.errors();
     assert!(
-        (0.9..1.2).contains(&again) && r.out.unwrap().jumps == 1,
+        (0.9..1.2).contains(&again) && r.out.unwrap().reset_count == 1,
         "{again}"
     );
     assert!(p < 0.02 && v < 0.1, "{p} {v}");
@@ -212,7 +212,7 @@ fn sound_poses_are_blamed_for_nothing_however_noisy_rare_and_late() {
     ];
     for (spoil, lag_us) in sources {
         let mut r = Rig::new();
-        (r.spoil, r.lag_us, r.turn) = (spoil, lag_us, -2.0);
+        (r.spoil, r.lag_us, r.yaw_offset) = (spoil, lag_us, -2.0);
         r.bias = Vec3::new(0.2, -0.15, 0.3);
         for _ in 0..120 {
             r.run(0.5);
@@ -229,7 +229,7 @@ fn sound_poses_are_blamed_for_nothing_however_noisy_rare_and_late() {
         (r.silent, r.origin) = (false, Vec3::new(1.0, 0.0, 0.0));
         r.run(1.0);
         assert_eq!(fault(&r), None);
-        assert_eq!(r.out.unwrap().jumps, 1);
+        assert_eq!(r.out.unwrap().reset_count, 1);
     }
 }
 
@@ -264,7 +264,7 @@ fn turned(fix: Fix) -> Fix {
 #[test]
 fn a_heading_that_turns_alone_turns_nothing_and_what_was_known_is_coasted_on() {
     let mut r = Rig::new();
-    (r.spoil, r.turn) = (noisy, 0.7);
+    (r.spoil, r.yaw_offset) = (noisy, 0.7);
     r.run(12.0);
     r.spoil = turned;
     let named = until(&mut r, 1.0, |r| fault(r) == Some(PoseFault::Jumps)).expect("named");
@@ -273,9 +273,9 @@ fn a_heading_that_turns_alone_turns_nothing_and_what_was_known_is_coasted_on() {
     let [p, v] = r.errors();
     assert!(named < 0.15 && (0.9..1.1).contains(&e.age), "{named} {}", e.age);
     assert!(
-        (e.turn - 0.7).abs() < 0.06 && p < 0.05 && v < 0.1,
+        (e.yaw_offset - 0.7).abs() < 0.06 && p < 0.05 && v < 0.1,
         "{} {p} {v}",
-        e.turn
+        e.yaw_offset
     );
     // The way does not agree with that heading: no longer a jump.
     assert!(until(&mut r, 0.5, |r| fault(r) == Some(PoseFault::Disagrees)).is_some());
@@ -286,18 +286,18 @@ fn a_heading_that_turns_alone_turns_nothing_and_what_was_known_is_coasted_on() {
 #[test]
 fn axes_that_turn_with_the_way_are_taken_once_it_agrees() {
     let mut r = Rig::new();
-    (r.spoil, r.turn) = (noisy, 0.7);
+    (r.spoil, r.yaw_offset) = (noisy, 0.7);
     r.run(12.0);
-    r.turn = 1.5;
+    r.yaw_offset = 1.5;
     assert!(until(&mut r, 0.2, |r| fault(r) == Some(PoseFault::Jumps)).is_some());
     assert!(until(&mut r, 6.0, |r| fault(r).is_none()).is_some());
     r.run(0.1);
     let e = r.out.unwrap();
     assert!(
-        e.jumps == 1 && (e.turn - 1.5).abs() < 0.05,
+        e.reset_count == 1 && (e.yaw_offset - 1.5).abs() < 0.05,
         "{} {}",
-        e.jumps,
-        e.turn
+        e.reset_count,
+        e.yaw_offset
     );
     // The next turn is measured from them.
     r.spoil = turned;
@@ -307,15 +307,15 @@ fn axes_that_turn_with_the_way_are_taken_once_it_agrees() {
 #[test]
 fn axes_that_have_turned_in_a_silence_are_taken_at_once() {
     let mut r = Rig::new();
-    (r.spoil, r.turn) = (noisy, 0.7);
+    (r.spoil, r.yaw_offset) = (noisy, 0.7);
     r.run(12.0);
     r.silent = true;
     r.run(1.1);
-    (r.silent, r.turn) = (false, 1.5);
+    (r.silent, r.yaw_offset) = (false, 1.5);
     r.run(0.1);
     let e = r.out.unwrap();
-    assert_eq!((fault(&r), e.jumps), (None, 1));
-    assert!((e.turn - 1.5).abs() < 0.05, "{}", e.turn);
+    assert_eq!((fault(&r), e.reset_count), (None, 1));
+    assert!((e.yaw_offset - 1.5).abs() < 0.05, "{}", e.yaw_offset);
 }
 
 /// A pipe does not let it move: only the heading can say that it is sound again.
@@ -398,7 +398,7 @@ mod any {
                 }
             }
             r.run(16.0);
-            prop_assert!(r.estimator.fault().is_none(), "{:?}", r.estimator.trust);
+            prop_assert!(r.estimator.fault().is_none(), "{:?}", r.estimator.pose_monitor);
             let [p, v] = r.errors();
             prop_assert!(p < 0.05 && v < 0.15, "{p} {v}");
         }

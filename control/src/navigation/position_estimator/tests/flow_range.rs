@@ -3,7 +3,7 @@
 extern crate std;
 use crate::maths::vector::Quat;
 use crate::navigation::consistency::Agreement;
-use crate::navigation::flow_range::{FLOW_HEIGHT, SightLimit};
+use crate::navigation::flow_range::{FLOW_HEIGHT, FlowRangeLimit};
 use crate::navigation::flow_range_sample::Range;
 use crate::navigation::position_estimator::*;
 
@@ -137,9 +137,9 @@ impl Rig {
         [(e.velocity - velocity).norm(), (e.position.z - position.z).abs()]
     }
 
-    pub(crate) fn fault(&self) -> Option<SightFault> {
+    pub(crate) fn fault(&self) -> Option<FlowRangeFault> {
         match self.estimator.fault() {
-            Some(Fault::Sight(fault)) => Some(fault),
+            Some(Fault::FlowRange(fault)) => Some(fault),
             _ => None,
         }
     }
@@ -276,25 +276,25 @@ fn a_step_of_what_is_below_changes_neither_height_nor_velocity() {
 /// would make of the true one something narrow, and of each way across it one that is twice as long.
 #[test]
 fn the_ground_is_what_the_beam_falls_back_to() {
-    let mut sight = Sight::new(0.3, Vec3::ZERO);
-    let at = |us: u64, y: f32| Moment {
+    let mut flow_range = FlowRangeFusion::new(0.3, Vec3::ZERO);
+    let at = |us: u64, y: f32| StateSnapshot {
         at_us: us,
         position: Vec3::new(0.0, y, -1.9),
         q: Quat::IDENTITY,
-        ..Moment::default()
+        ..StateSnapshot::default()
     };
-    let look = |sight: &mut Sight, y: f32, distance: f32| {
+    let look = |flow_range: &mut FlowRangeFusion, y: f32, distance: f32| {
         for _ in 0..5 {
-            let _ = sight.height((&at(0, y - 0.02), &at(0, y)), distance, false, 0.0);
+            let _ = flow_range.height((&at(0, y - 0.02), &at(0, y)), distance, false, 0.0);
         }
     };
-    look(&mut sight, 0.5, 1.9);
+    look(&mut flow_range, 0.5, 1.9);
     for drift in [0.0, 0.25, -0.1, 0.3] {
-        look(&mut sight, 0.9, 0.4);
-        assert!(sight.raised());
-        look(&mut sight, 1.2, 1.9 + drift);
-        assert!(!sight.raised(), "{drift}");
-        let depth = sight.depth(&at(0, 3.0), 1.0, 0.0).distance;
+        look(&mut flow_range, 0.9, 0.4);
+        assert!(flow_range.raised());
+        look(&mut flow_range, 1.2, 1.9 + drift);
+        assert!(!flow_range.raised(), "{drift}");
+        let depth = flow_range.depth(&at(0, 3.0), 1.0, 0.0).distance;
         assert!((depth / 1.049 - 1.9 - drift).abs() < 0.13, "{drift}: {depth}");
     }
 }
@@ -305,11 +305,11 @@ fn the_ground_is_what_the_beam_falls_back_to() {
 fn a_beam_falls_where_it_does_below_the_lens() {
     let lens = Vec3::new(0.2, 0.1, 0.05);
     let q = Quat::from_euler(0.1, -0.2, 0.7);
-    let mut sight = Sight::new(0.3, lens);
-    let moment = Moment {
+    let mut flow_range = FlowRangeFusion::new(0.3, lens);
+    let moment = StateSnapshot {
         position: Vec3::new(1.0, 2.0, -1.5),
         q,
-        ..Moment::default()
+        ..StateSnapshot::default()
     };
     let above = 1.5 - q.rotate(lens).z;
     let distance = above / q.down_in_body().z;
@@ -328,14 +328,17 @@ fn a_beam_falls_where_it_does_below_the_lens() {
             reach: (0.02, 8.0),
         }),
     };
-    assert_eq!(sight.new_range(&view, 30_000, true), Some((20_000, distance)));
+    assert_eq!(
+        flow_range.new_range(&view, 30_000, true),
+        Some((20_000, distance))
+    );
     let flow = Flow {
         until_us: 20_000,
         seconds: 0.02,
         angle: [0.0; 2],
         quality: 100,
     };
-    let height = sight.begin(&flow, q).unwrap();
+    let height = flow_range.begin(&flow, q).unwrap();
     assert!((height - 1.5).abs() < 1e-5, "{height}");
 }
 
@@ -343,28 +346,34 @@ fn a_beam_falls_where_it_does_below_the_lens() {
 #[test]
 fn a_pipe_is_left_behind_by_way_and_by_time() {
     for (way, seconds) in [(2.5, 1), (0.0, 25)] {
-        let mut sight = Sight::new(0.3, Vec3::ZERO);
-        let at = |us: u64, x: f32, y: f32| Moment {
+        let mut flow_range = FlowRangeFusion::new(0.3, Vec3::ZERO);
+        let at = |us: u64, x: f32, y: f32| StateSnapshot {
             at_us: us,
             position: Vec3::new(x, y, -1.9),
             q: Quat::IDENTITY,
-            ..Moment::default()
+            ..StateSnapshot::default()
         };
-        let look = |sight: &mut Sight, us: u64, (x, y): (f32, f32), distance: f32| {
+        let look = |flow_range: &mut FlowRangeFusion, us: u64, (x, y): (f32, f32), distance: f32| {
             for _ in 0..5 {
-                let _ = sight.height((&at(us, x, y - 0.02), &at(us, x, y)), distance, false, 0.0);
+                let _ = flow_range.height((&at(us, x, y - 0.02), &at(us, x, y)), distance, false, 0.0);
             }
         };
-        look(&mut sight, 0, (0.0, 0.5), 1.9);
-        look(&mut sight, 0, (0.0, 0.8), 0.4);
-        look(&mut sight, 0, (0.0, 1.1), 1.9);
-        let depth = |sight: &Sight, x: f32| sight.depth(&at(0, x, 1.1), 1.0, 0.0).distance / 1.049;
-        assert!(depth(&sight, 0.0) < 1.7, "beside it: {}", depth(&sight, 0.0));
-        look(&mut sight, seconds * 1_000_000, (way, 1.1), 1.9);
+        look(&mut flow_range, 0, (0.0, 0.5), 1.9);
+        look(&mut flow_range, 0, (0.0, 0.8), 0.4);
+        look(&mut flow_range, 0, (0.0, 1.1), 1.9);
+        let depth = |flow_range: &FlowRangeFusion, x: f32| {
+            flow_range.depth(&at(0, x, 1.1), 1.0, 0.0).distance / 1.049
+        };
         assert!(
-            (depth(&sight, way) - 1.9).abs() < 0.01,
+            depth(&flow_range, 0.0) < 1.7,
+            "beside it: {}",
+            depth(&flow_range, 0.0)
+        );
+        look(&mut flow_range, seconds * 1_000_000, (way, 1.1), 1.9);
+        assert!(
+            (depth(&flow_range, way) - 1.9).abs() < 0.01,
             "{way} {seconds}: {}",
-            depth(&sight, way)
+            depth(&flow_range, way)
         );
     }
 }
@@ -386,21 +395,21 @@ fn an_agreement_says_nothing_while_its_prediction_is_unsure() {
 fn a_leaning_beam_finds_the_edges_where_they_are() {
     let lean = 0.09f32;
     let q = Quat::from_euler(lean, 0.0, 0.0);
-    let mut sight = Sight::new(0.3, Vec3::ZERO);
+    let mut flow_range = FlowRangeFusion::new(0.3, Vec3::ZERO);
     for step in 0..200u64 {
         let y = 0.005 * step as f32;
-        let moment = |y: f32| Moment {
+        let moment = |y: f32| StateSnapshot {
             at_us: 20_000 * step,
             position: Vec3::new(0.0, y, -1.9),
             q,
-            ..Moment::default()
+            ..StateSnapshot::default()
         };
         // To the left of the vehicle; the pipe's middle is at 0.5 m.
         let near = y - 0.4 * lean.tan() - 0.5;
         let distance = if near.abs() < 0.15 { 0.4 } else { 1.9 } / lean.cos();
-        let _ = sight.height((&moment(y - 0.025), &moment(y)), distance, false, 0.0);
+        let _ = flow_range.height((&moment(y - 0.025), &moment(y)), distance, false, 0.0);
     }
-    let band = sight.band.unwrap();
+    let band = flow_range.band.unwrap();
     let middle = Vec3::new(0.0, 0.5, 0.0);
     // The beam's back falls by less than it does in truth: here it is flat.
     let (drop, _) = band.drop(middle);
@@ -410,13 +419,13 @@ fn a_leaning_beam_finds_the_edges_where_they_are() {
 #[test]
 fn what_is_mirrored_turned_dead_frozen_or_wrongly_scaled_is_named_within_three_seconds_and_left_out() {
     type Spoil = fn([f32; 2]) -> [f32; 2];
-    let spoilt: [(Spoil, SightFault); 6] = [
-        (|[x, y]| [-x, -y], SightFault::FlowDisagrees),
-        (|[x, y]| [-x, y], SightFault::FlowDisagrees),
-        (|[x, y]| [y, x], SightFault::FlowDisagrees),
-        (|[x, y]| [2.2 * x, 2.2 * y], SightFault::FlowDisagrees),
-        (|_| [0.0, 0.0], SightFault::FlowDisagrees),
-        (|_| [0.004, 0.001], SightFault::FlowFrozen),
+    let spoilt: [(Spoil, FlowRangeFault); 6] = [
+        (|[x, y]| [-x, -y], FlowRangeFault::FlowDisagrees),
+        (|[x, y]| [-x, y], FlowRangeFault::FlowDisagrees),
+        (|[x, y]| [y, x], FlowRangeFault::FlowDisagrees),
+        (|[x, y]| [2.2 * x, 2.2 * y], FlowRangeFault::FlowDisagrees),
+        (|_| [0.0, 0.0], FlowRangeFault::FlowDisagrees),
+        (|_| [0.004, 0.001], FlowRangeFault::FlowFrozen),
     ];
     for (case, (spoil, fault)) in spoilt.into_iter().enumerate() {
         let mut r = Rig::new();
@@ -446,7 +455,7 @@ fn nothing_coasts_on_a_flow_that_disagrees_and_a_sound_one_is_taken_again() {
     for _ in 0..60 {
         let age = r.out.map_or(0.0, |e| e.age);
         r.run(0.05);
-        if r.fault() == Some(SightFault::FlowDisagrees) {
+        if r.fault() == Some(FlowRangeFault::FlowDisagrees) {
             assert!(age < 0.2, "{age}");
             break;
         }
@@ -465,7 +474,7 @@ fn a_range_that_stands_still_or_jumps_is_named_and_left_out() {
     r.run(5.0);
     r.range = |_| 1.0;
     r.run(1.0);
-    assert_eq!(r.fault(), Some(SightFault::RangeFrozen));
+    assert_eq!(r.fault(), Some(FlowRangeFault::RangeFrozen));
     r.range = |d| d;
     r.run(3.0);
     assert!(r.fault().is_none() && r.errors()[1] < 0.15, "{:?}", r.errors());
@@ -478,7 +487,7 @@ fn a_range_that_stands_still_or_jumps_is_named_and_left_out() {
         r.range = |d| d;
         r.run(0.2);
     }
-    assert_eq!(r.fault(), Some(SightFault::RangeJumps));
+    assert_eq!(r.fault(), Some(FlowRangeFault::RangeJumps));
 }
 
 /// Where the beam of a vehicle that hovered beside a pipe in gusts crossed its edge, s after the first time.
@@ -486,7 +495,7 @@ fn a_range_that_stands_still_or_jumps_is_named_and_left_out() {
 fn an_edge_that_is_crossed_in_gusts_is_no_fault_and_a_range_that_jumps_as_often_is_one() {
     let crossed = [0.0, 0.40, 0.50, 0.90, 1.30, 1.50, 2.07, 3.00, 3.40, 4.20, 4.30];
     let jumps: std::vec::Vec<f32> = (0..14u8).map(|i| 0.3 * f32::from(i)).collect();
-    for (times, fault) in [(&crossed[..], None), (&jumps, Some(SightFault::RangeJumps))] {
+    for (times, fault) in [(&crossed[..], None), (&jumps, Some(FlowRangeFault::RangeJumps))] {
         let mut r = Rig::new();
         r.run(5.0);
         let (mut over, mut now) = (false, 0.0);
@@ -504,28 +513,28 @@ fn an_edge_that_is_crossed_in_gusts_is_no_fault_and_a_range_that_jumps_as_often_
 /// went with the height, which then was anything (30 cm off in two seconds).
 #[test]
 fn the_surface_of_a_flank_does_not_follow_the_height_for_good() {
-    let mut sight = Sight::new(0.3, Vec3::ZERO);
-    let mut moment = Moment {
+    let mut flow_range = FlowRangeFusion::new(0.3, Vec3::ZERO);
+    let mut moment = StateSnapshot {
         at_us: 1_000_000,
         position: Vec3::new(0.0, 0.0, -2.0),
-        ..Moment::default()
+        ..StateSnapshot::default()
     };
-    let mut seen = |sight: &mut Sight, height: f32, distance: f32, times: u8| {
+    let mut seen = |flow_range: &mut FlowRangeFusion, height: f32, distance: f32, times: u8| {
         moment.position.z = -height;
         let mut off = 0.0;
         for _ in 0..times {
             moment.at_us += 20_000;
-            let found = sight.height((&moment, &moment), distance, false, 0.0);
+            let found = flow_range.height((&moment, &moment), distance, false, 0.0);
             off = found.map_or(0.0, |(off, _)| off);
         }
         off
     };
     // The ground, then something 1.5 m over it.
-    seen(&mut sight, 2.0, 2.0, 10);
-    seen(&mut sight, 2.0, 0.5, 60);
-    assert!(sight.raised());
+    seen(&mut flow_range, 2.0, 2.0, 10);
+    seen(&mut flow_range, 2.0, 0.5, 60);
+    assert!(flow_range.raised());
     // The height has drifted by 6 cm, which the range says again and again.
-    let off = seen(&mut sight, 2.06, 0.5, 60);
+    let off = seen(&mut flow_range, 2.06, 0.5, 60);
     assert!((off - 0.06).abs() < 0.01, "{off}");
 }
 
@@ -593,7 +602,7 @@ fn a_flow_that_is_mirrored_from_the_beginning_is_named_as_soon_after_a_perch() {
         r.spoil = |[x, y]| [-x, -y];
         let after = (1..).find(|_| {
             r.run(0.05);
-            r.fault() == Some(SightFault::FlowDisagrees)
+            r.fault() == Some(FlowRangeFault::FlowDisagrees)
         });
         0.05 * after.map_or(f32::MAX, |n| n as f32)
     };
@@ -630,12 +639,15 @@ fn flow_carries_on_where_poses_end_and_a_pose_sets_the_axes() {
     }
     let e = r.out.unwrap();
     let at = Rig::truth(r.now)[0] + Vec3::new(5.0, 0.0, 0.0);
-    assert!(e.jumps == 1 && (e.position - at).norm() < 0.02, "{e:?} {at:?}");
+    assert!(
+        e.reset_count == 1 && (e.position - at).norm() < 0.02,
+        "{e:?} {at:?}"
+    );
     r.run(3.0);
     let e = r.out.unwrap();
     let at = Rig::truth(r.now)[0] + Vec3::new(5.0, 0.0, 0.0);
     assert!(
-        e.jumps == 1 && e.age < 0.1 && (e.position - at).norm() < 0.15,
+        e.reset_count == 1 && e.age < 0.1 && (e.position - at).norm() < 0.15,
         "{e:?}"
     );
 }
@@ -709,19 +721,19 @@ fn where_flow_cannot_be_used_is_named() {
     };
     let cases = [
         (view(Some(1.0), 100), None),
-        (view(Some(0.07), 100), Some(SightLimit::TooLow)),
-        (view(Some(2.6), 100), Some(SightLimit::TooHigh)),
-        (view(Some(f32::NAN), 100), Some(SightLimit::NoRange)),
-        (view(None, 100), Some(SightLimit::NoRange)),
-        (view(Some(1.0), 10), Some(SightLimit::TooDark)),
-        (GroundView::default(), Some(SightLimit::NoRange)),
+        (view(Some(0.07), 100), Some(FlowRangeLimit::TooLow)),
+        (view(Some(2.6), 100), Some(FlowRangeLimit::TooHigh)),
+        (view(Some(f32::NAN), 100), Some(FlowRangeLimit::NoRange)),
+        (view(None, 100), Some(FlowRangeLimit::NoRange)),
+        (view(Some(1.0), 10), Some(FlowRangeLimit::TooDark)),
+        (GroundView::default(), Some(FlowRangeLimit::NoRange)),
     ];
     for (view, limit) in cases {
-        assert_eq!(SightLimit::of(&view), limit, "{view:?}");
+        assert_eq!(FlowRangeLimit::of(&view), limit, "{view:?}");
     }
     let high = FLOW_HEIGHT.1;
-    assert!(SightLimit::TooHigh.text().contains(&std::format!("{high} m")));
-    assert!(SightLimit::ALL.iter().all(|limit| limit.text().len() <= 40));
+    assert!(FlowRangeLimit::TooHigh.text().contains(&std::format!("{high} m")));
+    assert!(FlowRangeLimit::ALL.iter().all(|limit| limit.text().len() <= 40));
 }
 
 use proptest::prelude::*;
@@ -772,12 +784,12 @@ fn a_scaled_range_is_named_left_out_and_taken_again() {
         r.range = range;
         let named = (0..80).find(|_| {
             r.run(0.5);
-            r.fault() == Some(SightFault::RangeScaled)
+            r.fault() == Some(FlowRangeFault::RangeScaled)
         });
         assert!(named.is_some(), "{:?}", r.fault());
         assert!(r.out.is_none_or(|e| e.age > 1.3), "{:?}", r.out);
         r.run(20.0);
-        assert_eq!(r.fault(), Some(SightFault::RangeScaled));
+        assert_eq!(r.fault(), Some(FlowRangeFault::RangeScaled));
         r.range = |d| d;
         r.run(20.0);
         assert_eq!(r.fault(), None);
@@ -804,7 +816,7 @@ fn what_a_scaled_range_has_met_is_forgotten_with_it() {
     }
     r.run(3.0);
     assert_eq!(r.fault(), None);
-    assert!(!r.estimator.sight.raised());
+    assert!(!r.estimator.flow_range.raised());
     let [v, _] = r.errors();
     assert!(v < 0.05, "{v}");
 }

@@ -2,7 +2,7 @@
 
 extern crate std;
 use crate::maths::vector::Quat;
-use crate::navigation::flow_range::SightFault;
+use crate::navigation::flow_range::FlowRangeFault;
 use crate::navigation::flow_range_sample::Range;
 use crate::navigation::frozen_range::Frozen;
 use crate::navigation::position_estimator::*;
@@ -121,7 +121,7 @@ fn named(module: Module, seconds: u64, stuck: f64, (height, felt): Motion) -> Op
             accel: Vec3::new(0.0, 0.0, -GRAVITY - felt(t) as f32),
         };
         let _ = estimator.step(&inertial, 17.7, None, Some(&view));
-        if estimator.fault() == Some(Fault::Sight(SightFault::RangeFrozen)) {
+        if estimator.fault() == Some(Fault::FlowRange(FlowRangeFault::RangeFrozen)) {
             return Some(t);
         }
     }

@@ -13,7 +13,7 @@ use crate::mode::states::clamping::STOP_TIME;
 use crate::mode::states::contact::CONTACT_TIME;
 use crate::mode::*;
 use crate::navigation::estimate::Estimate;
-use crate::navigation::range_hit::Foot;
+use crate::navigation::range_hit::RangeHit;
 use crate::pilot::rc::Sticks;
 use crate::pilot::remote::RemoteOrder::{Grab, Release};
 use crate::pilot::remote::RemoteRefusal;
@@ -93,14 +93,14 @@ impl World {
 
     fn see(&mut self) {
         if self.bent.is_none() {
-            self.r.logic.forget_rise();
+            self.r.logic.forget_vertical_fallback();
         }
         let y = self.at.y - RIGHT;
         let on = self.pipe && y.abs() < 0.15;
         let flank = 0.15 - crate::maths::scalar::sqrt((0.0225 - y * y).max(0.0));
         let z = if on { flank - CROWN } else { 0.0 };
         self.count = self.count.wrapping_add(1);
-        let foot = Foot {
+        let foot = RangeHit {
             point: Some(Vec3::new(self.at.x, self.at.y, z)),
             count: self.count,
             age: 0.02,
@@ -108,9 +108,9 @@ impl World {
         self.r.inputs.position = Some(Estimate {
             position: self.at,
             velocity: Vec3::new(0.0, 0.0, self.bent.map_or(0.0, |bent| self.r.falling + bent)),
-            jumps: self.jumps,
+            reset_count: self.jumps,
             age: 0.02,
-            foot: if self.ranged { foot } else { Foot::default() },
+            foot: if self.ranged { foot } else { RangeHit::default() },
             ..Estimate::default()
         });
     }
@@ -350,7 +350,7 @@ fn it_does_not_begin_without_a_range_a_position_or_centred_sticks_and_says_so() 
     w.r.sticks().perch_switch = true;
     let seen = w.r.inputs.position.unwrap();
     w.r.inputs.position = Some(Estimate {
-        foot: Foot::default(),
+        foot: RangeHit::default(),
         ..seen
     });
     w.r.expect(0.5, Mode::Hold);
@@ -488,7 +488,7 @@ fn without_a_pipe_or_a_range_it_is_handed_back_with_a_reason() {
     for (stale, why) in [
         (
             Estimate {
-                foot: Foot {
+                foot: RangeHit {
                     age: 0.4,
                     ..seen.foot
                 },
@@ -593,7 +593,7 @@ fn a_grab_and_a_release_by_order_do_it_with_the_pilots_switch_left_alone() {
     w.r.sticks().roll = 0.0;
     let seen = w.r.inputs.position;
     w.r.inputs.position = seen.map(|e| Estimate {
-        foot: Foot::default(),
+        foot: RangeHit::default(),
         ..e
     });
     assert_eq!(w.r.remote(Grab), Some(RemoteRefusal::NoWay));
