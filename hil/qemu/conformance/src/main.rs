@@ -12,6 +12,8 @@ mod core_under_test;
 mod laws;
 #[cfg(target_os = "none")]
 mod machine;
+#[cfg(target_os = "none")]
+mod traces;
 
 #[cfg(not(target_os = "none"))]
 fn main() {

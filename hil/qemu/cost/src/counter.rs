@@ -1,5 +1,6 @@
 //! Counts executed instructions.
 
+use core::fmt::Arguments;
 use core::sync::atomic::{Ordering, compiler_fence};
 
 #[derive(Clone, Copy)]
@@ -101,4 +102,12 @@ mod clock {
     pub const fn known(_: u32) -> u32 {
         0
     }
+}
+
+/// Prints the counts of a stage.
+pub fn line(print: &mut dyn FnMut(Arguments<'_>), name: &str, t: &Tally) {
+    print(format_args!(
+        "stage {name} {} {} {} {}",
+        t.calls, t.total, t.min, t.max
+    ));
 }

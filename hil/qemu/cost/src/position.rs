@@ -16,8 +16,7 @@ use sophie_drivers::ground_module::GroundModule;
 use sophie_drivers::msp::Message;
 use sophie_tasks::ports::GroundDecoder;
 
-use crate::counter::{Tally, gross};
-use crate::run::line;
+use crate::counter::{Tally, gross, line};
 
 /// Steps of the estimate, 200 Hz, and those before the first counted one: it is ready after half a second.
 const STEPS: u32 = 4000;

@@ -7,7 +7,7 @@ use sophie_conformance::fold::Fold;
 use sophie_control::chain::{Demand, FlightChain};
 
 use crate::chain::{self, Laws};
-use crate::counter::{self, Tally, gross};
+use crate::counter::{self, Tally, gross, line};
 use crate::inputs::{FLIGHT, Inputs, REST, Sequence};
 use crate::position;
 
@@ -151,11 +151,4 @@ fn add(fold: &mut Fold, chain: &FlightChain) {
     for command in chain.flow.mix.commands {
         fold.add(command.to_bits());
     }
-}
-
-pub fn line(print: &mut dyn FnMut(Arguments<'_>), name: &str, t: &Tally) {
-    print(format_args!(
-        "stage {name} {} {} {} {}",
-        t.calls, t.total, t.min, t.max
-    ));
 }

@@ -4,10 +4,12 @@
 use core::arch::{asm, global_asm};
 use core::fmt::{self, Arguments, Write};
 use core::hint::black_box;
+use core::sync::atomic::AtomicU32;
 use core::sync::atomic::Ordering::Relaxed;
-use core::sync::atomic::{AtomicBool, AtomicU32};
 
 use cortex_m::asm::{dsb, isb};
+
+use crate::traces::{Left, STOPPED, with_kept};
 
 /// Guard below the stack: first address, log2 of its bytes. Replaces unmapped memory, which QEMU's machines ignore.
 const NOWHERE: u32 = 0x1FFF_F000;
@@ -22,7 +24,6 @@ const PC: usize = 6;
 const STATUS: usize = 7;
 const THUMB: u32 = 1 << 24;
 
-pub static STOPPED: AtomicBool = AtomicBool::new(false);
 #[unsafe(no_mangle)]
 static CONFORMANCE_STACK: AtomicU32 = AtomicU32::new(0);
 
@@ -51,37 +52,6 @@ global_asm!(
 unsafe extern "C" {
     fn conformance_try(scenario: extern "C" fn());
     fn conformance_go_on();
-}
-
-pub struct Left {
-    text: [u8; 240],
-    length: usize,
-}
-
-impl Left {
-    pub const fn new() -> Self {
-        Self {
-            text: [0; 240],
-            length: 0,
-        }
-    }
-}
-
-impl Write for Left {
-    fn write_str(&mut self, text: &str) -> fmt::Result {
-        for (slot, byte) in self.text.iter_mut().skip(self.length).zip(text.bytes()) {
-            *slot = byte;
-            self.length += 1;
-        }
-        Ok(())
-    }
-}
-
-impl fmt::Display for Left {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let text = self.text.get(..self.length).unwrap_or_default();
-        f.write_str(core::str::from_utf8(text).unwrap_or_default())
-    }
 }
 
 /// Continues in `conformance_try`, in thread mode, from any handler.
@@ -163,7 +133,7 @@ fn try_all(print: &mut dyn FnMut(Arguments<'_>), done: fn() -> !) {
             "running"
         };
         let mut left = Left::new();
-        let _ = crate::machine::with_kept(|words| write!(left, "{words}"));
+        let _ = with_kept(|words| write!(left, "{words}"));
         print(format_args!("{name}: motors {stopped}, kept: {left}"));
     }
     done();
