@@ -150,7 +150,7 @@ impl Board {
     }
 
     /// Applies the motor protocol of `params`, as a start of the board does.
-    pub fn speaks(&self, params: &Params) {
+    pub fn configure_motors(&self, params: &Params) {
         self.protocol.set(EscProtocol::from_params(params));
         self.next_pulse.set(0);
     }

@@ -96,7 +96,7 @@ impl BenchOperator {
 
     /// The latest observation.
     #[must_use]
-    pub fn look(&self) -> Observation {
+    pub fn observe(&self) -> Observation {
         self.table().seen.clone()
     }
 

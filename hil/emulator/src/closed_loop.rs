@@ -45,7 +45,7 @@ pub struct ClosedLoop<'a> {
     sensors: Sensors,
     flow_module: Option<FlowSender>,
     /// `None`: the vehicle stands alone.
-    hands: Option<BenchOperator>,
+    operator: Option<BenchOperator>,
     plan: Plan,
     wires: Wires,
     pins: Pins,
@@ -153,7 +153,7 @@ impl<'a> ClosedLoop<'a> {
             },
             sensors,
             flow_module,
-            hands: None,
+            operator: None,
             plan,
             wires: Wires::default(),
             pins: Pins::default(),
@@ -184,7 +184,7 @@ impl<'a> ClosedLoop<'a> {
 
     /// The same vehicle, uncalibrated, with a bench operator.
     #[must_use]
-    pub fn in_hands(mut self, hands: BenchOperator) -> Self {
+    pub fn with_operator(mut self, operator: BenchOperator) -> Self {
         let Params {
             accel_bias_x,
             accel_bias_y,
@@ -197,7 +197,7 @@ impl<'a> ClosedLoop<'a> {
             accel_bias_z,
             ..self.settings.params
         };
-        self.hands = Some(hands);
+        self.operator = Some(operator);
         self
     }
 
@@ -292,9 +292,9 @@ impl Aircraft for ClosedLoop<'_> {
             motors: self.drives(),
             servos: self.pins.servos,
         };
-        let held = self.hands.as_mut().map(|hands| {
-            actuators.motors = hands.wired(&self.pins.motors);
-            hands.step(&self.pins, plant)
+        let held = self.operator.as_mut().map(|operator| {
+            actuators.motors = operator.wired(&self.pins.motors);
+            operator.step(&self.pins, plant)
         });
         if let Some(frame) = held.as_ref().and_then(|held| held.frame(self.pins.ms)) {
             let words = frame.iter().map(|byte| on_line(RcProtocol::Crsf, *byte));

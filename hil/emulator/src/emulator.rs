@@ -109,7 +109,7 @@ impl Emulator {
             rtt: Rtt::new(firmware.rtt),
             params: firmware.params,
             receiver,
-            below: settings.params.flow_port == FlowPort::Msp,
+            flow_module: settings.params.flow_port == FlowPort::Msp,
             arm_buses: settings.params.arm_bus_khz,
             erases: BTreeMap::new(),
             cached: 0,
@@ -208,14 +208,14 @@ fn run<C: Chip>(
     let miswired = if at.0 - started.min(at.0) > START_UP {
         let World {
             receiver,
-            below,
+            flow_module,
             arm_buses,
             ..
         } = finished.driver;
         finished
             .session
             .board_mut()
-            .miswired(at, receiver, below, arm_buses)
+            .miswired(at, receiver, flow_module, arm_buses)
     } else {
         Vec::new()
     };
@@ -324,7 +324,7 @@ struct World {
     /// Required set-up of the receiver's port.
     receiver: serial::Setup,
     /// A flow and range module is wired.
-    below: bool,
+    flow_module: bool,
     /// Required speed of the arms' buses.
     arm_buses: ArmBusSpeed,
     erases: BTreeMap<u64, u32>,
@@ -618,7 +618,7 @@ impl<C: Chip> Driver<Wired<C>> for World {
                 self.cached += 1;
             }
             if PORTS.iter().any(|ports| ports.contains(&access.address)) {
-                self.outputs.look(session, access.virtual_time);
+                self.outputs.check(session, access.virtual_time);
             }
         }
     }

@@ -74,15 +74,15 @@ pub fn stand(
     firmware: &Firmware,
     scenario: &Scenario,
     setup: Setup,
-    hands: Option<BenchOperator>,
+    operator: Option<BenchOperator>,
     logged: impl FnMut(&log::Line),
     mut over: impl FnMut() -> bool,
 ) -> Result<Stood, String> {
     flyable::check(scenario)?;
     let make = || {
         let bench = ClosedLoop::new(firmware, scenario, setup, logged);
-        match hands {
-            Some(hands) => bench.in_hands(hands),
+        match operator {
+            Some(operator) => bench.with_operator(operator),
             None => bench,
         }
     };

@@ -71,16 +71,16 @@ impl Sensors {
         }
     }
 
-    /// Steps the plant by a millisecond and sets `wires`; of a vehicle in hands the plant's rotors and battery alone count.
+    /// Steps the plant by a millisecond and sets `wires`; of a vehicle in operator the plant's rotors and battery alone count.
     pub fn step(
         &mut self,
         plant: &mut Plant,
         actuators: &sophie_sim::plant::Actuators,
-        hands: Option<&HandledVehicle>,
+        operator: Option<&HandledVehicle>,
         wires: &mut Wires,
     ) {
         let moved = |plant: &Plant| {
-            hands.map_or((plant.pose().omega, plant.specific_force()), |held| {
+            operator.map_or((plant.pose().omega, plant.specific_force()), |held| {
                 (held.rate, held.force())
             })
         };
@@ -103,9 +103,9 @@ impl Sensors {
         if self.arm_clock >= 1.0 {
             self.arm_clock -= 1.0;
             let (_, force) = moved(plant);
-            let attitude = hands.map_or(plant.pose().attitude, |held| held.attitude);
+            let attitude = operator.map_or(plant.pose().attitude, |held| held.attitude);
             let mut tilt = plant.tilt();
-            for (tilt, bent) in tilt.iter_mut().zip(hands.map_or([0.0; 4], |held| held.bent)) {
+            for (tilt, bent) in tilt.iter_mut().zip(operator.map_or([0.0; 4], |held| held.bent)) {
                 *tilt += bent;
             }
             for ((g, arm), tilt) in self.gravity.iter_mut().zip(&mut self.arms).zip(tilt) {
@@ -114,12 +114,12 @@ impl Sensors {
         }
         wires.arms = self.gravity.map(|g| g.to_array().map(f64::from));
         self.ms += 1;
-        let height = hands.map_or(-plant.pose().position.z, |held| held.height);
+        let height = operator.map_or(-plant.pose().position.z, |held| held.height);
         self.barometer.step(height, plant.thrust().iter().sum());
         let air = self.barometer.measure(self.ms * 1000);
         wires.air = air.map(|air| (f64::from(air.pascal), f64::from(air.celsius)));
         let volts = |counts: u16| f64::from(counts) * REFERENCE / FULL_SCALE;
-        let pressed = hands.map_or([0.0; 4], |held| held.pressed);
+        let pressed = operator.map_or([0.0; 4], |held| held.pressed);
         let pressures = plant.pressure().into_iter().zip(pressed);
         let pressures = self.fsr.iter_mut().zip(pressures);
         for ((counts, (sensor, (pressure, pressed))), volt) in self

@@ -104,7 +104,7 @@ impl Stack {
     /// Spawns the tasks `us` µs after power-up.
     fn spawn(&mut self, us: u64) {
         let (links, board) = (self.links, self.board);
-        board.speaks(&links.params);
+        board.configure_motors(&links.params);
         let (variant, configuration) = (self.mixer, self.configuration);
         let mixer = move |p: &Params| Mixer::new(variant, configuration, p);
         let time = VirtualTime::new();

@@ -43,7 +43,7 @@ impl Pace {
     pub fn wait(&mut self, us: u64) -> Option<String> {
         let began = *self.began.get_or_insert_with(Instant::now);
         let virtual_time = us as f64 * 1e-6;
-        let (early, slow) = self.look(virtual_time, began.elapsed().as_secs_f64());
+        let (early, slow) = self.assess(virtual_time, began.elapsed().as_secs_f64());
         if early > 0.0 {
             sleep(Duration::from_secs_f64(early));
         }
@@ -57,7 +57,7 @@ impl Pace {
 
     /// Wall time until `virtual_time` is due, negative when it is late, and the speed reached by a host that is found
     /// too slow at `wall`; all in s.
-    fn look(&mut self, virtual_time: f64, wall: f64) -> (f64, Option<f64>) {
+    fn assess(&mut self, virtual_time: f64, wall: f64) -> (f64, Option<f64>) {
         let mut early = self.origin + virtual_time / self.speed - wall;
         if early < -SLACK.as_secs_f64() {
             self.origin -= early;
@@ -90,7 +90,7 @@ mod tests {
         let (mut pace, mut wall, mut reported, mut times) = (Pace::new(speed), 0.0, vec![], vec![]);
         for ms in 1..=(seconds * 1e3) as u64 {
             let t = ms as f64 * 1e-3;
-            let (early, slow) = pace.look(t, wall);
+            let (early, slow) = pace.assess(t, wall);
             wall += early.max(0.0);
             assert!(t <= wall * speed + 1e-9, "{t} s is ahead of {wall} s");
             reported.extend(slow);

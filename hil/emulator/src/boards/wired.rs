@@ -215,12 +215,12 @@ impl<C: Chip> Wired<C> {
     }
 
     /// Pins with a wrong function, a receiver's port that differs from `receiver`, MAVLink's from [`Setup::MAVLINK`], with
-    /// a module below that of [`Setup::GROUND`], and arm buses of another speed.
+    /// the flow module's from [`Setup::GROUND`], and arm buses of another speed.
     pub fn miswired(
         &mut self,
         now: VirtualNanos,
         receiver: Setup,
-        below: bool,
+        flow_module: bool,
         speed: ArmBusSpeed,
     ) -> Vec<(String, String)> {
         let mut found = Vec::new();
@@ -228,7 +228,7 @@ impl<C: Chip> Wired<C> {
             ("receiver", self.pads.receiver, receiver),
             ("MAVLink", self.pads.mavlink, Setup::MAVLINK),
         ];
-        let module = below.then_some(("flow and range", self.pads.ground, Setup::GROUND));
+        let module = flow_module.then_some(("flow and range", self.pads.ground, Setup::GROUND));
         for (name, port, wired) in lines.into_iter().chain(module) {
             let port = self.chip.serial_setup(port);
             if !wired.fits(&port) {
@@ -243,7 +243,7 @@ impl<C: Chip> Wired<C> {
                 found.push((format!("I2C{}", bus + 1), wrong));
             }
         }
-        for (pin, wanted) in self.pads.functions(!receiver.parity, below) {
+        for (pin, wanted) in self.pads.functions(!receiver.parity, flow_module) {
             let function = self.chip.function(now, pin);
             if function != Some(wanted) {
                 let carried = function.map_or("none".to_owned(), |f| f.to_string());

@@ -18,7 +18,7 @@ pub struct Outputs {
 }
 
 impl Outputs {
-    pub fn look<C: Chip>(&mut self, session: &mut Session<Wired<C>>, now: VirtualNanos) {
+    pub fn check<C: Chip>(&mut self, session: &mut Session<Wired<C>>, now: VirtualNanos) {
         let starts = session.resets().len() + 1;
         if starts != self.starts {
             self.starts = starts;

@@ -46,7 +46,7 @@ impl<F: Family> EdgeProbe<F> {
         self.high[channel]
     }
 
-    fn look(&mut self, file: &RegisterFile, now: VirtualNanos) {
+    fn record(&mut self, file: &RegisterFile, now: VirtualNanos) {
         for channel in 0..4 {
             let Some(number) = Channel::new(channel as u8 + 1) else {
                 continue;
@@ -87,12 +87,12 @@ where
 
     fn write(&mut self, r: Self::Register, value: u64, file: &mut RegisterFile, c: &mut DeviceContext<'_>) {
         self.tim.write(r, value, file, c);
-        self.look(file, c.now());
+        self.record(file, c.now());
     }
 
     fn on_event(&mut self, event: EventId, file: &mut RegisterFile, c: &mut DeviceContext<'_>) {
         self.tim.on_event(event, file, c);
-        self.look(file, c.now());
+        self.record(file, c.now());
     }
 
     // As in [`super::ignore_dma::IgnoreDma`]: a burst through DMAR serves its request itself.
@@ -108,6 +108,6 @@ where
 
     fn reset_line(&mut self, file: &mut RegisterFile, c: &mut DeviceContext<'_>) {
         self.tim.reset_line(file, c);
-        self.look(file, c.now());
+        self.record(file, c.now());
     }
 }

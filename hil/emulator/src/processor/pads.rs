@@ -144,8 +144,8 @@ impl Pads {
             .map(|(pad, volts)| (pad.channel, pad.millivolts(volts)))
     }
 
-    /// Pins with their alternate functions; `answers`: the receiver's output is used; `below`: the module's line.
-    pub fn functions(&self, answers: bool, below: bool) -> impl Iterator<Item = (At, u8)> {
+    /// Pins with their alternate functions; `answers`: the receiver's output is used; `flow_module`: its line is used.
+    pub fn functions(&self, answers: bool, flow_module: bool) -> impl Iterator<Item = (At, u8)> {
         let motors = self.motors.pins.map(|pin| (pin, self.motors.function));
         let servos = self.servos.map(|servo| (servo.pin, servo.function));
         motors
@@ -153,6 +153,6 @@ impl Pads {
             .chain(servos)
             .chain(self.buses.iter().copied())
             .chain(answers.then_some(self.receiver_out))
-            .chain(below.then_some(self.ground_in))
+            .chain(flow_module.then_some(self.ground_in))
     }
 }

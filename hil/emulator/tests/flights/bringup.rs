@@ -58,10 +58,10 @@ struct Walked {
 
 /// A new H743 board with `builder` at its console.
 fn walk(folder: &Folder, builder: impl FnOnce(BenchOperator) -> Builder) -> Walked {
-    let hands = BenchOperator::default();
+    let operator = BenchOperator::default();
     // Motors 2 and 3 are swapped.
-    hands.change(|held| held.wiring = MotorMap::of([0, 2, 1, 3]).unwrap());
-    let mut builder = builder(hands.clone());
+    operator.change(|held| held.wiring = MotorMap::of([0, 2, 1, 3]).unwrap());
+    let mut builder = builder(operator.clone());
     let (port, console) = terminal("--console");
     let protocol = folder.protocol();
     let walker = std::thread::spawn(move || {
@@ -84,7 +84,7 @@ fn walk(folder: &Folder, builder: impl FnOnce(BenchOperator) -> Builder) -> Walk
         &firmware,
         &unmarked(scenario("hover.toml")),
         setup,
-        Some(hands),
+        Some(operator),
         |line| {
             if !line.text.starts_with("timing ") {
                 println!("{line}");
@@ -118,7 +118,7 @@ fn a_new_board_is_brought_up_through_all_steps() {
         log,
         builder,
         all_passed,
-    } = walk(&folder, |hands| Builder::new(hands, None));
+    } = walk(&folder, |operator| Builder::new(operator, None));
     let said = builder.said();
     assert_eq!(all_passed, Ok(true), "{said}\n{log}");
     let protocol = folder.read();
@@ -171,7 +171,7 @@ fn a_new_board_passes_its_first_steps_and_the_rest_is_left_for_later() {
         log,
         builder,
         all_passed,
-    } = walk(&folder, |hands| Builder::new(hands, Some("live-imu")));
+    } = walk(&folder, |operator| Builder::new(operator, Some("live-imu")));
     let said = builder.said();
     assert_eq!(all_passed, Ok(false), "{said}\n{log}");
     let protocol = folder.read();

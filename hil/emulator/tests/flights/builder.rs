@@ -23,11 +23,11 @@ const THUMB: f64 = 900.0;
 /// A change of handling and its duration, ms of the board's time.
 struct Move {
     ms: u64,
-    hands: fn(&mut Handling),
+    operator: fn(&mut Handling),
 }
 
 pub(super) struct Builder {
-    hands: BenchOperator,
+    operator: BenchOperator,
     /// Stops at this step.
     until: Option<&'static str>,
     said: String,
@@ -44,9 +44,9 @@ pub(super) struct Builder {
 }
 
 impl Builder {
-    pub(super) fn new(hands: BenchOperator, until: Option<&'static str>) -> Self {
+    pub(super) fn new(operator: BenchOperator, until: Option<&'static str>) -> Self {
         Self {
-            hands,
+            operator,
             until,
             said: String::new(),
             step: String::new(),
@@ -92,7 +92,7 @@ impl Builder {
     /// Changes the handling and waits until it has passed the filters; an unchanged handling takes no time.
     fn does(&self, change: impl FnOnce(&mut Handling)) {
         let mut changed = false;
-        self.hands.change(|held| {
+        self.operator.change(|held| {
             let before = held.clone();
             change(held);
             changed = before.below != held.below
@@ -107,8 +107,8 @@ impl Builder {
     }
 
     fn settles(&self) {
-        let (begun, from) = (Instant::now(), self.hands.look().ms);
-        while self.hands.look().ms < from + SETTLED {
+        let (begun, from) = (Instant::now(), self.operator.observe().ms);
+        while self.operator.observe().ms < from + SETTLED {
             assert!(begun.elapsed() < STILL, "the board stands still:\n{}", self.said);
             std::thread::sleep(Duration::from_millis(5));
         }
@@ -162,7 +162,7 @@ impl Builder {
 
     /// The present pulse of the servo, µs; it moves no faster than the reel turns.
     fn standing_pulse(&self) -> f64 {
-        let seen = || self.hands.look().servos[self.number()].round();
+        let seen = || self.operator.observe().servos[self.number()].round();
         let mut pulse = seen();
         loop {
             self.settles();
@@ -174,7 +174,7 @@ impl Builder {
     }
 
     fn which_turned(&mut self) -> String {
-        let turned = self.hands.look().turned;
+        let turned = self.operator.observe().turned;
         self.turned.push(turned);
         turned.map_or(0, |rotor| rotor + 1).to_string()
     }
@@ -202,9 +202,9 @@ impl Builder {
         } else if begins("Type off") {
             "off".to_owned()
         } else if begins("Volts") {
-            format!("{:.2}", self.hands.look().volts)
+            format!("{:.2}", self.operator.observe().volts)
         } else if begins("Did it turn") {
-            if self.hands.look().turned.is_some() {
+            if self.operator.observe().turned.is_some() {
                 "y"
             } else {
                 "n"
@@ -262,9 +262,9 @@ fn live(id: &str) -> VecDeque<Move> {
             |held| held.sticks = Some(Sticks::default()),
         ],
     };
-    let moves = all.iter().map(|hands| Move {
+    let moves = all.iter().map(|operator| Move {
         ms: SETTLED,
-        hands: *hands,
+        operator: *operator,
     });
     moves.collect()
 }
@@ -292,7 +292,7 @@ impl User for Builder {
     }
 
     fn answered(&mut self) -> Option<Reply> {
-        let now = self.hands.look().ms;
+        let now = self.operator.observe().ms;
         let id = self.step.clone();
         let moves = self.moves.get_or_insert_with(|| live(&id));
         if now < self.over {
@@ -300,7 +300,7 @@ impl User for Builder {
         }
         match moves.pop_front() {
             Some(next) => {
-                self.hands.change(next.hands);
+                self.operator.change(next.operator);
                 self.over = now + next.ms;
                 None
             }

@@ -1,22 +1,24 @@
 //! The `Machine` at the end of a run, without a board.
 
-use core::fmt::Arguments;
+use core::fmt::{Arguments, Write};
 use core::sync::atomic::Ordering::Relaxed;
 
 use sophie_fault::Machine;
 
 use crate::core_under_test::faults;
-use crate::kept_message;
+use crate::traces::{self, Left, STOPPED};
 
 struct Bare;
 
 impl Machine for Bare {
     fn stop_motors() {
-        faults::STOPPED.store(true, Relaxed);
+        STOPPED.store(true, Relaxed);
     }
 
     fn keep(message: Arguments<'_>) {
-        kept_message::keep(message);
+        let mut left = Left::new();
+        let _ = left.write_fmt(message);
+        traces::keep(left);
     }
 
     /// Continues with the next scenario.

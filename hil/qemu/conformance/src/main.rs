@@ -14,6 +14,8 @@ mod kept_message;
 mod laws;
 #[cfg(target_os = "none")]
 mod machine;
+#[cfg(target_os = "none")]
+mod traces;
 
 #[cfg(not(target_os = "none"))]
 fn main() {

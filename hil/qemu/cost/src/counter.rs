@@ -104,7 +104,7 @@ mod clock {
     }
 }
 
-/// Prints one stage: `stage NAME CALLS TOTAL MIN MAX`.
+/// Prints the counts of a stage.
 pub fn line(print: &mut dyn FnMut(Arguments<'_>), name: &str, t: &Tally) {
     print(format_args!(
         "stage {name} {} {} {} {}",

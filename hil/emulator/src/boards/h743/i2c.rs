@@ -1,7 +1,7 @@
 //! The emulator's I2C interface with two additions:
 //!
 //! - spurious bus errors: as a master, F7 and H7 flag some while the transfer continues (ST's errata, "Spurious bus
-//! error detection in master mode");
+//!   error detection in master mode");
 //! - a data register that asks for its next byte as soon as the last one has moved on to the wire, and not only after its
 //!   acknowledge (RM0433 §47.9.7, TXIS; ST's own driver flushes that byte after a missing acknowledge).
 

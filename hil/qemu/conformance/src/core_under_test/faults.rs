@@ -4,12 +4,12 @@
 use core::arch::{asm, global_asm};
 use core::fmt::{self, Arguments, Write as _};
 use core::hint::black_box;
+use core::sync::atomic::AtomicU32;
 use core::sync::atomic::Ordering::Relaxed;
-use core::sync::atomic::{AtomicBool, AtomicU32};
 
 use cortex_m::asm::{dsb, isb};
 
-use crate::kept_message::{KeptMessage, with_kept};
+use crate::traces::{Left, STOPPED, with_kept};
 
 /// Guard below the stack: first address, log2 of its bytes. Replaces unmapped memory, which QEMU's machines ignore.
 const NOWHERE: u32 = 0x1FFF_F000;
@@ -24,7 +24,6 @@ const PC: usize = 6;
 const STATUS: usize = 7;
 const THUMB: u32 = 1 << 24;
 
-pub static STOPPED: AtomicBool = AtomicBool::new(false);
 #[unsafe(no_mangle)]
 static CONFORMANCE_STACK: AtomicU32 = AtomicU32::new(0);
 
@@ -133,7 +132,7 @@ fn try_all(print: &mut dyn FnMut(Arguments<'_>), done: fn() -> !) {
         } else {
             "running"
         };
-        let mut left = KeptMessage::new();
+        let mut left = Left::new();
         let _ = with_kept(|words| write!(left, "{words}"));
         print(format_args!("{name}: motors {stopped}, kept: {left}"));
     }
