@@ -130,7 +130,7 @@ impl BaroHeight {
     }
 
     /// Innovation of a height of `down` m at the newest pressure, m, with its variance, m². `None` while range or pose
-    /// gave a height less than [`FRESH`] ago (`known`, s), from which the offset is learnt, or while the barometer is
+    /// gave a height less than `FRESH` ago (`known`, s), from which the offset is learnt, or while the barometer is
     /// not sound.
     pub fn height(&mut self, down: f32, known: f32) -> Option<(f32, f32)> {
         let dt = seconds(self.looked_us, self.at_us);

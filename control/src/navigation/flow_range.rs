@@ -102,7 +102,7 @@ pub enum FlowRangeLimit {
     TooHigh,
     /// No target within the range's reach.
     NoRange,
-    /// The picture has too little contrast.
+    /// The quality of the picture is too low.
     TooDark,
 }
 
