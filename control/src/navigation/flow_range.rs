@@ -231,8 +231,9 @@ impl FlowRangeFusion {
         self.frozen.holds() || self.distrusted_us > self.range_us || self.scale.wrong()
     }
 
-    /// Measurement time, µs, and distance, m, of a range that is not processed yet; a scaled one too. `None` without
-    /// one, or with another range fault. The rotors carry a vehicle that `flies`.
+    /// Measurement time, µs, and distance, m, of a range that is not processed yet; `None` without one. A scaled range
+    /// is returned too; a frozen or jumping one is not, unless it is also scaled. The rotors carry a vehicle that
+    /// `flies`.
     pub fn new_range(&mut self, view: &GroundView, now: u64, flies: bool) -> Option<(u64, f32)> {
         let range = view.range.and_then(Range::checked)?;
         if range.at_us <= self.range_us || range.at_us > now {

@@ -120,8 +120,8 @@ impl PositionEstimator {
         self.baro_height.hear(air);
     }
 
-    /// One step with the inertial sensor, the thrust demanded along -z, N, the newest fix and the newest flow and range.
-    /// `None` without a position.
+    /// One step with the inertial sensor, the thrust demanded along -z, N, the newest fix and the newest flow and
+    /// range. `None` without a position.
     pub fn step(
         &mut self,
         inertial: &Inertial,
@@ -432,8 +432,8 @@ impl Track {
             return;
         };
         if distance < STANDING && !posed {
-            // Flow is blind so near, and the surface carries the vehicle or soon will: its level speed is taken as
-            // zero.
+            // Flow is blind so near, and the surface carries the vehicle or soon will: the vehicle's level speed is
+            // fused as zero.
             let lag = seconds(at, self.at_us);
             let [x, y, _] = &mut self.axes;
             let [along, across] = [x, y].map(|axis| axis.correct_speed(-axis.velocity(), STAND_SPEED, lag));
