@@ -1,8 +1,8 @@
-//! The law that holds a position, 100 Hz: sticks ask for velocities, centred sticks stay.
+//! Position-hold controller, 100 Hz: sticks command velocities, centred sticks hold the position.
 //!
-//! Lateral: full state feedback, with the lag from setpoint to tilt in the state (docs/design/position-hold.md). Vertical: a cascade with
-//! the disturbance fed forward. Without a position it keeps level against the wind that it has learnt, and the height by
-//! the inertial sensor, for as long as the estimate's age allows.
+//! Lateral: full state feedback, with the lag from setpoint to tilt in the state (docs/design/position-hold.md).
+//! Vertical: a cascade with disturbance feed-forward. Without a position it stays level against the learnt wind, and
+//! keeps the height by the inertial sensor for as long as the estimate's age allows.
 
 mod gains;
 mod height;
@@ -20,54 +20,55 @@ use crate::maths::vector::{Quat, Vec3};
 use crate::navigation::estimate::Estimate;
 use crate::params::Params;
 
-/// Fastest wish, level and vertical, m/s.
+/// Largest commanded velocity, level and vertical, m/s.
 pub const SPEED_MAX: f32 = 1.5;
 /// See [`SPEED_MAX`].
 pub const CLIMB_MAX: f32 = 0.7;
-/// Change of the wished velocity, m/s².
+/// Slew limit of the commanded velocity, m/s².
 const SPEED_SLEW: f32 = 1.0;
 /// Largest acceleration asked for, the wind's included, m/s²: 17° of tilt, 5.4 N of wind.
 pub const ACCELERATION_MAX: f32 = 3.0;
-/// Time constant of each of the two stages of the held point's velocity, s: together the lag from setpoint to tilt.
+/// Time constant of each of the two stages of the held point's velocity, s: together they match the lag from setpoint
+/// to tilt.
 const COURSE_STAGE: f32 = 0.2;
 /// Time constant of learning the wind, s.
 const WIND_TIME: f32 = 4.0;
-/// Departure of the disturbance from the wind beyond which something is touched, m/s²: gusts stay at a fifth.
+/// Departure of the disturbance from the wind beyond which it is contact, m/s²: gusts stay at a fifth.
 const TOUCH: f32 = 1.5;
-/// Farthest that the held point may be, m: after a push the vehicle does not rush back.
+/// Largest distance of the held point from the vehicle, m: after a push the vehicle does not rush back.
 const LEASH: f32 = 1.0;
 
-/// What the pilot wants.
+/// Velocity command of the pilot or the approach.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct VelocityCommand {
     /// Forward, right and down along the heading, m/s: within [`SPEED_MAX`] and [`CLIMB_MAX`].
     pub velocity: Vec3,
     /// Clockwise from above, rad/s.
     pub yaw_rate: f32,
-    /// Tilt that the sticks ask for where there is no position, as acceleration forward and right, m/s².
+    /// Tilt command in use without a position, as acceleration forward and right, m/s².
     pub lean: [f32; 2],
 }
 
-/// What the inertial sensor says of the vehicle.
+/// Attitude, rate and support of the vehicle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyMotion {
     /// Body to world.
     pub q: Quat,
     /// Angular rate, rad/s, body.
     pub rate: Vec3,
-    /// Something carries the vehicle: what is felt is no wind.
+    /// Contact carries the vehicle: the disturbance is not wind.
     pub carried: bool,
 }
 
-/// How the held point moves: the wished velocity behind two stages, as far behind as the tilt is behind what is asked of it.
-/// Asked for at once, the vehicle then follows the point instead of overtaking it at each turn.
+/// Reference model of the held point: the commanded velocity passes two stages that match the lag from tilt setpoint
+/// to tilt. With a direct command the vehicle would overtake the point at each turn.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Course {
-    /// Wished velocity within [`SPEED_SLEW`], the same behind one stage, and that of the held point, m/s.
+    /// Commanded velocity within [`SPEED_SLEW`], the same behind one stage, and that of the held point, m/s.
     wished: Vec3,
     between: Vec3,
     speed: Vec3,
-    /// Their changes, m/s².
+    /// Their derivatives, m/s².
     asked: Vec3,
     turning: Vec3,
     gained: Vec3,
@@ -90,18 +91,18 @@ impl Course {
         self.between += self.turning * dt;
         self.gained = level(self.between - self.speed) * per;
         self.speed += self.gained * dt;
-        // The height's law has no such lag: its acceleration is what is asked for.
+        // The height loop has no such lag: it uses the commanded acceleration directly.
         self.speed.z = self.wished.z;
     }
 
-    /// The way that the held point is behind, m.
+    /// Distance by which the held point is behind, m.
     fn behind(&self) -> Vec3 {
         let both = self.between + self.speed;
         Vec3::new(both.x, both.y, 0.0) * COURSE_STAGE
     }
 }
 
-/// The law and its state.
+/// The controller and its state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PositionHold {
     mass: f32,
@@ -117,7 +118,7 @@ pub struct PositionHold {
 }
 
 impl PositionHold {
-    /// Holds where the vehicle is.
+    /// A controller that holds the present position.
     pub fn begin(p: &Params, e: &Estimate, motion: &BodyMotion) -> Self {
         let weight = p.mass * GRAVITY;
         let full = 4.0 * p.thrust_max;
@@ -133,19 +134,20 @@ impl PositionHold {
         }
     }
 
-    /// Holds where the vehicle is from now on; what is learnt stays.
+    /// Moves the held point to the present position; the learnt wind and trim stay.
     pub fn anchor_at(&mut self, e: &Estimate) {
         self.anchor = e.position;
         self.course = Course::default();
         self.reset_count = e.reset_count;
     }
 
-    /// Where the wished velocities have led the point that is held, m, in the estimate's axes; it comes there behind them.
+    /// Place to which the commands so far lead the held point, m, in the estimate's axes; the point itself lags
+    /// behind.
     pub fn held(&self) -> Vec3 {
         self.anchor + self.course.behind()
     }
 
-    /// One step of `dt` s; without `known` the position is none, and the sticks tilt.
+    /// One step of `dt` s; unless the position is `known`, it is ignored and the sticks command the tilt.
     pub fn step(
         &mut self,
         e: &Estimate,
@@ -198,7 +200,7 @@ impl PositionHold {
         self.setpoint(u, up, motion.q, wish.yaw_rate)
     }
 
-    /// Keeps the held point within reach.
+    /// Limits the distance of the held point from the vehicle.
     fn leash(&mut self, position: Vec3) {
         let off = self.anchor - position;
         let level = Vec3::new(off.x, off.y, 0.0);
@@ -212,7 +214,7 @@ impl PositionHold {
         self.anchor = position + level + Vec3::new(0.0, 0.0, down);
     }
 
-    /// The lateral disturbance; the wind learns from it, but not from what is touched.
+    /// The lateral disturbance, from which the wind is learnt. In contact the learnt wind replaces it.
     fn disturbance(&mut self, e: &Estimate, carried: bool, dt: f32) -> Vec3 {
         let d = Vec3::new(e.disturbance.x, e.disturbance.y, 0.0);
         let off = d - self.wind;
@@ -223,8 +225,8 @@ impl PositionHold {
         d
     }
 
-    /// Acceleration to ask for, forward and right, m/s²; those of the `course` are what it asks for, what is on its way to
-    /// the tilt, and its own.
+    /// Acceleration setpoint, forward and right, m/s². `course` has the reference's commanded acceleration, the part
+    /// of it on its way to the tilt, and its present acceleration.
     fn feedback(
         &self,
         p: [f32; 2],
@@ -274,7 +276,7 @@ impl PositionHold {
     }
 }
 
-/// For |x| below 0.35, error below 1e-4: that of the common one would lean the vehicle by 0.1°.
+/// Arctangent for |x| below 0.35, error below 1e-4: the error of the shared one would lean the vehicle by 0.1°.
 fn arctangent(x: f32) -> f32 {
     let square = x * x;
     x * (1.0 - square * (1.0 / 3.0 - 0.2 * square))
@@ -287,12 +289,12 @@ fn tilt(q: Quat) -> [f32; 2] {
     [per * down.x, per * down.y]
 }
 
-/// Its rate, m/s³.
+/// Rate of the tilt's acceleration, m/s³.
 fn tilt_rate(rate: Vec3) -> [f32; 2] {
     [-GRAVITY * rate.y, GRAVITY * rate.x]
 }
 
-/// Shortened to [`ACCELERATION_MAX`].
+/// `u` limited to [`ACCELERATION_MAX`].
 fn limited(u: [f32; 2]) -> [f32; 2] {
     let [x, y] = u;
     let square = x * x + y * y;

@@ -1,4 +1,4 @@
-//! Where something that sees the pipe says it is.
+//! Place of the pipe as another computer reports it.
 
 use crate::maths::scalar;
 use crate::maths::vector::{Quat, Vec3};
@@ -11,9 +11,9 @@ const STEEPEST: f32 = 0.34;
 pub struct PipeTarget {
     /// When it was measured, µs.
     pub at_us: u64,
-    /// On the crown, where the vehicle is to sit, m.
+    /// Point on the crown on which the vehicle is to land, m.
     pub crown: Vec3,
-    /// Of the pipe, either way, rad; `None` where it is not known.
+    /// Heading of the pipe, in either direction, rad; `None` if unknown.
     pub heading: Option<f32>,
 }
 

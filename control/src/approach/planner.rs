@@ -1,7 +1,7 @@
-//! The way onto the pipe by itself, 100 Hz: finds the crown by the steps of the range, looks for the pipe's ends, and
-//! comes down over it. It asks for velocities, as the sticks do in a hold, and docs/hold.md describes it.
+//! Planner of the autonomous approach, 100 Hz: finds the crown by range steps, searches the pipe's ends, and descends
+//! over the crown. It commands velocities, as the sticks do in a hold; docs/hold.md describes it.
 //!
-//! Lengths are from where a try began: forward and right along its heading, down.
+//! Lengths are relative to the beginning of an attempt: forward and right along its heading, down.
 
 #[cfg(test)]
 mod tests;
@@ -18,76 +18,75 @@ use crate::navigation::range_hit::RangeHit;
 use crate::params::Params;
 use crate::position_hold::VelocityCommand;
 
-/// Why a try ends.
+/// Reason for which an attempt ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ApproachAbort {
     /// No pipe across the whole sweep.
     NoPipe,
-    /// Between its ends there is no room.
+    /// The pipe is too short between its ends.
     TooShort,
-    /// The range no longer sees it.
+    /// The range no longer meets the pipe.
     PipeLost,
-    /// It does not come to rest over the crown, or two crossings differ.
+    /// The vehicle does not settle over the crown, or two crossings differ.
     NotCentred,
-    /// Nothing was touched where the crown should be.
+    /// No contact at the expected crown.
     NotTouched,
-    /// No range.
+    /// The range is stale.
     RangeStale,
-    /// Below the crown it shows what was not there before.
+    /// The range shows an unknown surface below the crown.
     RangeMisfit,
-    /// It shows higher steps than before.
+    /// The range shows higher steps than the first crossing.
     RangeLong,
-    /// The place of the pipe is not known any more.
+    /// The reported place of the pipe is stale.
     TargetStale,
-    /// That place is none that the vehicle can reach.
+    /// The reported place is out of reach.
     TargetFar,
-    /// That place jumps.
+    /// The reported place jumps.
     TargetJumps,
 }
 
-/// What the law sees, in the estimate's axes.
+/// Input of the planner, in the estimate's axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
     /// m.
     pub position: Vec3,
     /// m/s.
     pub velocity: Vec3,
-    /// Of the nose, rad.
+    /// Heading of the nose, rad.
     pub heading: f32,
     /// The point that is held, m.
     pub held: Vec3,
     /// Age of the newest fix or flow, s.
     pub age: f32,
-    /// Where the range sees something.
+    /// Newest hit of the range.
     pub foot: RangeHit,
-    /// Where the pipe is said to be; with it no range is asked.
+    /// Reported place of the pipe; with it the range is not used.
     pub target: Option<PipeTarget>,
 }
 
-/// Part of the way.
+/// Phase of the approach.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Phase {
-    /// Up from the pipe; then another try, or the end.
+    /// Climb off the pipe; then another attempt, or the end.
     Climb,
-    /// Across, wider and wider, until the pipe was crossed.
+    /// Sweep across, wider each time, until the pipe is crossed.
     Search,
-    /// Over the crown, and down to the height of the crossings.
+    /// Fly over the crown, and down to the height of the crossings.
     Over,
-    /// Along the pipe, forward and back.
+    /// Search the ends along the pipe, forward and back.
     Fore,
     Aft,
-    /// Across, for the crown.
+    /// Cross the pipe to find the crown.
     Cross,
-    /// To rest over the crown.
+    /// Settle over the crown.
     Centre,
-    /// Down to the gate.
+    /// Descend to the gate.
     Descend,
-    /// Onto the pipe.
+    /// Descend onto the pipe.
     Commit,
 }
 
-/// A step that was not there before: what it makes of the range, the level that it came from, m down, and how long it has
-/// lasted, s.
+/// An unexpected range step: the abort reason for it, the level before it, m down, and its duration, s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Other {
     doubt: ApproachAbort,
@@ -95,30 +94,30 @@ struct Other {
     seconds: f32,
 }
 
-/// The law and its state.
+/// The planner and its state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ApproachPlanner {
     diameter: f32,
-    /// Where the range looks down from, of the centre of mass, m: forward, right, down, as the nose is along the pipe.
+    /// Lens of the range from the centre of mass, m: forward, right, down, with the nose along the pipe.
     lens: Vec3,
     origin: Vec3,
     heading: f32,
     reset_count: u8,
     phase: Phase,
-    /// Time in it, s.
+    /// Time in the phase, s.
     since: f32,
-    /// It only climbs, to be left there.
+    /// The vehicle only climbs, to leave the pipe.
     leaves: bool,
-    /// It comes back from another try.
+    /// This is another attempt after an earlier one.
     returns: bool,
     /// Height to climb to, m.
     up: f32,
     edges: Edges,
     seen: u8,
-    /// Heights of the steps onto the pipe and off it as it was crossed first, m: infinite until then, and where nothing was within
-    /// reach beside it.
+    /// Heights of the steps onto the pipe and off it at the first crossing, m: infinite until then, and if the surface
+    /// beside it was out of reach.
     steps: [f32; 2],
-    /// Longest range that there was, m.
+    /// Longest range so far, m.
     farthest: f32,
     other: Option<Other>,
     /// Middle of the sweeps, forward and right, m; side of the present leg, half the sweep's width, m, and legs flown.
@@ -126,37 +125,38 @@ pub struct ApproachPlanner {
     side: f32,
     reach: f32,
     legs: u8,
-    /// Where the range came onto the pipe, m.
+    /// Place at which the range came onto the pipe, right, m.
     entered: Option<f32>,
-    /// The middle of what the search has met last, by one of its edges, right, m.
+    /// Middle of the object that the search met last, by one of its edges, right, m.
     met: Option<f32>,
     /// The pipe's crown: right and down, m, half its width, m.
     crown: f32,
     top: f32,
     half: f32,
-    /// Crown by the crossing before.
+    /// Crown by the previous crossing, right, m.
     before: Option<f32>,
-    /// Where it sits down along the pipe, m, and the ends that were seen.
+    /// Landing point along the pipe, m, and the ends found, m.
     along: f32,
     ends: [Option<f32>; 2],
-    /// Where the range fell off on the way along, m, and for how long it has seen no pipe at the way's end.
+    /// Place at which the range fell off in the pass along the pipe, m, and the time without the pipe at the end of
+    /// the pass.
     fell: Option<f32>,
     lost: HoldTimer,
-    /// It was crossed at this height, and looked along.
+    /// The pipe was crossed at this height, and its ends were searched.
     crossed: bool,
     looked: bool,
     settled: HoldTimer,
-    /// Speed across a little ago, m/s.
+    /// Low-passed speed across, m/s.
     slow: f32,
     left: bool,
-    /// The pipe is where it is said to be: nothing is searched.
+    /// The place of the pipe is reported: the search is skipped.
     has_target: bool,
-    /// Asked for, m/s.
+    /// Commanded velocity, m/s.
     speed: Vec3,
 }
 
 impl ApproachPlanner {
-    /// Begins where the vehicle is, over or beside a pipe along `heading`, rad.
+    /// An attempt from the present position, over or beside a pipe along `heading`, rad.
     pub fn begin(p: &Params, v: &View, heading: f32, reset_count: u8) -> Self {
         let law = Self {
             diameter: p.pipe_diameter,
@@ -202,7 +202,7 @@ impl ApproachPlanner {
         }
     }
 
-    /// Climbs first: another try, or with `leaves` the way off the pipe.
+    /// An attempt that climbs first; with `leaves` it only leaves the pipe.
     pub fn again(p: &Params, v: &View, heading: f32, reset_count: u8, leaves: bool) -> Self {
         Self {
             phase: Phase::Climb,
@@ -213,7 +213,7 @@ impl ApproachPlanner {
         }
     }
 
-    /// Climbs to where it crosses `crown`, the place at which it was last taken to be, and sweeps about it: an escape has
+    /// An attempt that climbs to `HIGH` over `crown`, the last known place, and sweeps about it: an escape has
     /// carried the vehicle a metre or two away.
     pub fn back_to(crown: Vec3, p: &Params, v: &View, heading: f32, reset_count: u8) -> Self {
         let law = Self::again(p, v, heading, reset_count, false);
@@ -226,13 +226,13 @@ impl ApproachPlanner {
         }
     }
 
-    /// Where the crown is taken to be on the way down, in the estimate's axes, m.
+    /// Place of the crown in the estimate's axes, m; `None` before the descent.
     pub fn crown(&self) -> Option<Vec3> {
         let crown = about_down(self.spot(0.0), self.heading) + self.origin;
         self.committed().then_some(crown)
     }
 
-    /// Up and away from where the range misleads, to be left there.
+    /// A climb after a misleading range, to leave the pipe.
     pub fn cleared(p: &Params, v: &View, heading: f32, reset_count: u8) -> Self {
         Self {
             up: -CLEAR,
@@ -240,7 +240,7 @@ impl ApproachPlanner {
         }
     }
 
-    /// Another try from the top, over the crown where that is known; what leaves goes on doing so.
+    /// Another attempt from above, over the crown if it is known. A planner that leaves the pipe keeps leaving it.
     pub fn retried(&self, p: &Params, v: &View, heading: f32, reset_count: u8) -> Self {
         let again = Self::again(p, v, heading, reset_count, self.leaves);
         if self.leaves {
@@ -258,40 +258,40 @@ impl ApproachPlanner {
         }
     }
 
-    /// A touch from here on is the pipe's.
+    /// A contact in this phase is with the pipe.
     pub fn committed(&self) -> bool {
         matches!(self.phase, Phase::Descend | Phase::Commit)
     }
 
-    /// It is on the way down, so near that nothing but the pipe's back is below.
+    /// The descent is so near that only the pipe's back can be below.
     pub fn near_crown(&self, v: &View) -> bool {
         let at = self.local(v.position);
         let over = (at.y - self.crown).abs() < NEAR_OFF;
         self.phase == Phase::Descend && !self.has_target && over && self.clearance(at) < STEADY
     }
 
-    /// It is on its way up.
+    /// The vehicle climbs.
     pub fn climbs(&self) -> bool {
         self.phase == Phase::Climb
     }
 
-    /// It only climbs.
+    /// The vehicle only leaves the pipe.
     pub fn leaves(&self) -> bool {
         self.leaves
     }
 
-    /// It has climbed off the pipe.
+    /// The vehicle has climbed off the pipe.
     pub fn has_left(&self) -> bool {
         self.left
     }
 
-    /// The level way off the pipe for a vehicle at `position`, length 1, in the estimate's axes: across, to the nearer side.
-    /// `None` while nothing has been met.
+    /// Level direction off the pipe for a vehicle at `position`, length 1, in the estimate's axes: across, to the
+    /// nearer side. `None` before an object is met.
     pub fn off_pipe(&self, position: Vec3) -> Option<Vec3> {
         let here = self.local(position).y;
         let off = match (self.phase, self.met) {
             (Phase::Search, Some(met)) => here - met,
-            // Over something from the beginning: on, as the sweep goes.
+            // Over an object from the beginning: continue in the direction of the sweep.
             (Phase::Search, None) if self.origin.z + self.edges.surface_depth() < -RAISED => self.side,
             (Phase::Search, None) => return None,
             _ => here - self.crown,
@@ -305,10 +305,10 @@ impl ApproachPlanner {
         self.reset_count != reset_count
     }
 
-    /// One step of `dt` s: what to ask for.
+    /// One step of `dt` s: the velocity command.
     ///
     /// # Errors
-    /// Why the try ends.
+    /// The reason for which the attempt ends.
     pub fn step(&mut self, v: &View, dt: f32) -> Result<VelocityCommand, ApproachAbort> {
         self.since += dt;
         let asks = !self.leaves && self.phase != Phase::Commit;
@@ -348,7 +348,7 @@ impl ApproachPlanner {
             Phase::Descend => self.descend(edge, (at, velocity, held), v.age, dt),
             Phase::Commit => self.commit(at, held),
         };
-        // What such a range makes of the pipe is not looked into.
+        // The abort reason of a doubtful range has precedence over its consequences.
         let wanted = wanted.map_err(|doubt| self.other.map_or(doubt, |other| other.doubt))?;
         self.speed = Vec3::new(
             scalar::slew(self.speed.x, wanted.x, SLEW * dt),
@@ -388,19 +388,19 @@ impl ApproachPlanner {
         self.farthest = self.farthest.max(range);
         match v.foot.point {
             Some(point) => self.edges.step(self.local(point)),
-            // Nothing within reach: farther than all that is.
+            // No target in reach: farther than every surface.
             None => self.edges.step_beyond(self.local(v.position)),
         }
     }
 
-    /// What is below is `before`, m down, again, or the pipe, or the ground at its sides.
+    /// The present surface is `before`, m down, again, or the pipe, or the ground at its sides.
     fn at_known(&self, before: f32) -> bool {
         let [onto, off] = self.steps.map(|step| self.top + step);
         let near = |known: f32| (self.edges.surface_depth() - known).abs() < 0.5 * self.diameter;
         self.sees_pipe() || [before, onto, off].into_iter().any(near)
     }
 
-    /// Compares the step at `edge`, seen from `at`, with those by which the pipe was crossed first.
+    /// Compares the step at `edge`, seen from `at`, with the steps of the first crossing.
     fn compare(&self, edge: Edge, at: Vec3) -> Result<(), ApproachAbort> {
         let [onto, off] = self.steps;
         if !(onto + off).is_finite() {
@@ -414,7 +414,7 @@ impl ApproachPlanner {
             Some(step) if falls && from_crown(step) && step < LOWEST * onto.min(off) => {
                 Err(ApproachAbort::RangeMisfit)
             }
-            // From as high what is below was within reach.
+            // From this height the surface was within reach before.
             None if falls && self.edges.top() + most - at.z < self.farthest => Err(ApproachAbort::RangeLong),
             _ => Ok(()),
         }
@@ -443,7 +443,7 @@ impl ApproachPlanner {
         Self::velocity_towards(held, target, CROSS_SPEED, CLIMB_SPEED)
     }
 
-    /// The middle of the pipe, right, m, where this `edge` ends a crossing.
+    /// Middle of the pipe, right, m, if this `edge` ends a crossing.
     fn crossed(&mut self, edge: Option<Edge>) -> Option<f32> {
         match (edge?, self.entered) {
             (Edge::Onto(at), _) => {
@@ -484,7 +484,7 @@ impl ApproachPlanner {
             self.along = held.x;
             self.enter(Phase::Over);
         }
-        // A pipe that has been come onto is crossed to its end.
+        // A crossing that has entered the pipe continues to its far edge.
         let beyond = self.entered.map_or(0.0, |_| self.diameter);
         let across = self.side * (self.reach + beyond) - self.lens.y;
         let target = self.middle + Vec3::new(0.0, across, held.z);
@@ -522,7 +522,7 @@ impl ApproachPlanner {
         Ok(Self::velocity_towards(held, target, CROSS_SPEED, DESCENT))
     }
 
-    /// The crossings begin.
+    /// Begins the crossings.
     fn turn_across(&mut self) {
         (self.side, self.legs, self.before) = (1.0, 0, None);
         self.enter(Phase::Cross);
@@ -538,10 +538,10 @@ impl ApproachPlanner {
         let fore = self.phase == Phase::Fore;
         let middle = self.middle.x;
         let goal = middle + if fore { LOOK } else { -LOOK };
-        // The beam goes along the crown, not the vehicle.
+        // The beam follows the crown, not the vehicle.
         let Vec3 { x, y, .. } = self.lens;
         let target = Vec3::new(goal - x, self.crown - y, self.top - LOW);
-        // A gust carries the beam off the side as well: what it comes back onto has not ended.
+        // A gust may carry the beam off the side: a pipe that the beam returns to has not ended.
         match edge {
             Some(Edge::Off(at)) => self.fell = Some(at.x),
             Some(Edge::Onto(_)) => self.fell = None,
@@ -603,7 +603,8 @@ impl ApproachPlanner {
     fn centre(&mut self, edge: Option<Edge>, at: Vec3, held: Vec3) -> Result<Vec3, ApproachAbort> {
         self.late(CENTRE_TIME, ApproachAbort::NotCentred)?;
         match edge {
-            // From the side at which the last crossing ended: what has drifted since shows.
+            // The vehicle comes from the side at which the last crossing ended, so that the edge shows the drift
+            // since.
             Some(Edge::Onto(onto)) => {
                 let inwards = if onto.y < self.crown {
                     self.half
@@ -619,7 +620,7 @@ impl ApproachPlanner {
             // A gust carries the beam off the side.
             Some(Edge::Off(_)) | None => (),
         }
-        // It comes to rest on the way down: each second here costs a centimetre of what the edge has given.
+        // The vehicle settles during the descent: each second here costs a centimetre of the edge's accuracy.
         if (at.y - self.crown).abs() < NEAR_OFF && self.sees_pipe() {
             self.enter(Phase::Descend);
         }
@@ -641,13 +642,14 @@ impl ApproachPlanner {
         let range = self.clearance(at);
         let share = clamp(self.since / PATIENCE, 0.0, 1.0);
         let within = STRICT + (CONTENT - STRICT) * share;
-        // Where it will touch if it sinks on: half of what its speed has just changed by will stay.
+        // Predicted offset at the touch: half of the latest change of speed persists.
         let gained = velocity.y - self.slow;
         self.slow += gained * dt / (dt + SLOW_TIME);
         let ahead = off + LAST_TIME * (velocity.y + LAST_TIME / (4.0 * SLOW_TIME) * gained);
         let over = off.abs() < CONTENT && ahead.abs() < within && velocity.y.abs() < GATE_SPEED;
         let blind = age > BLIND;
-        // Where it would stop: what sinks on past the gate must not do so before it is known to touch on the crown.
+        // Predicted range at the stop: the vehicle must not pass the gate before the touch is certain to be on the
+        // crown.
         let stops = range - STOP_TIME * velocity.z;
         let at_gate = stops < 1.3 * GATE;
         if self.settled.step(at_gate && over && !blind, dt) >= GATE_TIME {
@@ -655,7 +657,7 @@ impl ApproachPlanner {
         }
         let mut way = Self::velocity_towards(held, self.spot(LOW), CORRECT_SPEED, DESCENT);
         let waits = off.abs() > NEAR_OFF;
-        // Flow sees again from a little higher. A pose comes back or not: what drifts must not do so beside the pipe.
+        // Flow works again from a little higher. A pose may not return: the vehicle must not drift beside the pipe.
         let (goal, back) = match (blind, self.has_target) {
             (false, _) => (GATE, BACK_SPEED),
             (true, false) => (SEEING, BACK_SPEED),
@@ -681,7 +683,7 @@ impl ApproachPlanner {
     }
 }
 
-/// Speed towards what is `off` m away that a stop at [`SLEW`] still ends there, at most `speed`, m/s.
+/// Speed towards a target `off` m away from which a stop at [`SLEW`] still ends there, at most `speed`, m/s.
 fn braking_speed(off: f32, speed: f32) -> f32 {
     let most = 1.6 * SLEW * off.abs();
     let braked = most * scalar::inv_sqrt(most);

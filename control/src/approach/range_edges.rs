@@ -1,39 +1,39 @@
-//! Steps of what is below: where the beam of the range comes onto something and where it falls off it.
+//! Range edges: the beam steps onto a nearer surface, or falls off it.
 
 use crate::maths::vector::Vec3;
 
-/// Least step, m: half the height of the smallest pipe, and three times what a pipe's flank falls between two ranges.
+/// Least step, m: half the height of the smallest pipe, and three times the drop of a pipe's flank between two ranges.
 const STEP: f32 = 0.12;
 /// Share by which the level follows each range of the same surface.
 const FOLLOW: f32 = 0.5;
-/// Depth that stands for nothing within reach, m.
+/// Depth used for a range with no target in reach, m.
 const BEYOND: f32 = 50.0;
 
 /// A step, with the place of its edge: forward, right, down, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Edge {
-    /// Onto something nearer.
+    /// Onto a nearer surface.
     Onto(Vec3),
     /// Off it.
     Off(Vec3),
 }
 
-/// What the ranges before have shown.
+/// Edge detector over consecutive ranges.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Edges {
     /// Depth of the present surface, m; `None` before the first range.
     surface_depth: Option<f32>,
-    /// Highest of the one that was come onto last, m.
+    /// Highest point of the surface entered last, m.
     top: f32,
     last: Vec3,
-    /// First place of another surface, to be confirmed by the next range.
+    /// First hit on another surface, to be confirmed by the next range.
     other: Option<Vec3>,
     /// Height of the last step, m.
     height: f32,
 }
 
 impl Edges {
-    /// Takes the next foot of the beam.
+    /// Takes the next hit of the beam.
     pub fn step(&mut self, foot: Vec3) -> Option<Edge> {
         let Some(surface_depth) = self.surface_depth else {
             (self.surface_depth, self.top, self.last) = (Some(foot.z), foot.z, foot);
@@ -50,7 +50,7 @@ impl Edges {
         if (other.z - surface_depth) * off < 0.0 || (other.z - foot.z).abs() > STEP {
             return None;
         }
-        // Of the two surfaces' feet the higher one's: a tilted beam meets the ground a hand's breadth beside the edge.
+        // The edge is at the higher surface's hit: a tilted beam meets the ground a hand's breadth beside the edge.
         let last = self.last;
         self.height = off.abs();
         (self.surface_depth, self.last, self.other) = (Some(foot.z), foot, None);
@@ -62,7 +62,7 @@ impl Edges {
         }
     }
 
-    /// The same where nothing is within reach of a vehicle at `place`.
+    /// Takes a range with no target in reach, of a vehicle at `place`.
     pub fn step_beyond(&mut self, place: Vec3) -> Option<Edge> {
         self.step(Vec3::new(place.x, place.y, BEYOND))
     }
@@ -72,12 +72,12 @@ impl Edges {
         self.surface_depth.unwrap_or(BEYOND)
     }
 
-    /// Height of the last step, m; `None` where nothing was within reach beside it.
+    /// Height of the last step, m; `None` if one side of it was out of reach.
     pub fn height(&self) -> Option<f32> {
         Some(self.height).filter(|height| *height < 0.5 * BEYOND)
     }
 
-    /// Highest of the surface that was come onto last, m down.
+    /// Highest point of the surface entered last, m down.
     pub fn top(&self) -> f32 {
         self.top
     }

@@ -1,7 +1,6 @@
 //! Pressure of the air, as a board's barometer measures it.
 
-/// What a barometer on a board can read on the ground of this planet and above it, Pa: the range of both parts that boards
-/// carry (DPS310, 300 to 1,200 hPa).
+/// Range of a board's barometer, Pa: that of both parts that boards carry (DPS310, 300 to 1,200 hPa).
 pub const PASCAL: (f32, f32) = (30_000.0, 120_000.0);
 /// Temperature of such a part, °C: its rated range.
 pub const CELSIUS: (f32, f32) = (-40.0, 85.0);
@@ -9,16 +8,16 @@ pub const CELSIUS: (f32, f32) = (-40.0, 85.0);
 /// Pressure of the air around the board.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AirPressure {
-    /// In the middle of its measurement, µs.
+    /// Middle of the measurement, µs.
     pub at_us: u64,
     /// Pa.
     pub pascal: f32,
-    /// Of the part, which is warmer than the air, °C.
+    /// Temperature of the part, which is warmer than the air, °C.
     pub celsius: f32,
 }
 
 impl AirPressure {
-    /// The pressure, unless something of it is no number or cannot be.
+    /// The sample; `None` if pressure or temperature is not finite or outside [`PASCAL`] and [`CELSIUS`].
     pub fn checked(self) -> Option<Self> {
         let within = |x: f32, (least, most): (f32, f32)| (least..=most).contains(&x);
         (within(self.pascal, PASCAL) && within(self.celsius, CELSIUS)).then_some(self)

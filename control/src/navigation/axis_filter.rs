@@ -16,13 +16,13 @@ const GATE: f32 = 5.0;
 const GATE_MIN: f32 = 0.15;
 /// Least innovation of a velocity that is refused, m/s.
 const GATE_SPEED: f32 = 0.4;
-/// Bounds of what is estimated: m/s, m/s².
+/// Bounds of the estimated velocity, m/s, and bias, m/s².
 const SPEED_MAX: f32 = 20.0;
 const BIAS_MAX: f32 = 1.5;
 /// Bounds of the variances, in the square of their units: the covariance stays one in single precision.
 const VARIANCE: (f32, f32) = (1e-9, 1e3);
 
-/// What a fix changes at the time of its measurement: m, m/s, m/s².
+/// Kalman correction at the time of the measurement: position, m, velocity, m/s, and bias, m/s².
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Change {
     position: f32,
@@ -31,7 +31,7 @@ pub struct Change {
 }
 
 impl Change {
-    /// Of the position `lag` s later, m.
+    /// Correction of the position `lag` s after the measurement, m.
     pub fn position_after(&self, lag: f32) -> f32 {
         self.position + (self.velocity - 0.5 * self.bias * lag) * lag
     }
@@ -62,8 +62,8 @@ impl Axis {
         }
     }
 
-    /// The same with the bias that `before` had `since` s ago, then known no better than to `deviation` m/s²: it is the
-    /// sensor's own, and walks.
+    /// The same filter with the bias that `before` had `since` s ago. The bias is the sensor's own and walks: its
+    /// deviation is at least `deviation` m/s² plus the walk since then, and at most that of a new filter.
     pub fn biased_as(self, before: &Self, deviation: f32, since: f32) -> Self {
         let ([vv, vb, most], [_, _, bb]) = (self.rest, before.rest);
         let walked = bb.max(deviation * deviation) + BIAS_WALK * BIAS_WALK * since;
@@ -95,7 +95,7 @@ impl Axis {
         vv < deviation * deviation
     }
 
-    /// A step of `dt` s with `acceleration` m/s² as it is felt, its bias included.
+    /// Predicts by `dt` s with the measured `acceleration` in m/s², its bias included.
     pub fn predict(&mut self, acceleration: f32, dt: f32) {
         let a = acceleration - self.bias;
         self.position += (self.velocity + 0.5 * a * dt) * dt;
@@ -116,13 +116,13 @@ impl Axis {
         ];
     }
 
-    /// True if `innovation` (m/s) of a velocity with `variance` ((m/s)²) is likely enough.
+    /// True if the `innovation` (m/s) of a velocity with `variance` ((m/s)²) passes the gate.
     pub fn accepts_speed(&self, innovation: f32, variance: f32) -> bool {
         let [vv, ..] = self.rest;
         innovation.abs() <= (GATE * scalar::sqrt(vv + variance)).max(GATE_SPEED)
     }
 
-    /// Takes the `innovation` (m/s) of a velocity with `variance` ((m/s)², > 0) that was measured `lag` s ago.
+    /// Fuses a velocity that was measured `lag` s ago: `innovation` in m/s, `variance` in (m/s)², > 0.
     pub fn correct_speed(&mut self, innovation: f32, variance: f32, lag: f32) -> Change {
         let [pp, pv, pb] = self.with_position;
         let [vv, vb, bb] = self.rest;
@@ -149,7 +149,7 @@ impl Axis {
         )
     }
 
-    /// Takes a velocity, m/s, whatever it was before.
+    /// Resets the velocity to `velocity` m/s, with the variance that it has at the first fix.
     pub fn set_speed(&mut self, velocity: f32) {
         let [_, v, _] = START;
         self.velocity = velocity;
@@ -159,7 +159,7 @@ impl Axis {
         self.rest = [v * v, 0.0, bb];
     }
 
-    /// Begins to learn the bias anew.
+    /// Resets the bias to zero; velocity and bias get the variances of the first fix.
     pub fn forget_bias(&mut self) {
         let [_, v, b] = START;
         self.bias = 0.0;
@@ -168,15 +168,15 @@ impl Axis {
         self.with_position = [pp, 0.0, 0.0];
     }
 
-    /// True if `innovation` (m) of a fix with `variance` (m²) is likely enough.
+    /// True if the `innovation` (m) of a fix with `variance` (m²) passes the gate.
     pub fn accepts(&self, innovation: f32, variance: f32) -> bool {
         let [pp, ..] = self.with_position;
         let limit = GATE * scalar::sqrt(pp + variance);
         innovation.abs() <= limit.max(GATE_MIN)
     }
 
-    /// Takes the `innovation` (m) of a fix with `variance` (m², > 0) that was measured `lag` s ago. What it changes then is
-    /// carried to now by the axis's own motion, which is linear.
+    /// Fuses a position that was measured `lag` s ago: `innovation` in m, `variance` in m², > 0. The correction is
+    /// propagated to now by the axis's own motion, which is linear.
     pub fn correct(&mut self, innovation: f32, variance: f32, lag: f32) -> Change {
         let [pp, pv, pb] = self.with_position;
         let [vv, vb, bb] = self.rest;
@@ -205,7 +205,7 @@ impl Axis {
         change
     }
 
-    /// Continues at another position with the same motion, in axes that may have turned.
+    /// Resets position, velocity and bias after a jump of the sender's origin or a turn of its axes.
     pub fn jump(&mut self, position: f32, velocity: f32, bias: f32) {
         (self.position, self.velocity, self.bias) = (position, velocity, bias);
         self.with_position = [JUMPED * JUMPED, 0.0, 0.0];

@@ -1,48 +1,50 @@
-//! Height by the pressure of the air: the source of last resort.
+//! Barometric height: the source of last resort.
 //!
-//! A pressure has no ground. What it is off is learnt while range or pose give the height, so that the height goes on
-//! without a step where they end. docs/design/navigation.md has figures.
+//! A pressure gives no height above ground. Its offset to the estimate is learnt while range or pose give the height,
+//! so that the height continues without a step when they stop. docs/design/navigation.md has figures.
 
 use crate::maths::elapsed::seconds;
 use crate::navigation::air_pressure::AirPressure;
 
-/// Height in which the pressure falls by a factor e, m: R T / g of dry air at 15 °C. At 0 and 35 °C a way is 5 and 7 % off.
+/// Scale height, in which the pressure falls by a factor e, m: R T / g of dry air at 15 °C. At 0 and 35 °C a change of
+/// height is 5 and 7 % off.
 const SCALE_HEIGHT: f32 = 8_434.0;
-/// Variance of a height, m². Its errors are no white noise: 0.15 m of prop wash and gusts that last a second (assumed)
+/// Variance of a height, m². Its errors are correlated: 0.15 m of prop wash and gusts that last a second (assumed)
 /// weigh as much at 25 Hz, 2 · (0.15 m)² · 1 s · 25 Hz.
 const VARIANCE: f32 = 1.1;
-/// Time constant of learning what it is off, s, and for how long it must have been learnt.
+/// Time constant of learning the offset, s, and the time for which it must be learnt before it is used, s.
 const LEARN_TIME: f32 = 3.0;
 const LEARNT: f32 = 2.0;
-/// Age of the newest height by range or pose up to which these count, s.
+/// Age of the newest height by range or pose up to which that height has precedence, s.
 const FRESH: f32 = 0.2;
-/// Age beyond which a pressure says nothing, s, and from which a way between two is not known.
+/// Age beyond which a pressure is stale, and interval beyond which two pressures are not compared, s.
 const STALE: f32 = 0.3;
 /// Change between two pressures that no climb gives, m: 25 of the noise of a DPS310, 7 of an MS5611's.
 const STEP: f32 = 1.0;
-/// Weights of a refused and of a taken one, and their sum that is a barometer that jumps: three in a row, or every other.
+/// Weight of a refused pressure (an accepted one takes 1 off), and the sum at which the barometer counts as jumping:
+/// three refused in a row, or every other.
 const REFUSED: u32 = 2;
 const REFUSED_MAX: u32 = 6;
-/// Equal pressures in a row of a barometer that stands still.
+/// Equal pressures in a row at which the barometer counts as frozen.
 const FROZEN: u32 = 25;
-/// Departure from range or pose, over [`DEPARTURE_TIME`] s, that is a fault, m: a way out of ground effect is a half of it,
-/// a drift of 0.5 m/s the whole.
+/// Departure from range or pose, low-passed over [`DEPARTURE_TIME`] s, that is a fault, m: leaving ground effect gives
+/// half of it, a drift of 0.5 m/s all of it.
 const DEPARTURE: f32 = 1.5;
 const DEPARTURE_TIME: f32 = 1.0;
-/// The same from the inertial sensor's way while the height is by pressure, m: four deviations of prop wash and gusts, or a
-/// drift of 0.5 m/s for two seconds.
+/// Departure from the inertial height that is a fault while the height is barometric, m: four deviations of prop wash
+/// and gusts, or a drift of 0.5 m/s for two seconds.
 const ASTRAY: f32 = 0.7;
-/// For how long it must have been sound before it is taken again, µs.
+/// Time without a fault before the barometer is used again, µs.
 const SOUND_TIME: u64 = 2_000_000;
 
-/// What is wrong with the pressure of the air.
+/// Fault of the barometer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PressureFault {
-    /// It says the same whatever the vehicle does.
+    /// It repeats one value bit for bit.
     Frozen,
-    /// It jumps as no air does.
+    /// It jumps by more than a climb explains.
     Jumps,
-    /// Its height goes another way than that of range or pose.
+    /// Its height departs from that of range, pose or inertial sensor.
     Disagrees,
 }
 
@@ -60,19 +62,19 @@ impl PressureFault {
     }
 }
 
-/// What is known of the barometer.
+/// State of the barometric height.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BaroHeight {
-    /// Pressure that heights are above, Pa.
+    /// Reference pressure of the heights, Pa: the first one received.
     ground: Option<f32>,
-    /// Newest pressure: when, µs, its value, Pa, and where that is, m down.
+    /// Newest pressure: time, µs, value, Pa, and height against the reference, m down.
     at_us: u64,
     pascal: f32,
     down: f32,
-    /// It was not looked at yet; the one that was before, µs.
+    /// The newest pressure is not processed yet; time of the one processed last, µs.
     news: bool,
     looked_us: u64,
-    /// Estimated less measured, m down, for how long that was learnt, s, and what is left of it in the mean, m.
+    /// Estimated less barometric height, m down; time over which this offset was learnt, s; low-passed residual, m.
     offset: f32,
     learnt: f32,
     departure: f32,
@@ -80,17 +82,17 @@ pub struct BaroHeight {
     refused: u32,
     fault: Option<PressureFault>,
     unsound_us: u64,
-    /// When a height was given last, µs; 0 for none.
+    /// Time of the last height given, µs; 0 for none.
     used_us: u64,
 }
 
 impl BaroHeight {
-    /// What is wrong at present.
+    /// The present fault.
     pub fn fault(&self) -> Option<PressureFault> {
         self.fault
     }
 
-    /// Takes the newest pressure, once.
+    /// Takes the newest pressure; an old or implausible one is ignored.
     pub fn hear(&mut self, air: &AirPressure) {
         let Some(air) = air.checked().filter(|air| air.at_us > self.at_us) else {
             return;
@@ -120,15 +122,16 @@ impl BaroHeight {
         self.news = true;
     }
 
-    /// When the newest one was measured that was not looked at, up to `now`, µs.
+    /// Measurement time of the newest pressure, µs, if that is not after `now` and not processed yet.
     pub fn news(&mut self, now: u64) -> Option<u64> {
         let news = self.news && self.at_us <= now;
         self.news &= !news;
         news.then_some(self.at_us)
     }
 
-    /// What a height of `down` m at the newest pressure is off, m, with its variance, m². `None` while range or pose, `known`
-    /// s ago, give it, from which it learns, or where it is not sound.
+    /// Innovation of a height of `down` m at the newest pressure, m, with its variance, m². `None` while range or pose
+    /// gave a height less than `FRESH` ago (`known`, s), from which the offset is learnt, or while the barometer is
+    /// not sound.
     pub fn height(&mut self, down: f32, known: f32) -> Option<(f32, f32)> {
         let dt = seconds(self.looked_us, self.at_us);
         self.looked_us = self.at_us;
@@ -171,17 +174,17 @@ impl BaroHeight {
         }
     }
 
-    /// The height that it gave cannot be.
+    /// Marks the barometer as faulty: its height fails the innovation gate.
     pub fn refuse(&mut self) {
         self.fail(PressureFault::Jumps);
     }
 
-    /// What it is off is learnt anew: the height's origin is another.
+    /// Discards the learnt offset, because the origin of the height has changed.
     pub fn forget(&mut self) {
         self.learnt = 0.0;
     }
 
-    /// The height is by pressure at `now`, µs.
+    /// The height is barometric at `now`, µs.
     pub fn carries(&self, now: u64) -> bool {
         self.used_us > 0 && self.fault.is_none() && seconds(self.used_us, now) <= STALE
     }
@@ -195,7 +198,7 @@ impl BaroHeight {
     }
 }
 
-/// How far `pascal` is below `ground`, m. The logarithm by its series about their mean: 1 mm off over 300 m.
+/// Height of `pascal` below `ground`, m. The logarithm is its series about their mean: 1 mm off over 300 m.
 fn below(ground: f32, pascal: f32) -> f32 {
     let x = (pascal - ground) / (pascal + ground);
     2.0 * SCALE_HEIGHT * x * (1.0 + x * x * (1.0 / 3.0))

@@ -1,19 +1,19 @@
-//! Whether a measurement follows what the inertial sensor says: a mirrored, dead or wrongly scaled one does not.
+//! Regression of a measurement on its inertial prediction: rejects one that is mirrored, dead or wrongly scaled.
 
-/// Slow changes are left out below this, rad/s: there the measurement itself has made the prediction.
+/// Corner of the high-pass on both, rad/s: at lower frequencies the prediction comes from the measurement itself.
 const CUTOFF: f32 = 5.0;
-/// Time over which it is judged, s.
+/// Fading window of the regression, s.
 const WINDOW: f32 = 3.0;
-/// Deviation of the factor with which it is judged, 1.
+/// Largest deviation of the scale factor at which it is judged, 1.
 const SURE: f32 = 0.15;
-/// Factors that are tolerated, and the narrower ones within which a measurement is used again.
+/// Accepted scale factors, and the narrower ones at which a rejected measurement is used again.
 const BORNE: (f32, f32) = (0.45, 1.7);
 const REGAINED: (f32, f32) = (0.6, 1.5);
 
 /// The regression of one axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Agreement {
-    /// Slow parts of measurement and prediction.
+    /// Low-passed measurement and prediction.
     slow: [f32; 2],
     /// Sums of measurement times prediction, and of the prediction's square.
     sums: [f32; 2],
@@ -21,7 +21,7 @@ pub struct Agreement {
 }
 
 impl Agreement {
-    /// The same judgement, with nothing behind it: what has followed before a perch may not after it.
+    /// The same verdict with cleared sums: agreement before a perch proves nothing after it.
     pub fn anew(self) -> Self {
         Self {
             wrong: self.wrong,
@@ -29,8 +29,8 @@ impl Agreement {
         }
     }
 
-    /// Takes a measurement and its prediction, `dt` s after the last; `noise` is the measurement's deviation in the same
-    /// unit. One whose prediction is not `sure` says nothing. True while it does not follow.
+    /// Takes a measurement and its prediction, `dt` s after the last; `noise` is the measurement's deviation in the
+    /// same unit. A pair whose prediction is not `sure` is not judged. True while the measurement disagrees.
     pub fn step(&mut self, measured: f32, predicted: f32, noise: f32, sure: bool, dt: f32) -> bool {
         let [slow_m, slow_p] = &mut self.slow;
         let share = CUTOFF * dt / (1.0 + CUTOFF * dt);

@@ -1,8 +1,8 @@
-//! Whether poses can be trusted: they change, do not step, turn as the vehicle does and go the way that the inertial sensor
-//! feels.
+//! Monitor of external poses: rejects poses that freeze, jump, or turn or move otherwise than the vehicle.
 //!
-//! The two ways are compared in a band of s³ω/(s+ω)⁴, m, to which the specific force comes as sω/(s+ω)⁴: slower, an error
-//! of the attitude passes for a way; faster, the pose's noise. docs/design/navigation.md has limits and times.
+//! Displacement by poses and by the inertial sensor are compared in the band s³ω/(s+ω)⁴, m, for which the specific
+//! force is filtered by sω/(s+ω)⁴. At lower frequencies an attitude error looks like a displacement; at higher ones
+//! the noise of the poses dominates. docs/design/navigation.md has limits and times.
 
 use super::fix::Fix;
 use super::fix_age::{TAINTED_AGE, UNKNOWN_AGE};
@@ -13,51 +13,55 @@ use crate::maths::frames::about_down;
 use crate::maths::scalar::{self, GRAVITY};
 use crate::maths::vector::Vec3;
 
-/// Share of a new heading's difference that the turn follows: 1 s at 50 Hz.
+/// Share of a new heading difference by which the yaw offset follows: 1 s at 50 Hz.
 pub(crate) const TURN_GAIN: f32 = 0.02;
 /// Corner of the band, rad/s.
 const CORNER: f32 = 3.0;
-/// Time from where the poses begin, or begin anew, until the beginning has left the band, µs: five of its time constants.
+/// Settling time of the band after the poses begin or restart, µs: five of its time constants.
 const SETTLE: u64 = 1_700_000;
-/// Time between two poses beyond which the way in between is not known, µs.
+/// Interval between two poses beyond which no displacement is formed, µs.
 const GAP: u64 = 120_000;
-/// Equal poses in a row of a source that stands still, a quarter of a second at 50 Hz: noise and flight leave none equal.
+/// Equal poses in a row that make a source frozen, a quarter of a second at 50 Hz: with noise and flight no two are
+/// equal.
 const FROZEN_FIXES: u32 = 12;
 /// Difference below which positions are equal, m.
 const EQUAL: f32 = 1e-6;
-/// Departure from the way of the last two poses that is a step, m: in 20 ms no acceleration of a vehicle gives it.
+/// Departure from the velocity of the last two poses that is a step, m: in 20 ms no acceleration of a vehicle gives
+/// it.
 const STEP: f32 = 0.15;
-/// Beyond the noise of three poses, of which it is made: four deviations, squared, for each pose's variance.
+/// Factor on a pose's variance in the step threshold: four deviations, squared, of a second difference of three poses.
 const NOISE: f32 = 16.0 * 6.0;
-/// Change of the heading less the vehicle's own that is a step, rad: five deviations of 3°, or a turn at 2 rad/s with a time
-/// that is 0.12 s wrong.
+/// Change of the yaw offset that is a step, rad: five deviations of 3°, or a turn at 2 rad/s with a time stamp that is
+/// 0.12 s wrong.
 pub const TURN_STEP: f32 = 0.25;
-/// Weights of a refused and of a taken pose, and their sum that is a source that jumps: three refused in a row, or every other.
+/// Weight of a refused pose (an accepted one takes 1 off), and the sum at which the source counts as jumping: three
+/// refused in a row, or every other.
 const REFUSED: u32 = 2;
 const REFUSED_MAX: u32 = 6;
-/// New origins that the sender may announce within [`RESETS_TIME`].
+/// Origin resets that the sender may announce within [`RESETS_TIME`], µs.
 const RESETS_MAX: u32 = 5;
 const RESETS_TIME: u64 = 5_000_000;
-/// For how long poses must have been sound before they are taken again, µs.
+/// Time without a fault before poses are used again, µs.
 const SOUND_TIME: u64 = 1_000_000;
-/// Time over which the two ways are compared, s.
+/// Fading window of the comparison, s.
 const WINDOW: f32 = 1.5;
-/// What they may differ by: the share of the square of the way, 1, beside that of [`FLOOR`], m, and of the pose's noise in
-/// the band. A factor of 0.55 or 1.45 and a turn by 26° are at the limit.
+/// Gate: mean squared residual below this share of the mean squared inertial displacement, plus [`FLOOR`]², m², plus
+/// the pose noise in the band. A factor of 0.55 or 1.45 and a turn by 26° are at the limit.
 const BORNE: f32 = 0.2;
 const FLOOR: f32 = 0.006;
-/// Narrower share within which they are taken again, and the way that it takes to say so, m RMS over the window.
+/// Narrower share at which poses are used again, and the least inertial displacement for that verdict, m RMS over the
+/// window.
 const REGAINED: f32 = 0.1;
 const REGAINED_WAY: f32 = 0.006;
 
-/// What is wrong with the poses.
+/// Fault of the pose source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PoseFault {
-    /// They say the same whatever the vehicle does.
+    /// The pose repeats although the vehicle flies.
     Frozen,
-    /// They jump without the sender's saying so, or say it all the time.
+    /// They jump unannounced, or the sender announces resets too often.
     Jumps,
-    /// They do not go the way that the inertial sensor feels: mirrored, turned, or of another scale.
+    /// Their displacement disagrees with the inertial one: mirrored, turned, or of another scale.
     Disagrees,
 }
 
@@ -92,17 +96,17 @@ impl Low {
     }
 }
 
-/// How far two ways depart from each other.
+/// Residual between two displacements in the band.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Departure {
-    /// Integrals of the squared difference and of the squared way, m² s.
+    /// Fading integrals of the squared residual and of the squared inertial displacement, m² s.
     off: f32,
     way: f32,
     wrong: bool,
 }
 
 impl Departure {
-    /// Wrong until the ways have agreed.
+    /// Rejected until the displacements agree.
     fn doubted() -> Self {
         Self {
             wrong: true,
@@ -110,7 +114,8 @@ impl Departure {
         }
     }
 
-    /// Takes the way that was `seen` with `variance`, m², and that was `felt`, m, `dt` s after the last.
+    /// Takes a displacement `seen` by poses, m, with its `variance`, m², and the inertial displacement, m, `dt` s
+    /// after the last.
     fn step(&mut self, seen: Vec3, felt: Vec3, variance: f32, dt: f32) {
         let keep = WINDOW / (WINDOW + dt);
         self.off = self.off * keep + (seen - felt).norm_squared() * dt;
@@ -121,7 +126,7 @@ impl Departure {
                 *self = Self::doubted();
             }
         } else if self.off > BORNE * self.way + floor {
-            // What follows is judged alone.
+            // Later samples are judged without these.
             (self.off, self.way) = (0.0, 0.0);
         } else if self.way > WINDOW * REGAINED_WAY * REGAINED_WAY {
             self.wrong = self.off > REGAINED * self.way;
@@ -132,55 +137,56 @@ impl Departure {
     }
 }
 
-/// A pose that came before.
+/// The previous pose.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Before {
     at_us: u64,
     position: Vec3,
     heading: f32,
-    /// Way from the one before it, m/s; `None` where that is not known.
+    /// Velocity from the pose before it, m/s; `None` if unknown.
     speed: Option<Vec3>,
 }
 
-/// What is known of the source.
+/// State of the monitor.
 #[derive(Clone, Debug, Default)]
 pub struct ExternalPoseMonitor {
-    /// The felt way's band, and when the inertial sensor was last looked at, µs.
+    /// Band filter of the inertial displacement, and time of the newest inertial sample, µs.
     felt: [Low; 4],
     felt_us: u64,
-    /// The poses' band, the origin that keeps it free of steps, and when it began, µs.
+    /// Band filter of the poses, the origin that keeps it free of steps, and its start time, µs.
     seen: [Low; 4],
     origin: Vec3,
     began_us: u64,
     before: Option<Before>,
     level: Departure,
     down: Departure,
-    /// Heading less the vehicle's own, rad; `None` before the first pose.
+    /// Yaw offset, pose heading less the vehicle's own, rad; `None` before the first pose.
     yaw_offset: Option<f32>,
-    /// Weight of the poses that are off it, and since when they are doubted, µs: until the heading is back, or the level way
-    /// agrees with the new one.
+    /// Weight of the poses whose heading steps away from it, and the time at which the heading became distrusted, µs.
+    /// It is trusted again when the old heading returns or the level displacement agrees with the new one.
     turns: u32,
     turned_us: Option<u64>,
     same: u32,
-    /// The pose before was a step away from the one before it.
+    /// The previous pose was a step away from the one before it.
     stepped: bool,
     refused: u32,
     resets: u8,
-    /// New origins announced since `resets_us`, µs.
+    /// Origin resets announced since `resets_us`, µs.
     announced: u32,
     resets_us: u64,
     fault: Option<PoseFault>,
-    /// When something was wrong last, µs.
+    /// Time of the last anomaly, µs.
     unsound_us: u64,
 }
 
 impl ExternalPoseMonitor {
-    /// What is wrong at present.
+    /// The present fault.
     pub fn fault(&self) -> Option<PoseFault> {
         self.fault
     }
 
-    /// Takes what the inertial sensor feels; gives the way in the band, m, in the axes of the vehicle's attitude.
+    /// Filters an inertial sample; returns the displacement in the band, m, in the axes of the vehicle's attitude.
+    /// Zero after a gap, and for a sample that is not finite.
     pub fn predict(&mut self, felt: &Inertial) -> Vec3 {
         let dt = seconds(self.felt_us, felt.at_us);
         if dt > super::inertial::STEP_MAX {
@@ -199,7 +205,8 @@ impl ExternalPoseMonitor {
         last.step(high, dt)
     }
 
-    /// Looks at `fix`, measured at the moment `then`, of a vehicle whose rotors carry it where it `flies`.
+    /// Checks `fix` against the buffered state at its measurement, `then`; `flies` is true while the rotors carry the
+    /// vehicle.
     pub fn update(&mut self, fix: &Fix, then: Option<&StateSnapshot>, flies: bool) {
         let at = fix.at_us;
         let mut sound = true;
@@ -222,7 +229,7 @@ impl ExternalPoseMonitor {
             let v = fix.variance();
             let stepped = off.norm_squared() > (NOISE * (v.x + v.y + v.z)).max(STEP * STEP);
             if stepped {
-                // The way between is not known: that before goes on.
+                // The displacement is unknown: the previous velocity is assumed.
                 self.origin += off;
                 sound = false;
             }
@@ -246,7 +253,7 @@ impl ExternalPoseMonitor {
             sound &= self.fault.is_none();
         }
         if let Some(then) = then.filter(|_| self.same == 0) {
-            // Of a vehicle that is carried, after a silence and in new axes it may be any.
+            // While the vehicle is carried, after a gap and in new axes any heading is accepted.
             let anew = !flies || announced || self.before.is_none_or(|b| seconds(b.at_us, at) > UNKNOWN_AGE);
             self.check_heading(scalar::wrap_pi(fix.heading - then.yaw()), at, anew);
         }
@@ -264,7 +271,7 @@ impl ExternalPoseMonitor {
         } else if self.down.wrong || (self.level.wrong && !turned) {
             Some(PoseFault::Disagrees)
         } else {
-            // What was estimated before it turned is sound, and coasted on.
+            // The estimate from before the turn is sound, and dead reckoning continues on it.
             turned.then_some(PoseFault::Jumps)
         };
         if found.is_some() {
@@ -273,7 +280,8 @@ impl ExternalPoseMonitor {
         self.settle(at, sound && found.is_none());
     }
 
-    /// Looks at the heading less the vehicle's own, `yaw_offset` rad, at `at` µs; `anew` where it may be any.
+    /// Checks the pose heading less the vehicle's own, `yaw_offset` rad, at `at` µs; the last argument accepts any
+    /// value.
     fn check_heading(&mut self, yaw_offset: f32, at: u64, anew: bool) {
         let known = self.yaw_offset.unwrap_or(yaw_offset);
         let off = scalar::wrap_pi(yaw_offset - known);
@@ -298,7 +306,7 @@ impl ExternalPoseMonitor {
         }
     }
 
-    /// The fault ends where all was `sound` for long enough.
+    /// Clears the fault after [`SOUND_TIME`] in which every pose was `sound`.
     fn settle(&mut self, at: u64, sound: bool) {
         if !sound {
             self.unsound_us = at;
@@ -307,7 +315,7 @@ impl ExternalPoseMonitor {
         }
     }
 
-    /// A pose at `at` µs is `off` where the vehicle was taken to be, or is not.
+    /// Counts a pose at `at` µs that failed (`off`) or passed the estimator's innovation gate.
     pub fn note_gate(&mut self, at: u64, off: bool) {
         self.refused = if off {
             self.refused + REFUSED
@@ -325,7 +333,7 @@ impl ExternalPoseMonitor {
         self.unsound_us = at;
     }
 
-    /// A new origin was announced; true if that is not done too often.
+    /// Counts an announced origin reset; false if more than [`RESETS_MAX`] come within [`RESETS_TIME`].
     fn announce(&mut self, at: u64) -> bool {
         if at.saturating_sub(self.resets_us) > RESETS_TIME {
             (self.resets_us, self.announced) = (at, 0);
@@ -338,7 +346,7 @@ impl ExternalPoseMonitor {
         !often
     }
 
-    /// The way in the poses' axes begins anew.
+    /// Restarts the band filter of the poses.
     fn begin(&mut self, fix: &Fix) {
         self.seen = Default::default();
         self.origin = fix.position;
@@ -359,7 +367,7 @@ impl ExternalPoseMonitor {
         let felt = then.swing;
         let level = |v: Vec3| Vec3::new(v.x, v.y, 0.0);
         let down = |v: Vec3| Vec3::new(0.0, 0.0, v.z);
-        // What is left of white noise at 50 Hz.
+        // Part of white noise at 50 Hz that passes the band.
         let noise = fix.variance() * (0.5 * CORNER * dt);
         self.level.step(level(seen), level(felt), noise.x + noise.y, dt);
         self.down.step(down(seen), down(felt), noise.z, dt);

@@ -5,9 +5,9 @@ use crate::maths::vector::Vec3;
 
 /// Farthest from the origin along an axis, m: beyond it a float has steps of a millimetre.
 const POSITION_MAX: f32 = 10_000.0;
-/// Largest heading, rad: a turn. Of a huge one sine and cosine are no numbers.
+/// Largest heading, rad: one turn. Sine and cosine of a huge one are not finite.
 const HEADING_MAX: f32 = 2.0 * scalar::PI;
-/// Deviation of a fix whose sender does not say it, m, and the bounds of one that does.
+/// Deviation of a fix whose sender gives none, m, and the bounds of a given one, m.
 pub const FIX_DEVIATION: f32 = 0.01;
 const DEVIATION_BOUNDS: (f32, f32) = (0.003, 0.5);
 
@@ -20,7 +20,7 @@ pub struct Fix {
     pub position: Vec3,
     /// Heading of the nose in the sender's axes, rad.
     pub heading: f32,
-    /// Variance along each axis, m²; `None` where the sender does not say it.
+    /// Variance along each axis, m²; `None` if the sender gives none.
     pub variance: Option<Vec3>,
     /// Counts the jumps of the sender's estimate.
     pub resets: u8,

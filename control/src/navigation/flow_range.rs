@@ -1,4 +1,4 @@
-//! Optical flow and range: the velocity over the ground and the height above it, and whether they can be used.
+//! Fusion of optical flow and range: velocity over the ground, height above it, and the faults of both.
 
 use super::consistency::Agreement;
 use super::frozen_range::Frozen;
@@ -11,60 +11,61 @@ use crate::maths::scalar;
 use crate::maths::vector::{Quat, Vec3};
 use crate::navigation::flow_range_sample::{Flow, GroundView, Range};
 
-/// Heights between which flow is used, m: nearer its lens sees no picture (PMW3901). Up to 2.4 m a scale 10 % too large,
-/// five times what calibration leaves, does not swing the hold; one 20 % too large does from 1 m on (docs/lab/2026-11-24-position-hold.md).
+/// Heights between which flow is used, m: nearer its lens sees no picture (PMW3901). Up to 2.4 m a scale 10 % too
+/// large, five times the error that calibration leaves, does not make the hold swing; one 20 % too large does from 1 m
+/// on (docs/lab/2026-11-24-position-hold.md).
 pub const FLOW_HEIGHT: (f32, f32) = (0.08, 2.5);
 /// Least quality of a flow, of 255.
 const QUALITY_MIN: u8 = 20;
 /// Deviation of a flow, rad: 0.12 rad/s in 20 ms (assumed for modules of this class).
 const FLOW_NOISE: f32 = 2.4e-3;
-/// How much farther the ground seems to a view of 42° whose scale was calibrated by turning: of its rays, tan² ahead, a turn
-/// moves 1 + tan² and a way 1, in the mean 1 + tan²(21°) / 3.
+/// Apparent over true distance of the ground for a view of 42° whose scale was calibrated by rotation: a ray at the
+/// angle α moves by 1 + tan² α in a rotation and by 1 in a translation, in the mean 1 + tan²(21°) / 3.
 const CALIBRATED: f32 = 1.049;
-/// Share of the way over the ground that flow and range are off, 1.
+/// Relative error of a velocity by flow and range, 1.
 const SCALE_NOISE: f32 = 0.05;
 /// Deviation of a range, m.
 const RANGE_NOISE: f32 = 0.02;
-/// Age beyond which a range is not the height of now, µs.
+/// Age beyond which a range is not the present height, µs.
 const RANGE_AGE: u64 = 300_000;
-/// Departure of a range from the height that is a step of what is below, m, and the ranges in a row that agree on it.
+/// Departure of a range from the height that is a step of the surface, m, and the ranges in a row that agree on it.
 const STEP: f32 = 0.12;
 const STEP_RANGES: u32 = 3;
-/// Ranges that differ by less are of the same surface, m.
+/// Ranges that differ by less belong to the same surface, m.
 const SAME: f32 = 0.08;
-/// Share by which the height of what is narrow follows each range while its flank alone was seen.
+/// Share by which the height of a narrow object follows each range while its flank alone was seen.
 const FLANK_SHARE: f32 = 0.2;
-/// Ranges for which it does, half a second at 50 Hz: where height and surface both follow, nothing gives either.
+/// Ranges for which it follows, half a second at 50 Hz: while height and surface both follow, neither is observed.
 const FLANK_RANGES: u32 = 25;
-/// Steps a second that are no fault, and how many more than these are one: the beam of a vehicle that swings in gusts beside
-/// the edge of a pipe crosses it 11 times in 4.3 s, a range that jumps each 0.3 s does so 12 times in 3.3 s.
+/// Steps a second that are tolerated, and the excess that is a fault: the beam of a vehicle that swings in gusts
+/// beside the edge of a pipe crosses it 11 times in 4.3 s, a range that jumps each 0.3 s does so 12 times in 3.3 s.
 const STEPS_RATE: f32 = 2.0;
 const STEPS_MAX: f32 = 5.0;
-/// For how long the range is left out then, µs.
+/// Time for which the range is rejected then, µs.
 const DISTRUST: u64 = 5_000_000;
-/// Equal flows in a row, none of them zero, of a sensor that stands still.
+/// Equal flows in a row, none of them zero, that make the sensor frozen.
 const FROZEN_FLOWS: u32 = 12;
-/// Least cosine of a tilt at which flow and range say something: 40°.
+/// Least cosine of the tilt at which flow and range are used: 40°.
 const COS_MIN: f32 = 0.77;
-/// Way, m, and time, µs, since what is narrow was met below, after which it is elsewhere: a pipe has ends.
+/// Distance, m, and time, µs, from the last hit of a narrow object after which its band is dropped: a pipe has ends.
 const LEFT_BEHIND: (f32, u64) = (2.0, 20_000_000);
-/// Widths of what the vehicle perches on that a surface must reach aside to be a floor.
+/// Offset from the first hit on a surface beyond which that surface is a floor, in pipe diameters.
 const WIDE: f32 = 1.2;
-/// Range below which flow is not judged, m: there the noise of the estimated velocity is as much as a slow turn.
+/// Range below which flow is not judged, m: there the noise of the estimated velocity is as large as a slow turn.
 const JUDGED: f32 = 0.45;
-/// Time after a step of the range for which it is not, µs: three of the time constants of what is slow.
+/// Time after a range step for which flow is not judged, µs: three time constants of the high-pass in `Agreement`.
 const UNSURE_TIME: u64 = 600_000;
 
-/// What is wrong with flow or range.
+/// Fault of flow or range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FlowRangeFault {
-    /// The flow says the same whatever the vehicle does.
+    /// The flow repeats whatever the motion of the vehicle.
     FlowFrozen,
-    /// The flow does not follow the vehicle's own turning: mirrored, turned, dead or of another scale.
+    /// The flow disagrees with the vehicle's own motion: mirrored, turned, dead or of another scale.
     FlowDisagrees,
-    /// The range says the same whatever the vehicle does.
+    /// The range repeats whatever the motion of the vehicle.
     RangeFrozen,
-    /// The range jumps more often than ground does.
+    /// The range steps more often than ground does.
     RangeJumps,
     /// The range changes by more or less than the vehicle rises or sinks.
     RangeScaled,
@@ -99,9 +100,9 @@ pub enum FlowRangeLimit {
     TooLow,
     /// The error of its scale would swing the hold.
     TooHigh,
-    /// There is nothing within the range's reach.
+    /// No target within the range's reach.
     NoRange,
-    /// The picture has too little in it.
+    /// The quality of the picture is too low.
     TooDark,
 }
 
@@ -109,7 +110,7 @@ impl FlowRangeLimit {
     /// Every limit.
     pub const ALL: [Self; 4] = [Self::TooLow, Self::TooHigh, Self::NoRange, Self::TooDark];
 
-    /// What limits the newest flow and range; `None` where they can be used.
+    /// The limit of the newest flow and range; `None` if both can be used.
     pub fn of(view: &GroundView) -> Option<Self> {
         let (least, most) = FLOW_HEIGHT;
         match view.range.and_then(|range| range.checked()?.distance) {
@@ -132,64 +133,65 @@ impl FlowRangeLimit {
     }
 }
 
-/// A velocity over the ground.
+/// Innovation of a velocity over the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seen {
     /// Measured less estimated, along the estimate's axes, m/s.
     pub off: [f32; 2],
-    /// (m/s)².
+    /// Its variance, (m/s)².
     pub variance: f32,
 }
 
-/// What is known of the ground and of the module.
+/// State of the ground model and of the module's monitors.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FlowRangeFusion {
-    /// Half the width of what the vehicle perches on, m.
+    /// Half the diameter of the pipe, m.
     radius: f32,
-    /// Lens from the centre of mass, m, body. Both sensors look from there.
+    /// Lens from the centre of mass, m, body: the lever arm of both sensors.
     pub(crate) lens: Vec3,
-    /// Newest range with a distance: when, µs, and m.
+    /// Newest range with a distance: time, µs, and distance, m.
     range: Option<(u64, f32)>,
-    /// When the newest range that was looked at was measured, and when that was, µs.
+    /// Measurement time of the newest range processed, and the time of processing, µs.
     range_us: u64,
     now_us: u64,
-    /// Whether it is as long as it says.
+    /// Monitor of its scale.
     pub(crate) scale: RangeScale,
-    /// Surfaces were met by a range that was found to be scaled.
+    /// The surfaces were measured by a range that proved to be scaled.
     mistaken: bool,
-    /// Where the first range fell of a surface that was met with nothing before; it may be what the vehicle has risen from.
-    /// `None` once that has shown to be wide, or was left for one that is deeper by what the vehicle perches on is thick.
+    /// First hit on a surface acquired without a predecessor (after lift-off). It may be the pipe, so its range noise
+    /// is inflated until the beam has moved 1.2 diameters on it or dropped one diameter off it; `None` from then on.
     unproven: Option<Vec3>,
-    /// Surface below, the lowest one known and the other one that was, along the estimate's down axis, m.
+    /// Height of the present surface, of the lowest known one and of the other known one, along the estimate's down
+    /// axis, m.
     level: f32,
     base: f32,
     other: f32,
-    /// Step that ranges agree on, m, and how many do.
+    /// Candidate step, m, and the ranges that agree on it.
     step: f32,
     agreed: u32,
-    /// Steps beyond [`STEPS_RATE`], when the last one was, and until when the range is not used, µs.
+    /// Excess of steps over [`STEPS_RATE`], time of the last step, and end of the range's rejection, µs.
     steps: f32,
     stepped_us: u64,
     distrusted_us: u64,
-    /// Where the last range of the present surface fell, and where the edge of a step is.
+    /// Last hit on the present surface, and place of the edge of a step.
     foot: Vec3,
     stepped_at: Vec3,
-    /// Ranges for which the height of what is narrow below is not known yet: its flank was seen alone.
+    /// Ranges left for which the height of a narrow object is learnt: its flank was seen alone.
     flank: u32,
-    /// What is narrow, where its edge was seen; when it was met below last, µs, and where.
+    /// Band of the narrow object, if one is known; time, µs, and place of its last hit.
     pub(crate) band: Option<PipeFootprint>,
     met: (u64, Vec3),
     pub(crate) frozen: Frozen,
     same_flows: u32,
     angle: [f32; 2],
     agreements: [Agreement; 2],
-    /// When the depth was unsure last, µs.
+    /// Last time at which the depth was uncertain, µs.
     unsure_us: u64,
     disagrees: bool,
 }
 
 impl FlowRangeFusion {
-    /// Over pipes of `diameter` m, from a `lens` that lies so far from the centre of mass, m, body.
+    /// A fusion over pipes of `diameter` m, with the `lens` at this place from the centre of mass, m, body.
     pub fn new(diameter: f32, lens: Vec3) -> Self {
         Self {
             radius: 0.5 * diameter,
@@ -198,7 +200,7 @@ impl FlowRangeFusion {
         }
     }
 
-    /// What is wrong at present.
+    /// The present fault.
     pub fn fault(&self) -> Option<FlowRangeFault> {
         let faults = [
             (self.frozen.holds(), FlowRangeFault::RangeFrozen),
@@ -210,17 +212,17 @@ impl FlowRangeFusion {
         faults.iter().find(|(holds, _)| *holds).map(|(_, fault)| *fault)
     }
 
-    /// Flow or range have gone another way than the vehicle, and so has what was estimated by them.
+    /// Flow or range disagree with the vehicle's motion, so that the estimate by them is invalid.
     pub fn misleads(&self) -> bool {
         self.disagrees || self.scale.wrong()
     }
 
-    /// When the newest range that was looked at was measured, µs.
+    /// Measurement time of the newest range processed, µs.
     pub fn looked_us(&self) -> u64 {
         self.range_us
     }
 
-    /// The range is used.
+    /// The range is free of faults.
     pub fn range_is_sound(&self) -> bool {
         !self.range_faulty()
     }
@@ -229,8 +231,9 @@ impl FlowRangeFusion {
         self.frozen.holds() || self.distrusted_us > self.range_us || self.scale.wrong()
     }
 
-    /// The distance of a range that was not looked at before, m, and when it was measured, µs; a scaled one too. The rotors
-    /// carry a vehicle that `flies`.
+    /// Measurement time, µs, and distance, m, of a range that is not processed yet; `None` without one. A scaled range
+    /// is returned too; a frozen or jumping one is not, unless it is also scaled. The rotors carry a vehicle that
+    /// `flies`.
     pub fn new_range(&mut self, view: &GroundView, now: u64, flies: bool) -> Option<(u64, f32)> {
         let range = view.range.and_then(Range::checked)?;
         if range.at_us <= self.range_us || range.at_us > now {
@@ -244,8 +247,8 @@ impl FlowRangeFusion {
         used.then_some((range.at_us, distance))
     }
 
-    /// Takes what is felt `down`wards, m/s², gravity left out, at `at_us` µs, of a vehicle that flies. The lean of the beam is
-    /// looked at only where a run of equal ranges needs it.
+    /// Takes the measured acceleration `down`, m/s², gravity removed, at `at_us` µs; `None` while the vehicle does not
+    /// fly. The tilt of the beam is computed only if a run of equal ranges needs it.
     pub fn feel(&mut self, at_us: u64, down: Option<f32>, q: Quat) {
         self.scale.feel(at_us, down);
         if self.frozen.feels() {
@@ -254,7 +257,7 @@ impl FlowRangeFusion {
         }
     }
 
-    /// Watches a range of `distance` m, measured with the attitude `q`, that is left out as scaled.
+    /// Monitors a range of `distance` m, measured with the attitude `q`, that is rejected as scaled.
     pub fn watch_scaled(&mut self, q: Quat, distance: f32) {
         self.mistaken = true;
         let cos = q.down_in_body().z;
@@ -263,14 +266,16 @@ impl FlowRangeFusion {
         }
     }
 
-    /// Compares the share down of the newest range, `height` m, with what is felt.
+    /// Compares the vertical part of the newest range, `height` m, with the inertial motion.
     fn look_at_scale(&mut self, height: f32, q: Quat, below: Below) {
         let lag = seconds(self.range_us, self.now_us);
-        // Of the centre of mass: what its lever adds is no motion, and an error of it no scale.
+        // Height of the centre of mass, without the lever arm: its swing is no motion of the vehicle, and its error
+        // does not pass for a scale.
         self.scale.look(height + q.rotate(self.lens).z, lag, below);
     }
 
-    /// Height of the centre of mass above the ground with which an estimate may begin, m, at a flow with the attitude `q`.
+    /// Height of the centre of mass above the ground with which an estimate may begin, m, at a flow with the attitude
+    /// `q`; `None` if flow or range cannot be used.
     pub fn begin(&mut self, flow: &Flow, q: Quat) -> Option<f32> {
         let cos = q.down_in_body().z;
         let (at, distance) = self.range.filter(|_| !self.range_faulty())?;
@@ -278,7 +283,8 @@ impl FlowRangeFusion {
         let fresh = flow.until_us.saturating_sub(at) <= RANGE_AGE;
         let sound = cos >= COS_MIN && flow.quality >= QUALITY_MIN && (least..=most).contains(&distance);
         (self.level, self.base, self.other) = (0.0, 0.0, 0.0);
-        // No step, no flank and no place of the axes before: what is not known to be wide is where the beam falls now.
+        // Steps, flank and places of the axes before are dropped: a surface that is not known to be wide is at the
+        // present hit.
         (self.agreed, self.step, self.flank) = (0, 0.0, 0);
         self.band = None;
         let height = distance * cos + q.rotate(self.lens).z;
@@ -289,9 +295,9 @@ impl FlowRangeFusion {
         (fresh && sound).then_some(height)
     }
 
-    /// What the height of the lens at `then` is off by a range of `distance`, m, with its variance, m²; `None` while it is not
-    /// clear what is below. Where a pose is fresh the surface follows the height instead. A little `earlier` the beam was on its
-    /// way there; the axes are turned by `yaw_offset`, rad.
+    /// Innovation of the height of the lens at `then` by a range of `distance`, m, with its variance, m²; `None` while
+    /// the surface is ambiguous. Beside a fresh pose (`posed`) the surface follows the height instead. `earlier` gives
+    /// the motion of the beam; the axes are turned by `yaw_offset`, rad.
     pub fn height(
         &mut self,
         (earlier, then): (&StateSnapshot, &StateSnapshot),
@@ -304,10 +310,11 @@ impl FlowRangeFusion {
             return None;
         }
         let surface = then.position.z + distance * cos;
-        // What a scaled range has met is nowhere: over a ground that it had put too deep the true one would seem raised.
+        // Surfaces measured by a scaled range are dropped: over a ground that it had put too deep the true one would
+        // seem raised.
         let anew = core::mem::take(&mut self.mistaken);
         if anew {
-            // Nor has flow with that depth said anything.
+            // Verdicts on the flow by that depth are dropped too.
             (self.agreements, self.unsure_us) = (Default::default(), then.at_us);
         }
         if posed || anew {
@@ -316,7 +323,7 @@ impl FlowRangeFusion {
             return None;
         }
         let foot = then.position + beam(then.q, distance, yaw_offset);
-        // The range's own place is that of a surface at `level`.
+        // Innovation of a hit on a surface at `level`.
         let off = self.level - surface;
         let raised = self.raised();
         let heading = then.yaw() + yaw_offset;
@@ -338,7 +345,7 @@ impl FlowRangeFusion {
         let flank = raised && off < 0.0 && below.is_flank(-off);
         if off.abs() <= STEP || flank {
             (self.agreed, self.foot) = (0, foot);
-            // Where the beam passes its height: the ground is met farther off.
+            // Point at which the beam passes the band's height: the ground is met farther off.
             let at = |top: f32| then.position + beam(then.q, (top - then.position.z) / cos, yaw_offset);
             self.band = self.band.map(|band| band.bounded(at(band.top), raised));
             self.band = self.band.filter(|band| raised || !band.is_mistaken());
@@ -372,7 +379,8 @@ impl FlowRangeFusion {
         self.agreed = if (off - self.step).abs() <= SAME {
             self.agreed + 1
         } else {
-            // Of the two surfaces' feet the higher one's: a tilted beam meets the ground a hand's breadth beside the edge.
+            // The edge is at the higher surface's hit: a tilted beam meets the ground a hand's breadth beside the
+            // edge.
             self.stepped_at = if off > 0.0 { foot } else { self.foot };
             1
         };
@@ -396,16 +404,16 @@ impl FlowRangeFusion {
         None
     }
 
-    /// Another surface is below; true if it was there before.
+    /// Switches to another surface; true if it is a known one.
     fn change_level(&mut self, surface: f32, now: u64) -> bool {
         self.agreed = 0;
-        // One that was there before is that one.
+        // A known surface is used again.
         let known = [self.base, self.other];
         let again = known.iter().find(|level| (**level - surface).abs() <= STEP);
         let before = self.level;
         self.level = again.copied().unwrap_or(surface);
-        // Down is positive. What the beam falls down to is the ground: a height that has drifted since must not leave a
-        // deeper one beside it, over which the true one would seem raised.
+        // Down is positive. The surface that the beam falls to is the ground: if the height has drifted since, a
+        // deeper ground must not remain, over which the true one would seem raised.
         if self.level > before {
             (self.other, self.base) = (before, self.level);
         } else {
@@ -420,13 +428,13 @@ impl FlowRangeFusion {
         again.is_some()
     }
 
-    /// Something narrow is below.
+    /// A narrow object is below.
     pub(crate) fn raised(&self) -> bool {
         self.base - self.level > STEP
     }
 
-    /// How far what the flow sees from `to` is. Beside something narrow the rest of the view is farther, and where an edge
-    /// of it was seen its share is known.
+    /// Effective distance of the flow's scene from `to`. Beside a narrow object the rest of the view is farther; if an
+    /// edge of the object was seen, its share of the view is known.
     pub(crate) fn depth(&self, to: &StateSnapshot, cos: f32, yaw_offset: f32) -> Depth {
         let far = |level: f32| {
             let (least, most) = FLOW_HEIGHT;
@@ -448,8 +456,8 @@ impl FlowRangeFusion {
         }
     }
 
-    /// What the velocity of the lens between `from` and `to`, in axes turned by `yaw_offset` rad, is off by `flow`; `None` where it
-    /// says nothing.
+    /// Innovation of the velocity of the lens between `from` and `to` by `flow`, in axes turned by `yaw_offset` rad;
+    /// `None` if the flow cannot be used.
     pub fn velocity(
         &mut self,
         flow: &Flow,
@@ -470,13 +478,13 @@ impl FlowRangeFusion {
             doubt,
             lean,
         } = self.depth(to, cos, yaw_offset);
-        // What the vehicle has turned by, body.
+        // Rotation of the vehicle, body.
         let turned = from.q.conjugate() * to.q;
         let half = if turned.w < 0.0 { -2.0 } else { 2.0 };
         let turned = [half * turned.x, half * turned.y];
         let way = about_down(to.position - from.position, -yaw_offset);
         let way = to.q.rotate_inverse(way);
-        // On the way down what is near on one side of the view seems to move to that side.
+        // In a descent, near objects on one side of the view seem to move to that side.
         let aside = to.q.rotate_inverse(about_down(lean, -yaw_offset)) * way.z;
         let [roll, pitch] = flow.angle;
         let angle = [roll - aside.y / depth, pitch + aside.x / depth];
@@ -497,7 +505,7 @@ impl FlowRangeFusion {
         if disagrees || self.same_flows >= FROZEN_FLOWS {
             return None;
         }
-        // Along the down axis of the body flow sees nothing: there the estimate stands.
+        // Flow does not observe the body's down axis: the estimate is used there.
         let seen = Vec3::new((pitch - turned[1]) * depth, (turned[0] - roll) * depth, way.z);
         let off = about_down(to.q.rotate(seen - way), yaw_offset) * per;
         let speed = FLOW_NOISE * depth * per;
@@ -524,7 +532,8 @@ impl FlowRangeFusion {
     }
 }
 
-/// From the lens of a vehicle with the attitude `q` to what its range sees `distance` m away, in axes turned by `yaw_offset` rad.
+/// Vector from the lens of a vehicle with the attitude `q` to the target of its range, `distance` m away, in axes
+/// turned by `yaw_offset` rad.
 pub fn beam(q: Quat, distance: f32, yaw_offset: f32) -> Vec3 {
     about_down(q.rotate(Vec3::new(0.0, 0.0, distance)), yaw_offset)
 }

@@ -1,6 +1,6 @@
-//! What a module below the vehicle measures of the ground: optical flow, and range along the body's down axis.
+//! Samples of a module below the vehicle: optical flow, and range along the body's down axis.
 
-/// Shortest and longest interval of a flow, s: faster than any module, and slower than is of use.
+/// Bounds of the interval of a flow, s: no module is faster, and a slower one is not useful.
 const INTERVAL: (f32, f32) = (1e-3, 0.25);
 /// Fastest flow, rad/s: modules measure 7.4 at most.
 const RATE_MAX: f32 = 10.0;
@@ -14,15 +14,15 @@ pub struct Flow {
     pub until_us: u64,
     /// Its length, s.
     pub seconds: f32,
-    /// Angle by which what is seen seems to turn, rad: over still ground, that by which the body turns about its forward
-    /// and its right axis. Moving right makes the first negative, moving forward the second positive.
+    /// Apparent rotation of the scene, rad: over still ground, the rotation of the body about its forward and its
+    /// right axis. Motion to the right makes the first negative, motion forward makes the second positive.
     pub angle: [f32; 2],
-    /// 0 for none to 255 for the best.
+    /// Quality, 0 for none to 255 for the best.
     pub quality: u8,
 }
 
 impl Flow {
-    /// The flow, unless something of it is no number or cannot be.
+    /// The flow; `None` if a value is not finite or out of bounds.
     pub fn checked(self) -> Option<Self> {
         let (least, most) = INTERVAL;
         let fast = |angle: &f32| angle.abs() <= RATE_MAX * self.seconds;
@@ -36,14 +36,14 @@ impl Flow {
 pub struct Range {
     /// When it was measured, µs.
     pub at_us: u64,
-    /// m; `None` where nothing is within reach.
+    /// Distance, m; `None` with no target in reach.
     pub distance: Option<f32>,
-    /// Nearest and farthest that the module measures, m.
+    /// Shortest and longest distance that the module measures, m.
     pub reach: (f32, f32),
 }
 
 impl Range {
-    /// The range, with no distance where that is beyond reach; `None` where something is no number.
+    /// The range, without a distance if that is out of reach; `None` if a value is not finite or `reach` is invalid.
     pub fn checked(self) -> Option<Self> {
         let (near, far) = self.reach;
         if !(0.0..=RANGE_MAX).contains(&near) || !(near..=RANGE_MAX).contains(&far) {
@@ -57,7 +57,7 @@ impl Range {
     }
 }
 
-/// The newest of both, each with its own time.
+/// The newest flow and the newest range, each with its own time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct GroundView {
     /// Optical flow.

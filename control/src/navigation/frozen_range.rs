@@ -1,72 +1,74 @@
-//! Whether a range stands still: it does not change although noise, or the vehicle's motion, must have changed it.
+//! Detects a frozen range: it does not change although noise, or the vehicle's motion, must have changed it.
 //!
-//! A reading in millimetres is finer than its noise, so that equal ones are rare: a run of n has a probability below
-//! exp(-n / m) for a usual run of m, which is learnt, since a module may send each reading several times. One in centimetres
-//! is coarser than its noise and may stand while the vehicle does: there the inertial sensor must say that it has moved.
+//! Readings in millimetres are finer than their noise, so that equal ones are rare: a run of n has a probability below
+//! exp(-n / m) for a usual run length of m. m is learnt, since a module may send each reading several times. Readings
+//! in centimetres are coarser than their noise and may repeat while the vehicle hovers: there the inertial sensor must
+//! show that it has moved.
 
 use super::range_scale::Climb;
 use crate::maths::elapsed::seconds;
 
 /// Readings that differ by less are equal, m.
 const EQUAL: f32 = 1e-4;
-/// Step below which a module shows millimetres, m. With 3 mm of noise (VL53L1X, measured) 25 of 2.5 mm are equal once in 10¹².
+/// Step below which a module has millimetre resolution, m. With 3 mm of noise (VL53L1X, measured) 25 readings of 2.5
+/// mm are equal once in 10¹².
 const FINE: f32 = 2.5e-3;
-/// Usual runs that are one of a module that stands still, ln 10⁹ = 20.7, and at least so many readings, of 1.2 each.
+/// Run that makes a module frozen, in usual runs, ln 10⁹ = 20.7, and at least in readings, for a usual run of 1.2.
 const RUNS: f32 = 20.7;
 const LEAST: f32 = 25.0;
-/// Share of a new run that the usual one follows, and its longest: 12 readings a second, sent a hundred times.
+/// Share by which the usual run follows a new one, and its upper bound: 12 readings a second, sent at 100 Hz.
 const FOLLOW: f32 = 0.05;
 const LONGEST: f32 = 8.0;
-/// Up to here, m, equal ranges are no sign of a vehicle that stands, and twice as many are one of a vehicle that flies: some
-/// modules read their least for the half second in which it sinks on.
+/// Distance up to which equal ranges of a standing vehicle prove nothing, and a flying one needs twice as many, m:
+/// some modules report their least distance for the half second in which the vehicle sinks further.
 const NEAR: f32 = 0.1;
-/// Coarsest reading, m, and the deviation of a range with what it lags behind, m.
+/// Coarsest resolution, m, and the deviation of a range, its lag included, m.
 const RESOLUTION: f32 = 0.01;
 const NOISE: f32 = 0.02;
-/// Deviations, squared, by which a way must exceed these: five, one in 1.7 million runs.
+/// Deviations, squared, by which the inertial displacement must exceed these: five, one in 1.7 million runs.
 const EXCEEDS: f32 = 25.0;
-/// Acceleration beyond which it is a shock, m/s².
+/// Acceleration beyond which it is a shock and the displacement is dropped, m/s².
 const SHOCK: f32 = 4.0;
-/// Time for which no module holds or delays a reading, µs.
+/// Longest time for which a module holds or delays a reading, µs.
 const HELD: u64 = 250_000;
-/// Time in the air, µs, in which noise of 3 mm alone leaves the middle of a centimetre at 24 readings a second, but for once in
-/// 10⁹: 205 readings that stay in it with 0.904 each.
+/// Time in flight after which equal readings are a fault, µs: at 24 readings a second, noise of 3 mm alone stays in
+/// the middle of a centimetre for so long once in 10⁹ (205 readings with 0.904 each).
 const STILL: u64 = 8_500_000;
 
-/// The way since a run began, by the inertial sensor alone.
+/// Inertial displacement since a run of equal readings began.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Way {
     began_us: u64,
     at_us: u64,
-    /// Height that the range gave, m, with what tilt and lever make of it.
+    /// Height by the range at the beginning, m, corrected for tilt and lever arm.
     height: f32,
-    /// Way, m, and speed, m/s, up, and what was known of it when it began.
+    /// Displacement, m, and speed, m/s, up, and the climb estimate at the beginning.
     way: f32,
     rate: f32,
     climb: Climb,
 }
 
-/// The last readings.
+/// State of the detector.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frozen {
     before: Option<f32>,
-    /// Equal ones in a row after the first, and since when they are in the air, µs.
+    /// Equal readings in a row after the first, and since when they are in flight, µs.
     same: u32,
     since_us: u64,
     still: bool,
-    /// Readings of a usual run, and whether the module shows millimetres.
+    /// Usual run, in readings, and whether the module has millimetre resolution.
     usual: f32,
     fine: bool,
-    /// A run has begun of which the way is not known yet.
+    /// A run has begun whose displacement is not initialised yet.
     begun: bool,
     way: Option<Way>,
-    /// The vehicle has moved farther than the range shows: now, and at an equal reading.
+    /// The vehicle has moved farther than the range shows: at present, and latched at an equal reading.
     exceeds: bool,
     moved: bool,
 }
 
 impl Default for Frozen {
-    /// None yet.
+    /// No reading yet.
     fn default() -> Self {
         Self {
             before: None,
@@ -84,14 +86,14 @@ impl Default for Frozen {
 }
 
 impl Frozen {
-    /// The range stands still.
+    /// The range is frozen.
     pub fn holds(&self) -> bool {
         let near = self.before.is_some_and(|before| before <= NEAR);
         let runs = (RUNS * self.usual).max(LEAST) * if near { 2.0 } else { 1.0 };
         self.moved || self.still || (self.fine && self.same as f32 >= runs)
     }
 
-    /// Takes a reading of `distance` m, at `at_us` µs, of a vehicle whose rotors carry it where it `flies`.
+    /// Takes a reading of `distance` m, at `at_us` µs; `flies` is true while the rotors carry the vehicle.
     pub fn take(&mut self, distance: f32, at_us: u64, flies: bool) {
         let step = self.before.map_or(f32::MAX, |before| (before - distance).abs());
         if step >= EQUAL {
@@ -117,15 +119,15 @@ impl Frozen {
         self.before = Some(distance);
     }
 
-    /// A run of equal readings has a way, or is to have one.
+    /// A run of equal readings has a displacement, or is to begin one.
     #[inline(always)]
     pub fn feels(&self) -> bool {
         self.begun || self.way.is_some()
     }
 
-    /// Carries the way on to `at_us` µs with what is felt `down`wards, m/s², gravity left out, of a vehicle whose share down
-    /// of its axis is `cos` and whose lens lies `lever` m below. Where it does not fly, and does not `climb` as is known, there
-    /// is none.
+    /// Integrates the displacement to `at_us` µs with the measured acceleration `down`, m/s², gravity removed. `cos`
+    /// is the down component of the vehicle's down axis, `lever` the offset of the lens below the centre of mass, m.
+    /// Outside of flight the displacement is dropped, and without a `climb` estimate it does not begin.
     pub fn feel(&mut self, at_us: u64, down: Option<f32>, (cos, lever): (f32, f32), climb: Option<Climb>) {
         let (Some(down), Some(distance)) = (down.filter(|a| a.abs() < SHOCK), self.before) else {
             (self.way, self.exceeds) = (None, false);
@@ -150,7 +152,7 @@ impl Frozen {
         way.at_us = at_us;
         way.rate += (way.climb.bias - down) * dt;
         way.way += way.rate * dt;
-        // What the range shows of it, though it stands still, is what tilt and lever do.
+        // An equal range changes the height by tilt and lever arm alone.
         let off = (way.way - (height - way.height)).abs() - RESOLUTION;
         let variance = way.climb.way_variance(seconds(way.began_us, at_us)) + NOISE * NOISE;
         self.exceeds = off > 0.0 && off * off > EXCEEDS * variance;

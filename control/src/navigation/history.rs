@@ -1,4 +1,4 @@
-//! Where the vehicle was taken to be: a fix is compared with the time of its measurement.
+//! State history: a delayed fix is compared with the state at the time of its measurement.
 
 use super::axis_filter::Change;
 use crate::maths::elapsed::seconds;
@@ -6,7 +6,7 @@ use crate::maths::frames::about_down;
 use crate::maths::scalar;
 use crate::maths::vector::{Quat, Vec3};
 
-/// Moments kept, 0.25 s at 200 Hz: twice what a slow camera is late. A fix that is older is no help.
+/// States kept, 0.25 s at 200 Hz: twice the latency of a slow camera. An older fix is ignored.
 pub const LENGTH: usize = 50;
 
 /// The estimate at one step.
@@ -18,12 +18,12 @@ pub struct StateSnapshot {
     pub position: Vec3,
     /// Body to world.
     pub q: Quat,
-    /// Its way by the inertial sensor alone, as [`super::external_pose`] compares it, m.
+    /// Inertial displacement in the band of [`super::external_pose`], m.
     pub swing: Vec3,
 }
 
 impl StateSnapshot {
-    /// The same moment of the point that lies `lever` m from the centre of mass, body, in axes turned by `yaw_offset` rad.
+    /// The state of the point `lever` m from the centre of mass, body, in axes turned by `yaw_offset` rad.
     pub fn of(self, lever: Vec3, yaw_offset: f32) -> Self {
         Self {
             position: self.position + about_down(self.q.rotate(lever), yaw_offset),
@@ -37,7 +37,7 @@ impl StateSnapshot {
     }
 }
 
-/// The last moments in a ring.
+/// Ring buffer of the last states.
 #[derive(Clone, Debug)]
 pub struct StateHistory {
     moments: [Option<StateSnapshot>; LENGTH],
@@ -54,12 +54,12 @@ impl Default for StateHistory {
 }
 
 impl StateHistory {
-    /// Forgets all.
+    /// Drops every state.
     pub fn clear(&mut self) {
         self.moments.fill(None);
     }
 
-    /// Adds the newest.
+    /// Adds the newest state.
     pub fn push(&mut self, moment: StateSnapshot) {
         if let Some(slot) = self.moments.get_mut(self.next) {
             *slot = Some(moment);
@@ -67,7 +67,7 @@ impl StateHistory {
         self.next = (self.next + 1) % LENGTH;
     }
 
-    /// The moment at `at_us` µs, its position between the two about it; `None` before the oldest and after the newest.
+    /// The state at `at_us` µs, interpolated between its neighbours; `None` before the oldest and after the newest.
     pub fn at(&self, at_us: u64) -> Option<StateSnapshot> {
         let known = || self.moments.iter().flatten();
         let before = known().filter(|m| m.at_us <= at_us).max_by_key(|m| m.at_us)?;
@@ -84,7 +84,8 @@ impl StateHistory {
         })
     }
 
-    /// Applies `changes` of each axis at `at_us` µs to every moment since: the next fix must not repeat them.
+    /// Applies the `changes` of each axis at `at_us` µs to every state since, so that the next fix does not repeat
+    /// them.
     pub fn change(&mut self, at_us: u64, changes: &[Change; 3]) {
         for moment in self.moments.iter_mut().flatten() {
             if moment.at_us >= at_us {
@@ -96,7 +97,8 @@ impl StateHistory {
     }
 }
 
-/// From `a` to `b` by `share`, along the shorter way. A few milliseconds apart they are nearly the same.
+/// Interpolates from `a` to `b` by `share`, along the shorter way, linearly: a few milliseconds apart they are nearly
+/// the same.
 pub(crate) fn between(a: Quat, b: Quat, share: f32) -> Quat {
     let dot = a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z;
     let share = scalar::clamp(share, 0.0, 1.0);

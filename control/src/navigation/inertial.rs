@@ -2,7 +2,7 @@
 
 use crate::maths::vector::{Quat, Vec3};
 
-/// Longest step, s: after a longer silence of the inertial sensor the estimate begins anew.
+/// Longest step, s: after a longer gap in the inertial samples the estimate restarts.
 pub const STEP_MAX: f32 = 0.05;
 
 /// Attitude and specific force at one time.

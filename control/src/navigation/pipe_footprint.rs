@@ -1,53 +1,56 @@
-//! Where something narrow lies below, a pipe, by the step of the range at its edge: what share of the flow's view it fills.
+//! Footprint of something narrow below, a pipe: its place by the range step at its edge, and the share of the flow's
+//! view that it fills.
 
 use crate::maths::scalar;
 use crate::maths::vector::Vec3;
 
 /// Width of the flow's view at a distance of 1 m (42° across).
 const VIEW: f32 = 0.77;
-/// Deviation of the place, m.
+/// Deviation of the footprint's place, m.
 const PLACE: f32 = 0.04;
-/// Rays that stand for the view, and the nearest distance of one, m.
+/// Rays that sample the view, and the least distance of one, m.
 const RAYS: u32 = 9;
 const NEAREST: f32 = 0.05;
-/// How far the range may contradict the place, m: the width of its beam.
+/// Tolerance between a range hit and the footprint, m: the width of the range's beam.
 const SLACK: f32 = 0.02;
-/// Share of the half width at which the back is taken to end: farther out it falls the more the less its place is known.
+/// Share of the half width beyond which the round back does not drop further: there the drop grows with the error of
+/// the place.
 const EDGE: f32 = 0.9;
-/// Forward over sideways speed beyond which an edge is one that lies across the way: the nose is along a pipe.
+/// Ratio of forward to sideways speed beyond which an edge lies across the motion: the nose is along a pipe.
 const AHEAD: f32 = 2.0;
 
-/// How far what the flow sees is.
+/// Effective distance of the flow's scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Depth {
-    /// One over the mean of 1/distance, m.
+    /// Harmonic mean of the distance, m.
     pub distance: f32,
-    /// Share of it that is in doubt with the band's place.
+    /// Relative uncertainty of it by the place of the footprint.
     pub doubt: f32,
-    /// Where in the view what is near lies, level, in the estimate's axes, 1: as it comes nearer it seems to move that way.
+    /// Level offset of the near part within the view, in the estimate's axes, 1: as that part comes nearer it seems to
+    /// move this way.
     pub lean: Vec3,
 }
 
 /// A band along the vehicle, or across it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PipeFootprint {
-    /// Point in its middle, and the direction across it, level, in the estimate's axes.
+    /// Point on its centre line, and the direction across it, level, in the estimate's axes.
     middle: Vec3,
     across: Vec3,
     /// Half its width, m.
     radius: f32,
     /// Its height along the down axis, m.
     pub top: f32,
-    /// The beam has met it where it should since an edge was seen: it is narrow.
+    /// Every hit since an edge was seen agrees with its width: it is narrow.
     sure: bool,
-    /// How far the ground was met where it should be since then, m.
+    /// Sum of the shifts by ground hits inside it since then, m.
     pushed: f32,
 }
 
 impl PipeFootprint {
-    /// The band whose edge is at `foot`, `onto` or off which the beam has come on its `way` of a vehicle at `heading`, rad: as
-    /// it mostly moves, forward or sideways, leads across. Where the place `known` before says which of the two edges it
-    /// is, a gust to the other side does not.
+    /// The band whose edge is at `foot`. The beam has come `onto` it or off it, moving by `way`, of a vehicle at
+    /// `heading`, rad; the main direction of motion, forward or sideways, leads across the band. If the place `known`
+    /// before identifies the edge, that decides which of the two it is, and a gust to the other side does not.
     pub fn at_edge(known: Self, foot: Vec3, onto: bool, way: Vec3, heading: f32) -> Self {
         let (ahead, right) = ahead_and_right(heading);
         let (forward, sideways) = (way.dot(ahead), way.dot(right));
@@ -69,8 +72,8 @@ impl PipeFootprint {
         }
     }
 
-    /// One of which only that it is below is known: its middle is at `foot`, it lies along `heading`, rad, and its width and
-    /// height are `2 radius` and `top`, m.
+    /// A band below without a known edge: its centre line passes `foot` along `heading`, rad, its width is `2 radius`
+    /// m, its height `top` m.
     pub fn below(foot: Vec3, heading: f32, radius: f32, top: f32) -> Self {
         Self {
             middle: foot,
@@ -82,7 +85,8 @@ impl PipeFootprint {
         }
     }
 
-    /// A beam that meets what is `raised`, or the ground, at `foot` bounds where it can be.
+    /// Shifts the band so that it agrees with a hit at `foot` on the raised surface (`raised`) or on the ground. A
+    /// raised hit outside shows that it may be wide.
     pub fn bounded(self, foot: Vec3, raised: bool) -> Self {
         let side = self.side(foot);
         let sign = if side < 0.0 { -1.0 } else { 1.0 };
@@ -99,13 +103,13 @@ impl PipeFootprint {
         }
     }
 
-    /// The ground was met all across where it should be: it is not there, but on the other side of the edge.
+    /// Ground hits have shifted it by more than its width: it lies on the other side of the edge.
     pub fn is_mistaken(&self) -> bool {
         self.pushed > 2.0 * self.radius
     }
 
-    /// How far its back has fallen at `foot` from its top, m, and by how much that is in doubt with the place. Where it may be
-    /// wide, it is flat.
+    /// Drop of its back at `foot` below its top, m, and the uncertainty of that by the place, m. A band that may be
+    /// wide is flat.
     pub fn drop(&self, foot: Vec3) -> (f32, f32) {
         if !self.sure {
             return (0.0, PLACE);
@@ -115,12 +119,12 @@ impl PipeFootprint {
         (drop, self.fallen(side + PLACE) - drop)
     }
 
-    /// What is `below` its top, m, may be its own flank.
+    /// A surface `below` m under its top may be its own flank.
     pub fn is_flank(&self, below: f32) -> bool {
         below < self.radius + PLACE
     }
 
-    /// How far its round back has fallen `off` m beside its crown, m; beside it as far as at its edge.
+    /// Drop of its round back `off` m beside its crown, m; farther out, that of its edge.
     fn fallen(&self, off: f32) -> f32 {
         let square = self.radius * self.radius - off * off;
         if square > 0.0 {
@@ -130,18 +134,18 @@ impl PipeFootprint {
         }
     }
 
-    /// How far its middle lies aside of `place`, m.
+    /// Offset of its centre line from `place`, in its direction across, m.
     pub fn aside(&self, place: Vec3) -> f32 {
         -self.side(place)
     }
 
-    /// Of its middle, in its direction across, m.
+    /// Offset of `place` from its centre line, in its direction across, m.
     fn side(&self, place: Vec3) -> f32 {
         (place - self.middle).dot(self.across)
     }
 
-    /// What the view from `place` sees, whose middle falls at `foot`: rays across the round band, `far` m to the ground
-    /// beside it.
+    /// Scene of the view from `place` with its centre at `foot`: rays across the round band, and the ground beside it,
+    /// `far` m away.
     pub fn depth(&self, place: Vec3, foot: Vec3, far: f32) -> Depth {
         let side = self.side(place);
         let slope = (foot - place).dot(self.across) / scalar::clamp(foot.z - place.z, NEAREST, 100.0);
@@ -155,8 +159,8 @@ impl PipeFootprint {
         }
     }
 
-    /// Mean of 1/distance, 1/m, and its moment about the view's middle from `side` m beside its middle, `near` m over its
-    /// top, of a view that leans by `slope`.
+    /// Mean of 1/distance, 1/m, and its moment about the centre of the view, for a view that is `side` m beside the
+    /// centre line, `near` m over the top, and tilted by `slope`.
     fn seen_from(&self, side: f32, slope: f32, near: f32, far: f32) -> (f32, f32) {
         let deep = near + self.radius;
         let (mut sum, mut moment) = (0.0, 0.0);

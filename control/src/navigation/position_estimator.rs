@@ -1,8 +1,9 @@
-//! Position, velocity and disturbance, 200 Hz, from the inertial sensor and poses that others measure late, or without them
+//! Position, velocity and disturbance at 200 Hz, from the inertial sensor and delayed external poses, or without poses
 //! from optical flow and range.
 //!
-//! The axes are those of the pose's sender: down is the vehicle's, the heading differs by a turn that is estimated
-//! (the vehicle has no compass, and a visual odometry drifts). By flow alone they begin where the first one came. docs/design/navigation.md has derivation and figures.
+//! The axes are those of the poses' sender: down is the vehicle's, the heading differs by an estimated yaw offset (the
+//! vehicle has no compass, and a visual odometry drifts). With flow alone the origin is the place of the first flow.
+//! docs/design/navigation.md has derivation and figures.
 
 #[cfg(test)]
 mod tests;
@@ -25,31 +26,32 @@ use crate::navigation::inertial::{Inertial, STEP_MAX};
 use crate::navigation::range_hit::RangeHit;
 use crate::params::Params;
 
-/// Fixes until the estimate is given out, half a second at 50 Hz, and the velocity's deviation by then, m/s.
+/// Fixes before the estimate is published, half a second at 50 Hz, and the largest deviation of the velocity then,
+/// m/s.
 const READY_FIXES: u32 = 25;
 const READY_SPEED: f32 = 0.1;
-/// Deviation of a bias that was learnt before the estimate began anew, as after a perch, at least, m/s²: level that of the
+/// Least deviation of a bias that is kept over a restart of the estimate, as after a perch, m/s²: level that of the
 /// attitude, 0.6°, down that of the sensor alone.
 const KEPT_BIAS: [f32; 3] = [0.1, 0.1, 0.03];
-/// Largest that is kept, m/s²: more is what has misled the estimate.
+/// Largest bias that is kept, m/s²: a larger one comes from a misled estimate.
 const SENSOR_BIAS: f32 = 0.3;
-/// Share of the weight from which on the rotors carry the vehicle.
+/// Thrust over weight beyond which the rotors carry the vehicle.
 pub const FLIES: f32 = 0.5;
-/// Age of the newest pose from which on flow and range are taken, s.
+/// Age of the newest pose beyond which flow and range are fused, s.
 const POSE_FRESH: f32 = 0.2;
-/// Flows refused in a row after which the next is taken, a second at 50 Hz; one that is wrong for good is found out by
-/// its agreement with the inertial sensor.
+/// Flows refused in a row after which the next one resets the velocity, a second at 50 Hz; a permanently wrong flow is
+/// found by its disagreement with the inertial sensor.
 const FLOWS_REFUSED_MAX: u32 = 50;
-/// Range of a vehicle that stands, m, and the variance of its level speed, (m/s)².
+/// Range below which the vehicle stands, m, and the variance of its level speed then, (m/s)².
 const STANDING: f32 = 0.05;
 const STAND_SPEED: f32 = 0.01;
-/// Time over which the way of the beam across an edge is taken, µs.
+/// Time over which the motion of the beam across an edge is measured, µs.
 const EDGE_TIME: u64 = 100_000;
 /// Cut-off of the lateral and the vertical disturbance, rad/s.
 const LATERAL_CUTOFF: f32 = 20.0;
 const VERTICAL_CUTOFF: f32 = 8.0;
 
-/// What is measured and left out.
+/// A source that is rejected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
     /// The poses.
@@ -82,9 +84,9 @@ pub struct PositionEstimator {
     flow_range: FlowRangeFusion,
     pose_monitor: ExternalPoseMonitor,
     baro_height: BaroHeight,
-    /// When the last track by flow ended, µs, and its axes, of which the biases are good for the next.
+    /// End of the last track by flow, µs, and its axes, whose biases seed the next track.
     learnt: Option<(u64, [Axis; 3])>,
-    /// When the newest fix and the newest flow that were looked at were measured, µs: each is taken once.
+    /// Measurement times of the newest fix and the newest flow processed, µs: each is processed once.
     seen_us: u64,
     flow_us: u64,
 }
@@ -106,20 +108,20 @@ impl PositionEstimator {
         }
     }
 
-    /// What is left out at present, with an estimate or without one.
+    /// The source rejected at present, with or without an estimate.
     pub fn fault(&self) -> Option<Fault> {
         let pose = self.pose_monitor.fault().map(Fault::Pose);
         pose.or_else(|| self.flow_range.fault().map(Fault::FlowRange))
             .or_else(|| self.baro_height.fault().map(Fault::Pressure))
     }
 
-    /// Takes the newest pressure of the air, for the next step: the height of last resort. Without one nothing changes.
+    /// Takes the newest air pressure for the next step, as the height of last resort. It is optional.
     pub fn hear(&mut self, air: &AirPressure) {
         self.baro_height.hear(air);
     }
 
-    /// One step with the inertial sensor, the thrust demanded along -z, N, the newest fix and the newest flow and range.
-    /// `None` without a position.
+    /// One step with the inertial sensor, the thrust demanded along -z, N, the newest fix and the newest flow and
+    /// range. `None` without a position.
     pub fn step(
         &mut self,
         inertial: &Inertial,
@@ -143,7 +145,7 @@ impl PositionEstimator {
         }
         let down = inertial.q.rotate(inertial.accel).z + GRAVITY;
         self.flow_range.feel(at_us, flies.then_some(down), inertial.q);
-        // A scaled range gives no height; how it changes may say that it is right again.
+        // A wrongly scaled range gives no height; its changes may prove that it is right again.
         let range = match range {
             Some((at, distance)) if self.flow_range.scale.wrong() => {
                 if let Some(then) = self.history.at(at) {
@@ -175,7 +177,7 @@ impl PositionEstimator {
                 return None;
             }
             (track, None) => {
-                // Where the first flow that is of use comes, the axes begin: on the ground below, as the vehicle's own.
+                // The axes begin at the first usable flow: on the ground below, with the vehicle's own heading.
                 let height = flow.and_then(|flow| self.flow_range.begin(&flow, inertial.q));
                 self.learnt = track.as_ref().map_or(self.learnt, Track::learnt);
                 *track = height.map(|height| {
@@ -183,7 +185,7 @@ impl PositionEstimator {
                     self.baro_height.forget();
                     Track::above(at_us, height, self.learnt.as_ref())
                 });
-                // Its own place: the next flow's interval may begin here.
+                // The track's own position: the interval of the next flow may begin here.
                 let position = track.as_ref().map_or(here.position, Track::position);
                 self.history.push(StateSnapshot { position, ..here });
                 return None;
@@ -232,7 +234,7 @@ impl PositionEstimator {
     }
 }
 
-/// What is known since the first fix.
+/// State since the first fix.
 #[derive(Clone, Debug)]
 struct Track {
     /// North or forward, east or right, down.
@@ -241,20 +243,20 @@ struct Track {
     /// Thrust over mass, with the motors' lag, m/s².
     lift: f32,
     disturbance: Vec3,
-    /// Times of the last step and of the newest fix or flow taken, µs.
+    /// Times of the last step and of the newest fused fix or flow, µs.
     at_us: u64,
     fixed_us: u64,
     fixes: u32,
-    /// Poses were left out since the last one that was taken.
+    /// Poses were rejected since the last fused one.
     left_out: bool,
-    /// What was estimated from poses since they began to disagree was given up.
+    /// Dead reckoning was invalidated because the poses disagree.
     tainted: bool,
-    /// The same by the flow.
+    /// Dead reckoning was invalidated because flow or range disagree.
     misled: bool,
-    /// There was a pose, the newest one that was taken at this time, µs: the axes are its sender's.
+    /// A pose was fused, the newest one at this time, µs: the axes are its sender's.
     posed: bool,
     pose_us: u64,
-    /// When the newest pose or range that gave the height was measured, µs.
+    /// Measurement time of the newest pose or range that gave the height, µs.
     height_us: u64,
     /// Flows refused in a row.
     flows_refused: u32,
@@ -262,7 +264,7 @@ struct Track {
     reset_count: u8,
     ready: bool,
     foot: RangeHit,
-    /// When that was measured, µs; 0 before the first.
+    /// Measurement time of `foot`, µs; 0 before the first.
     foot_us: u64,
 }
 
@@ -292,7 +294,7 @@ impl Track {
         }
     }
 
-    /// At rest `height` m above the ground, in the vehicle's own axes, with the biases of the one before.
+    /// A track at rest `height` m above the ground, in the vehicle's own axes, with the biases of the track before.
     fn above(at_us: u64, height: f32, before: Option<&(u64, [Axis; 3])>) -> Self {
         let here = Fix {
             at_us,
@@ -313,7 +315,7 @@ impl Track {
         track
     }
 
-    /// Its end and its axes where they are the vehicle's own, and their biases a sensor's.
+    /// Its end, µs, and its axes, if these are the vehicle's own and the biases are plausible for a sensor.
     fn learnt(&self) -> Option<(u64, [Axis; 3])> {
         let sound = self.axes.iter().all(|axis| axis.bias().abs() < SENSOR_BIAS);
         (sound && !self.posed && !self.misled).then_some((self.at_us, self.axes))
@@ -333,7 +335,8 @@ impl Track {
         for (axis, acceleration) in self.axes.iter_mut().zip(acceleration.to_array()) {
             axis.predict(acceleration, dt);
         }
-        // Across the thrust axis rotors push little: what is felt there is the air, and the arms' lean.
+        // Across the thrust axis rotors push little: the acceleration measured there comes from the air, and from the
+        // arms' lean.
         let across =
             about_down(a.q.rotate(Vec3::new(a.accel.x, a.accel.y, 0.0)), self.yaw_offset) - self.bias();
         self.lift += (lift - self.lift) * dt / (dt + motor_tau);
@@ -347,7 +350,7 @@ impl Track {
         );
     }
 
-    /// Compares `fix` with where the vehicle was taken to be when it was measured.
+    /// Fuses `fix` by the state at its measurement.
     fn take(&mut self, history: &mut StateHistory, pose_monitor: &mut ExternalPoseMonitor, fix: &Fix) {
         let Some(then) = history.at(fix.at_us) else {
             return;
@@ -385,8 +388,9 @@ impl Track {
         (self.posed, self.pose_us, self.height_us) = (true, fix.at_us, fix.at_us);
     }
 
-    /// Poses, or the flow, have gone another way than the vehicle for a while: velocity and bias follow them no longer. No one
-    /// coasts on with these, and the wind is what is felt.
+    /// Invalidates dead reckoning after poses or flow have disagreed with the vehicle's motion: the velocity gets the
+    /// variance of a first fix, the level biases are reset, so that the disturbance is the acceleration as measured,
+    /// and the age rises to [`TAINTED_AGE`], so that no mode coasts.
     fn taint(&mut self) {
         self.fixed_us = self.fixed_us.min(self.at_us.saturating_sub(TAINTED_AGE));
         for axis in &mut self.axes {
@@ -398,14 +402,14 @@ impl Track {
         }
     }
 
-    /// One more fix or flow was taken.
+    /// Counts a fused fix or flow.
     fn count(&mut self) {
         self.fixes = self.fixes.saturating_add(1);
         let known = self.axes.iter().all(|axis| axis.speed_within(READY_SPEED));
         self.ready |= known && self.fixes >= READY_FIXES;
     }
 
-    /// Notes where the beam of a range of `distance` m, measured at `at` µs, has met something.
+    /// Stores the hit of a range of `distance` m, measured at `at` µs.
     fn step_on(&mut self, history: &StateHistory, lens: Vec3, at: u64, distance: Option<f32>) {
         let Some(then) = history.at(at).map(|moment| moment.of(lens, self.yaw_offset)) else {
             return;
@@ -415,7 +419,8 @@ impl Track {
         self.foot_us = at;
     }
 
-    /// Compares a range of `distance` m, measured at `at` µs, with the height; beside a pose it gives the height of the ground alone.
+    /// Fuses a range of `distance` m, measured at `at` µs, as height; beside a pose it gives the height of the ground
+    /// alone.
     fn take_range(
         &mut self,
         history: &mut StateHistory,
@@ -427,14 +432,15 @@ impl Track {
             return;
         };
         if distance < STANDING && !posed {
-            // Flow sees nothing there, and what is so near carries the vehicle, or soon will.
+            // Flow is blind so near, and the surface carries the vehicle or soon will: the vehicle's level speed is
+            // fused as zero.
             let lag = seconds(at, self.at_us);
             let [x, y, _] = &mut self.axes;
             let [along, across] = [x, y].map(|axis| axis.correct_speed(-axis.velocity(), STAND_SPEED, lag));
             history.change(at, &[along, across, Change::default()]);
         }
         let earlier = history.at(at.saturating_sub(EDGE_TIME)).unwrap_or(then);
-        // The lever is rigid: what the lens is off, the vehicle is.
+        // The lever arm is rigid: the height error of the lens is that of the vehicle.
         let [earlier, then] = [earlier, then].map(|moment| moment.of(flow_range.lens, self.yaw_offset));
         let [_, _, axis] = &mut self.axes;
         let Some((innovation, variance)) =
@@ -447,7 +453,7 @@ impl Track {
         self.height_us = at;
     }
 
-    /// Compares the newest pressure, measured at `at` µs, with the height; beside range or pose it is only learnt from.
+    /// Fuses the newest pressure, measured at `at` µs, as height; beside range or pose only its offset is learnt.
     fn take_pressure(&mut self, history: &mut StateHistory, baro_height: &mut BaroHeight, at: u64) {
         let Some(then) = history.at(at) else {
             return;
@@ -465,7 +471,7 @@ impl Track {
         }
     }
 
-    /// Compares a flow with the velocity in its middle; beside a pose it is only watched.
+    /// Fuses a flow by the velocity in the middle of its interval; beside a pose it is only monitored.
     fn take_flow(
         &mut self,
         history: &mut StateHistory,
@@ -509,7 +515,7 @@ impl Track {
         self.fixed_us = flow.until_us;
     }
 
-    /// The sender's origin has jumped: velocity and bias stay, but for their turn.
+    /// Moves the track to the sender's new origin; velocity and bias stay, rotated by the change of the yaw offset.
     fn jump(&mut self, yaw: f32, fix: &Fix) {
         let before = self.yaw_offset;
         self.yaw_offset = scalar::wrap_pi(fix.heading - yaw);

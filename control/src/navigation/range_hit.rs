@@ -1,20 +1,20 @@
-//! Where the beam of the range meets a surface.
+//! Intersection of the range beam with a surface.
 
 use crate::maths::vector::Vec3;
 
-/// Where the beam of a range has met what is below.
+/// Newest hit of the range beam.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RangeHit {
-    /// In the estimate's axes, m; `None` where nothing was within reach.
+    /// Point of the hit in the estimate's axes, m; `None` with no target in reach.
     pub point: Option<Vec3>,
     /// Counts the ranges.
     pub count: u8,
-    /// Since it was measured, s.
+    /// Age of the measurement, s.
     pub age: f32,
 }
 
 impl Default for RangeHit {
-    /// None yet.
+    /// No range yet.
     fn default() -> Self {
         Self {
             point: None,

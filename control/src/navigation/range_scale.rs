@@ -1,8 +1,9 @@
-//! Whether the range is as long as it says, by how it changes where the inertial sensor feels the vehicle rise or sink.
+//! Monitor of the range's scale: compares its changes with the vertical motion by the inertial sensor.
 //!
-//! Height over what is below, its rate and the bias of the felt acceleration are one Kalman filter, run twice with the same
-//! gains: one run sees the range alone, the other is moved by the inertial sensor alone. Both are linear, so that a range s
-//! times too long leaves the innovation seen - s felt, and s is their regression. docs/design/flow-and-range.md has limits and times.
+//! A Kalman filter of height over the surface, its rate and the bias of the measured acceleration runs twice with the
+//! same gains: one run takes the range alone, the other the inertial sensor alone. Both are linear, so that a range s
+//! times too long leaves the innovation of the first minus s times that of the second, and s is their regression.
+//! docs/design/flow-and-range.md has limits and times.
 
 #[cfg(test)]
 mod tests;
@@ -11,11 +12,12 @@ use super::inertial::STEP_MAX;
 use crate::maths::elapsed::seconds;
 use crate::maths::scalar;
 
-/// Noise of the acceleration, m/s²/√Hz, and walk of its bias, m/s²/√s (assumed: ten times that of a quiet sensor). What is
-/// rougher shows in the innovations, and divides what they prove.
+/// Noise of the acceleration, m/s²/√Hz, and walk of its bias, m/s²/√s (assumed: ten times that of a quiet sensor).
+/// Larger noise shows in the innovations, and divides the evidence.
 const ACCEL_NOISE: f32 = 0.015;
 const BIAS_WALK: f32 = 0.005;
-/// Deviations where the surface is new, m/s and m/s²: what an edge has done to the rate is forgotten.
+/// Deviations at the start and on a new surface: of the rate, m/s, since an edge disturbs it; of an unknown bias and
+/// of a learnt one, m/s².
 const START_RATE: f32 = 1.0;
 const START_BIAS: f32 = 0.3;
 const KEPT_BIAS: f32 = 0.1;
@@ -23,59 +25,62 @@ const KEPT_BIAS: f32 = 0.1;
 /// drifts for half a second weigh as much, at 50 Hz, as white noise of that size.
 const PLAIN: f32 = 0.025;
 const NARROW: f32 = 0.14;
-/// Acceleration beyond which it is a shock, m/s².
+/// Acceleration beyond which it is a shock and the filter restarts, m/s².
 const SHOCK: f32 = 4.0;
-/// Time without a range after which all begins anew, s.
+/// Time without a range after which the filter restarts, s.
 const GAP: f32 = 0.5;
-/// Nearest range that counts, m: nearer the vehicle may stand.
+/// Least height that is used, m: below it the vehicle may stand.
 const NEAREST: f32 = 0.1;
-/// Departure that is a step of what is below, m, where no other law looks for it.
+/// Innovation that is a step of the surface while the range is rejected, m: no other monitor looks for steps then.
 const STEP: f32 = 0.25;
-/// Time over which it is judged, s, and the ranges before.
+/// Fading window of the regression, s, and the least number of ranges in it.
 const WINDOW: f32 = 10.0;
 const RANGES_MIN: f32 = 25.0;
 /// Square of the deviations by which the scale must differ from one: 3.5.
 const DIFFERS: f32 = 12.0;
-/// Scales that are tolerated, and the largest that is one: what changes more is the ground.
+/// Accepted scales, and the largest that is judged as one: a larger change comes from the ground.
 const BORNE: (f32, f32) = (0.8, 1.25);
 const MOST: f32 = 4.0;
-/// Bounds of the variances, in the square of their units, and the least sum of what was felt that says something.
+/// Bounds of the variances, in the square of their units, and the least normalised sum of squared inertial innovations
+/// for a verdict.
 const LEAST: f32 = 1e-9;
 const MOST_VARIANCE: f32 = 1e3;
 const FELT_MIN: f32 = 20.0;
-/// Scales within which a range is used again, and the square of one over the deviation with which it must be known: 0.15.
+/// Scales at which a rejected range is used again, and the least inverse variance of the scale for that: a deviation
+/// of 0.15.
 const REGAINED: (f32, f32) = (0.85, 1.18);
 const SURE: f32 = 44.0;
 
-/// What a range has met.
+/// Surface that a range has met.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Below {
     /// The same surface as before, a floor.
     Plain,
-    /// The same as before, which may be narrow and round.
+    /// The same surface as before, which may be narrow and round.
     Narrow,
-    /// Another one that was there before.
+    /// Another surface, known from before.
     Known,
-    /// One that was not there before.
+    /// A new surface.
     New,
 }
 
-/// One run of the filter: height over what is below, m, its rate, m/s, and the bias of what is felt downwards, m/s².
+/// State of one run: height over the surface, m, its rate, m/s, and the bias of the measured downward acceleration,
+/// m/s².
 type Run = [f32; 3];
 
-/// How the vehicle climbs, and how well that is known.
+/// Climb rate with its covariance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Climb {
     /// m/s up.
     pub rate: f32,
-    /// Of what is felt downwards, m/s².
+    /// Bias of the measured downward acceleration, m/s².
     pub bias: f32,
-    /// Of the rate with itself and the bias, and of the bias.
+    /// Variance of the rate, its covariance with the bias, variance of the bias.
     variances: [f32; 3],
 }
 
 impl Climb {
-    /// Variance of the way that the inertial sensor alone says, m², `t` s on.
+    /// Variance of the inertial displacement, m², after `t` s.
     pub fn way_variance(&self, t: f32) -> f32 {
         let [rr, rb, bb] = self.variances;
         t * t * (rr + t * (rb + ACCEL_NOISE * ACCEL_NOISE * (1.0 / 3.0) + t * 0.25 * bb))
@@ -87,32 +92,34 @@ impl Climb {
 pub struct RangeScale {
     seen: Run,
     felt: Run,
-    /// Variances and covariances: of the height with all, then of the rate with itself and the bias, and of the bias.
+    /// Covariances of the height with height, rate and bias; variance of the rate, its covariance with the bias,
+    /// variance of the bias.
     with_height: [f32; 3],
     rest: [f32; 3],
-    /// Time of the last step, µs, and since when the covariance stands, s: it is carried on at ranges only.
+    /// Time of the last step, µs, and age of the covariance, s: it is propagated at ranges only.
     at_us: u64,
     since: f32,
-    /// There was a range since all began, and one that says where the present surface is.
+    /// A range was taken since the restart, and one on the present surface.
     begun: bool,
     anchored: bool,
-    /// Sums of felt², seen * felt and seen² of innovations over their variance, and how many: all fading.
+    /// Fading sums of inertial², range × inertial and range² innovations over their variance, and their number.
     sums: [f32; 4],
     wrong: bool,
 }
 
 impl RangeScale {
-    /// The range is not as long as it says.
+    /// The range is wrongly scaled.
     pub fn wrong(&self) -> bool {
         self.wrong
     }
 
-    /// There was a range since it flies, and lately.
+    /// A range was taken in this flight, and lately.
     pub fn begun(&self) -> bool {
         self.begun
     }
 
-    /// How the vehicle climbs by range and inertial sensor; `None` where these do not say it.
+    /// Climb by range and inertial sensor; `None` without a range on the present surface, or while the range is
+    /// rejected.
     pub fn climb(&self) -> Option<Climb> {
         let ([_, seen, seen_bias], [_, felt, felt_bias]) = (self.seen, self.felt);
         (self.anchored && !self.wrong).then_some(Climb {
@@ -122,7 +129,8 @@ impl RangeScale {
         })
     }
 
-    /// Carries on to `at_us` µs with what is felt `down`wards, m/s², gravity left out; `None` where the vehicle does not fly.
+    /// Predicts both runs to `at_us` µs with the measured acceleration `down`, m/s², gravity removed. `None`, while
+    /// the vehicle does not fly, restarts the filter.
     pub fn feel(&mut self, at_us: u64, down: Option<f32>) {
         let dt = seconds(self.at_us, at_us);
         self.since += dt;
@@ -144,7 +152,8 @@ impl RangeScale {
         }
     }
 
-    /// Takes a range by which the centre of mass was `height` m over what is below, `lag` s ago.
+    /// Fuses a range by which the centre of mass was `height` m over the surface, `lag` s ago. A height that is not
+    /// finite is ignored.
     pub fn look(&mut self, height: f32, lag: f32, below: Below) {
         if !(height + lag).is_finite() {
             return;
@@ -158,7 +167,7 @@ impl RangeScale {
         let then = |[height, rate, _]: Run| height - rate * lag;
         let seen = height - then(self.seen);
         let felt = then(self.felt);
-        // While it is left out no other law looks for steps.
+        // While the range is rejected no other monitor looks for steps.
         let stepped = self.wrong && (seen - felt).abs() > STEP;
         if !self.anchored || stepped || matches!(below, Below::Known | Below::New) {
             if stepped || below == Below::New {
@@ -170,7 +179,7 @@ impl RangeScale {
         let noise = deviation(below);
         let [hh, hr, hb] = self.with_height;
         let [rr, rb, bb] = self.rest;
-        // Of the height `lag` s ago.
+        // Covariances with the height `lag` s ago.
         let gains = [hh - lag * hr, hr - lag * rr, hb - lag * rb];
         let [own, slope, _] = gains;
         let variance = own - lag * slope + noise * noise;
@@ -194,7 +203,7 @@ impl RangeScale {
         self.judge([felt * felt * per, seen * felt * per, seen * seen * per], dt);
     }
 
-    /// Carries the covariance on by `dt` s.
+    /// Propagates the covariance by `dt` s.
     fn carry(&mut self, dt: f32) {
         let [hh, hr, hb] = self.with_height;
         let [rr, rb, bb] = self.rest;
@@ -214,7 +223,7 @@ impl RangeScale {
         ];
     }
 
-    /// The surface is another one: the height begins where the range says, and the rate is learnt anew.
+    /// Restarts on another surface: the height is that of the range, the rate is unknown, the bias is kept.
     fn anchor(&mut self, seen: f32, felt: f32, below: Below) {
         let [_, _, bb] = self.rest;
         let bias = if self.begun {
@@ -231,7 +240,8 @@ impl RangeScale {
         (self.begun, self.anchored) = (true, true);
     }
 
-    /// Adds the squares and the product of two innovations over their variance, `dt` s after the last.
+    /// Adds the squares and the product of two innovations over their variance, `dt` s after the last, and judges the
+    /// scale.
     fn judge(&mut self, news: [f32; 3], dt: f32) {
         let keep = WINDOW / (WINDOW + dt);
         for (sum, new) in self.sums.iter_mut().zip(news.into_iter().chain([1.0])) {
@@ -243,7 +253,7 @@ impl RangeScale {
         }
         let scale = both / felt;
         let rough = ((seen - both * scale) / count).max(1.0);
-        // One over the variance of the scale.
+        // Inverse variance of the scale.
         let known = felt / rough;
         if self.wrong {
             let (least, most) = REGAINED;
@@ -256,7 +266,7 @@ impl RangeScale {
     }
 }
 
-/// Of a range, m.
+/// Deviation of a range, m.
 fn deviation(below: Below) -> f32 {
     match below {
         Below::Narrow => NARROW,

@@ -1,5 +1,6 @@
-//! The vertical speed by what is felt, beside the estimate's. A range that changes its scale, or slides off a flank with
-//! another one, bends the estimate within tenths of a second; where no range follows, that would be held for seconds.
+//! Inertial vertical speed, independent of the range. A range whose scale changes, or that slides off a flank with a
+//! wrong scale, corrupts the estimate's speed within tenths of a second; without a range afterwards that error would
+//! last for seconds. This law detects it and replaces the estimate's speed, for up to [`HEIGHT_AGE`].
 
 #[cfg(test)]
 mod tests;
@@ -9,52 +10,56 @@ use crate::maths::scalar::{clamp, clamp_abs};
 use crate::navigation::estimate::Estimate;
 use crate::navigation::fix_age::{FRESH_AGE, HEIGHT_AGE};
 
-/// Time in which the felt speed follows the estimate's, s, and in which the felt acceleration's error is learnt from that.
+/// Time constants with which the inertial speed follows the estimate's, s, and the bias of the acceleration is learnt
+/// from the difference, s.
 const FOLLOW: f32 = 4.0;
 const LEARN: f32 = 8.0;
-/// Largest such error, m/s², and speed, m/s.
+/// Largest bias, m/s², and speed, m/s.
 const BIAS_MAX: f32 = 0.3;
 const SPEED_MAX: f32 = 20.0;
-/// Age of the newest flow beyond which, with no range in reach, nothing gives the height, s.
+/// Age of the newest flow beyond which, with no range in reach, the height has no source, s.
 const BLIND_AGE: f32 = 0.1;
-/// Difference of the two speeds from which on the felt one counts, m/s: where nothing gives the height, where a range does, and
-/// where that has just begun. On the first way to the pipe sound modules come to 0.22; on a later one, one came beyond 0.25.
+/// Difference of the two speeds beyond which the inertial one is used, m/s: without a source of height, with a range,
+/// and with an estimate that has just begun. On the first way to the pipe sound modules reach 0.22; on a later one,
+/// one exceeded 0.25.
 const BENT: f32 = 0.06;
 const BROKEN: f32 = 0.25;
 const UNLEARNT: f32 = 0.45;
-/// The same over a crown and near it, where no edge bends it: of 54 sound missions none comes beyond 0.07, one that becomes 1.6
-/// times too long 10 cm over it comes to 0.12.
+/// The same near and above a crown, where no edge disturbs the speed: in 54 sound missions none exceeds 0.07; a range
+/// that becomes 1.6 times too long 10 cm above the crown reaches 0.12.
 const STEADY: f32 = 0.1;
-/// Age of an estimate that has learnt the bias of its acceleration, s.
+/// Age from which an estimate has learnt the bias of its acceleration, s.
 const LEARNING: f32 = 4.0;
-/// Time for which they must differ, s.
+/// Time for which the speeds must differ, s.
 const BENT_TIME: f32 = 0.05;
-/// Time in which the way flown by it is given back, s, and the way that is another origin instead, m.
+/// Time constant with which the height correction is given back, s, and the correction that becomes an origin reset
+/// instead, m.
 const RETURN_TIME: f32 = 0.5;
 const JUMP: f32 = 0.12;
 
-/// The felt vertical speed, and the way flown by it.
+/// The inertial vertical speed, and the height correction by it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct VerticalFallback {
-    /// Downwards, m/s, and the error of the felt acceleration, m/s².
+    /// Speed downwards, m/s, and bias of the measured acceleration, m/s².
     speed: f32,
     bias: f32,
     differs: HoldTimer,
     /// Age of the estimate.
     age: HoldTimer,
-    /// For how long the felt speed has counted, s; `None` where the estimate's does.
+    /// Time for which the inertial speed has been in use, s; `None` while the estimate's is.
     since: Option<f32>,
-    /// A range began it in this step.
+    /// A range that disagrees has started it in this step.
     misfit: bool,
     /// The vehicle is over a crown and near it.
     pub steady: bool,
-    /// What the estimate's height lacks, down, m, and how often its origin has jumped by that.
+    /// Correction of the estimate's height, m down, and count of the origin resets by it.
     lacks: f32,
     reset_count: u8,
 }
 
 impl VerticalFallback {
-    /// One step of `dt` s at `down` m/s² along world down; it runs while the vehicle `flies` free.
+    /// One step of `dt` s with an acceleration of `down` m/s² along world down; it runs while the vehicle `flies`
+    /// free.
     pub fn step(&mut self, flies: bool, down: f32, estimate: Option<&Estimate>, dt: f32) {
         let (bias, reset_count) = (self.bias, self.reset_count);
         let begun = Self {
@@ -111,7 +116,7 @@ impl VerticalFallback {
         }
         if let Some(since) = self.since {
             e.velocity.z = self.speed;
-            // The inertial sensor alone gives no height for longer.
+            // Dead reckoning gives no height for longer.
             e.age = if since > HEIGHT_AGE {
                 e.age.max(since)
             } else {
@@ -121,13 +126,13 @@ impl VerticalFallback {
         e
     }
 
-    /// The range is found, in this step, not to go as the vehicle does.
+    /// In this step the range is found to disagree with the vehicle's motion.
     pub fn misfit(&self) -> bool {
         self.misfit
     }
 }
 
-/// Nothing gives the height.
+/// The height has no source.
 fn blind(e: &Estimate) -> bool {
     let seen = e.foot.point.is_some() && e.foot.age <= FRESH_AGE;
     !seen && e.age > BLIND_AGE

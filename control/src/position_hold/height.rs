@@ -1,36 +1,36 @@
-//! Height: error to climb rate to thrust, the disturbance fed forward.
+//! Height loop: height error to climb rate to thrust, with disturbance feed-forward.
 
 use super::CLIMB_MAX;
 use crate::maths::scalar;
 
-/// Height error to climb rate, 1/s; climb error to acceleration, 1/s, and to its trim, 1/s².
+/// Gains: height error to climb rate, 1/s; climb error to acceleration, 1/s, and to its trim, 1/s².
 const HEIGHT_GAIN: f32 = 1.5;
 const CLIMB_GAIN: f32 = 3.0;
 const TRIM_GAIN: f32 = 1.0;
-/// Largest trim, m/s²: what the model of the thrust is off.
+/// Largest trim, m/s²: the error of the thrust model.
 const TRIM_MAX: f32 = 1.5;
 /// Largest disturbance fed forward, m/s².
 const DISTURBANCE_MAX: f32 = 3.0;
-/// Farthest that the held height may be, m.
+/// Largest distance of the held height from the vehicle, m.
 pub const LEASH: f32 = 0.5;
-/// Rate at which the thrust is taken away where something carries, and at which it comes back, 1/s.
+/// Rate at which the thrust is withdrawn while contact carries the vehicle, and at which it returns, 1/s.
 const SETTLE_RATE: f32 = 0.5;
 const LIFT_RATE: f32 = 2.0;
 
-/// What the height is like; down is positive.
+/// Input of the height loop; down is positive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State {
     /// From the vehicle down to the held height, m.
     pub error: f32,
-    /// Wished velocity, m/s.
+    /// Commanded velocity, m/s.
     pub wished: f32,
-    /// Change of the wished velocity, m/s²: without it the vehicle falls behind the held height and then overtakes it.
+    /// Commanded acceleration, m/s²: without it the vehicle falls behind the held height and then overtakes it.
     pub gained: f32,
     /// Velocity, m/s.
     pub velocity: f32,
     /// Acceleration that the rotors do not explain, m/s².
     pub disturbance: f32,
-    /// The pilot sinks, and something carries: the rotors hand over the weight.
+    /// The pilot commands a descent in contact with a surface: the rotors hand over the weight.
     pub landing: bool,
 }
 
@@ -53,7 +53,7 @@ impl Default for Height {
 }
 
 impl Height {
-    /// Acceleration to give upwards beyond gravity, m/s², in a step of `dt` s.
+    /// Acceleration setpoint upwards beyond gravity, m/s², in a step of `dt` s.
     pub fn step(&mut self, s: &State, dt: f32) -> f32 {
         let wished = scalar::clamp_abs(s.wished + HEIGHT_GAIN * s.error, CLIMB_MAX);
         let short = s.velocity - wished;

@@ -1,4 +1,4 @@
-//! What lies between the setpoint and the tilt and no sensor shows: the setpoint's filter, and the motors.
+//! Model of the unmeasured lag from setpoint to tilt: the setpoint's filter, and the motors.
 
 use crate::maths::filter::LowPass;
 use crate::maths::scalar;
@@ -6,10 +6,10 @@ use crate::params::Params;
 
 /// Steps of the filter in one step of the law: it runs at 1 kHz.
 const SUBSTEPS: u8 = 10;
-/// Largest second derivative of the tilt, m/s⁴, taken for true.
+/// Limit of the modelled second derivative of the tilt, m/s⁴.
 const TURNING_MAX: f32 = 500.0;
 
-/// A copy of both, forward and right, m/s² and m/s⁴.
+/// State of the model, forward and right, m/s² and m/s⁴.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lag {
     /// First stage of the filter.
@@ -18,7 +18,7 @@ pub struct Lag {
     pub second: [f32; 2],
     /// Second derivative of the tilt, by the motors' thrust.
     pub turning: [f32; 2],
-    /// rad/s.
+    /// Cut-off of the filter, rad/s.
     cutoff: f32,
     attitude_p: f32,
     rate_p: f32,

@@ -1,4 +1,4 @@
-//! The way onto a pipe whose place another computer says, in the axes of the poses: nothing is searched or crossed.
+//! Approach to a pipe whose place another computer reports, in the axes of the poses: without search and crossings.
 
 use super::{ApproachAbort, ApproachPlanner, Phase, View};
 use crate::approach::limits::*;
@@ -14,7 +14,7 @@ impl ApproachPlanner {
         near(target.crown - e.position, TARGET_REACH)
     }
 
-    /// The way to `target`, from where the try began.
+    /// The approach to `target`, relative to the beginning of the attempt.
     pub(super) fn to(self, target: &PipeTarget) -> Self {
         let crown = about_down(target.crown - self.origin, -self.heading);
         Self {
@@ -27,11 +27,12 @@ impl ApproachPlanner {
         }
     }
 
-    /// Follows the newest place of the pipe, as it comes: its noise is smoothed, and the poses' axes may drift.
+    /// Follows the newest reported place: its noise is smoothed, and the poses' axes may drift. Fails if the place is
+    /// missing, out of reach or jumps.
     pub(super) fn follow(&mut self, v: &View, dt: f32) -> Result<(), ApproachAbort> {
         let target = v.target.ok_or(ApproachAbort::TargetStale)?;
         let reach = if self.returns { TARGET_RETURN } else { TARGET_REACH };
-        // It climbs from beside the pipe, or from under its crown.
+        // A climb begins beside the pipe, or under its crown: its reach is not checked.
         if self.phase != Phase::Climb && !near(target.crown - v.position, reach) {
             return Err(ApproachAbort::TargetFar);
         }
@@ -45,8 +46,8 @@ impl ApproachPlanner {
         Ok(())
     }
 
-    /// Height over the crown by which it comes down, as a range would measure it, m. A lens above the centre of mass brings it
-    /// no lower: the belly is below.
+    /// Height over the crown that controls the descent, as a range would measure it, m. A lens above the centre of
+    /// mass does not lower it: the belly is below.
     pub(super) fn clearance(&self, at: Vec3) -> f32 {
         let surface = if self.has_target {
             self.top - UNDER + LOWER
@@ -60,7 +61,7 @@ impl ApproachPlanner {
     }
 }
 
-/// What is `off` from the vehicle can be flown to within `reach` m.
+/// The vehicle can fly by `off`: level at most `reach` m, and down within [`TARGET_BELOW`].
 fn near(off: Vec3, reach: f32) -> bool {
     let (least, most) = TARGET_BELOW;
     let level = off.x * off.x + off.y * off.y;
