@@ -41,19 +41,21 @@ pub enum Task {
     Fly(FlyArgs),
     /// Check in a moment whether a vehicle can fly its mission, by calculation alone.
     ///
-    /// A row each for thrust, throttle, yaw, the control loops, the arms, batteries, wind and grip: value, limit, verdict,
-    /// and what to do if it fails. Exit status: 0 it can fly, 1 it cannot, 2 bad input.
+    /// A row each for thrust, throttle, yaw, the control loops, the arms, batteries, wind and grip: value, limit,
+    /// verdict, and what to do if it fails. Exit status: 0 it can fly, 1 it cannot, 2 bad input.
     Check(CheckArgs),
     /// Lead through the set-up of a vehicle over its board's console, and record it in a protocol.
     ///
     /// Each step names the work for the hands, asks, types the console's commands and judges the answers. Stopped by q,
-    /// Ctrl-C or a lost line, it continues with the first step that has not passed. Answers may be piped in, a line each.
+    /// Ctrl-C or a lost line, it continues with the first step that has not passed. Answers may be piped in, a line
+    /// each.
     /// Exit status: 0 all passed, 1 something failed, skipped or not done, 2 bad input, file or port.
     Bringup(BringupArgs),
     /// Write a board's parameters into a file, compare them with a file, or set them from a file.
     ///
-    /// FILE is the params table of a scenario file. `dump` writes all that the board has, - is stdout. `diff` shows where FILE
-    /// differs from the board. `load` checks FILE as a whole, sets what differs, saves, restarts, and reads back.
+    /// FILE is the params table of a scenario file. `dump` writes all that the board has, - is stdout. `diff` shows
+    /// where FILE differs from the board. `load` checks FILE as a whole, sets what differs, saves, restarts, and reads
+    /// back.
     /// Exit status: 0 done or equal, 1 different, refused by the board or lost on the way, 2 bad file or port.
     Params(ParamsArgs),
     /// Fly touches of the pipe, and draw which are held, refused, flown away from or lost.
@@ -83,8 +85,8 @@ pub enum Task {
     Timing(TimingArgs),
     /// Run recorded sensors or bytes through this stack's own filter, estimators and decoders.
     ///
-    /// FILE is text, plain or gzipped: a line for each measurement (I inertial sample, F flow, R range, L thrust), a table
-    /// whose first line names t_us, gx, gy, gz, ax, ay, az and others, or lines of a time in us and a byte
+    /// FILE is text, plain or gzipped: a line for each measurement (I inertial sample, F flow, R range, L thrust), a
+    /// table whose first line names t_us, gx, gy, gz, ax, ay, az and others, or lines of a time in us and a byte
     /// (docs/recording.md). S and all times count from its first line.
     /// Exit status: 0 read, 2 bad input.
     Recording(RecordingArgs),

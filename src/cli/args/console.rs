@@ -17,7 +17,8 @@ use crate::cli::key;
 #[derive(Args, Debug)]
 pub struct LineArgs {
     /// Console of the board: /dev/ttyUSB0, COM3 or tcp:HOST:PORT, serial ports at 115,200 baud; or over MAVLink
-    /// mavlink:/dev/ttyUSB0 (another rate behind a comma), mavlink:tcp:HOST:PORT, udpin:HOST:PORT (listens) or udpout:HOST:PORT.
+    /// mavlink:/dev/ttyUSB0 (another rate behind a comma), mavlink:tcp:HOST:PORT, udpin:HOST:PORT (listens) or
+    /// udpout:HOST:PORT.
     #[arg(long, value_name = "PORT")]
     pub port: PortName,
     /// File with the key that signs MAVLink, 64 hexadecimal digits, where the board has one.

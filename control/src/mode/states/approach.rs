@@ -15,7 +15,7 @@ use crate::navigation::estimate::Estimate;
 use crate::pilot::stick_positions::{centred, keeps_hold};
 use crate::position_hold::{PositionHold, VelocityCommand};
 
-/// See [`crate::mode::Mode::Approach`].
+/// State of the mode [`crate::mode::Mode::Approach`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Approach {
     pub law: PositionHold,

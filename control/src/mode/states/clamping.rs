@@ -21,7 +21,7 @@ const ACROSS_TIME: f32 = 0.1;
 /// Time beyond `clamp_timeout` for spooling down and proof, s.
 const SPOOL_ALLOWANCE: f32 = 10.0;
 
-/// See [`crate::mode::Mode::Clamping`].
+/// State of the mode [`crate::mode::Mode::Clamping`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clamping {
     pub hold: PipeAttitudeHold,

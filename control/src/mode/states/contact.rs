@@ -17,7 +17,7 @@ const SET_DOWN_TIME: f32 = 0.06;
 /// Throttle above `perch_thr_max` that ends the contact, 1.
 pub const CONTACT_MARGIN: f32 = 0.03;
 
-/// See [`crate::mode::Mode::Contact`].
+/// State of the mode [`crate::mode::Mode::Contact`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
     pub hold: PipeAttitudeHold,

@@ -9,7 +9,7 @@ use crate::mode::inputs::Inputs;
 use crate::mode::reason::Reason;
 use crate::pilot::bench_orders::BenchOrder;
 
-/// See [`crate::mode::Mode::Disarmed`].
+/// State of the mode [`crate::mode::Mode::Disarmed`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Disarmed {
     /// Grip state, retained across motor stop and reset.

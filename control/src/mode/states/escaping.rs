@@ -52,7 +52,7 @@ pub const TAKE_OVER_TIME: f32 = 7.0;
 /// Its stick thrust, share of the weight.
 pub const TAKE_OVER_SHARE: f32 = 0.9;
 
-/// See [`crate::mode::Mode::Escaping`].
+/// State of the mode [`crate::mode::Mode::Escaping`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Escaping {
     grip_memory: GripMemory,

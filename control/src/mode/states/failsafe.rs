@@ -16,7 +16,7 @@ pub const RESUME_TIME: f32 = 1.0;
 /// Roll or pitch stick that resumes flight after a longer silence, share of its travel.
 pub const RESUME_STICK: f32 = 0.3;
 
-/// See [`crate::mode::Mode::Failsafe`].
+/// State of the mode [`crate::mode::Mode::Failsafe`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Failsafe {
     pub cause: Reason,
@@ -69,7 +69,7 @@ impl Behaviour for Failsafe {
         };
     }
 
-    /// Level and sinking; with radio the pilot steers. On a support, horizontal velocity commands are ignored.
+    /// Level and sinking; with radio the pilot steers. Position hold tilts the vehicle only until a support carries it.
     fn rotors(&self, context: &Context, inputs: &Inputs) -> Setpoint {
         match &self.landing_point {
             Some(landing_point) => landing_point.rotors(context),

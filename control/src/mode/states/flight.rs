@@ -15,7 +15,7 @@ const SWITCH_FIRST: f32 = 1.0;
 /// Hand-over time of the collective to a pilot who calls a touch off, s: short, since he may see the vehicle slide.
 const CALL_OFF_TIME: f32 = 0.1;
 
-/// See [`crate::mode::Mode::Flight`].
+/// State of the mode [`crate::mode::Mode::Flight`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flight;
 

@@ -14,7 +14,7 @@ use crate::navigation::estimate::Estimate;
 use crate::pilot::stick_positions::{THROTTLE_CENTRE, THROTTLE_ZONE};
 use crate::position_hold::PositionHold;
 
-/// See [`crate::mode::Mode::Hold`].
+/// State of the mode [`crate::mode::Mode::Hold`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hold {
     pub place: CoastingHold,

@@ -15,7 +15,7 @@ use crate::params::Params;
 use crate::pilot::rc::Sticks;
 use crate::pilot::release_throttle::RELEASE_THROTTLE_MIN;
 
-/// See [`crate::mode::Mode::Perched`].
+/// State of the mode [`crate::mode::Mode::Perched`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Perched {
     /// Closed by the clamp loops, or held by the gears.

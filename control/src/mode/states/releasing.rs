@@ -15,7 +15,7 @@ pub const FREE_TIME: f32 = 0.3;
 /// Time until arms that are not free are reported, s.
 const STUCK_TIME: f32 = 10.0;
 
-/// See [`crate::mode::Mode::Releasing`].
+/// State of the mode [`crate::mode::Mode::Releasing`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Releasing {
     pub hold: PipeAttitudeHold,
