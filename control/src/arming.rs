@@ -41,13 +41,13 @@ macro_rules! arming_checks {
 arming_checks! {
     /// The supply broke down and the board restarted.
     BrownOut = "supply broke down", "a start with a sound supply";
-    /// The chip would go on executing, and executing garbage, when its supply breaks down.
+    /// The brown-out level is not set: on a failing supply the chip would keep running and execute garbage.
     BrownOutLevel = "brown-out level not set", "setting the level (`brownout set`), once for each chip";
-    /// The start-up found something in the chip that the firmware is not made for.
+    /// The start-up checks found a setting of the chip for which the firmware is not built.
     Silicon = "chip not as expected", "a chip and a start as expected";
     /// Parameters are being stored.
     Storing = "storing parameters", "the end of storing";
-    /// Parameters were stored that are not in force.
+    /// Stored parameters are not in force yet.
     Stored = "stored parameters: restart first", "a restart, which puts them in force";
     /// The memory for parameters holds another firmware's data: the defaults are in force.
     StorageForeign = "storage holds another firmware's data", "`save` from the console";
@@ -63,9 +63,9 @@ arming_checks! {
     ImuWrongPart = "inertial sensor: wrong chip", "the driver, when the right part answers";
     /// The vehicle's inertial sensor has failed its self-test.
     ImuSelfTest = "inertial sensor: self-test failed", "the driver, when a self-test passes";
-    /// The vehicle's inertial sensor gives what it cannot have measured.
+    /// The vehicle's inertial sensor delivers implausible samples.
     ImuCorrupt = "inertial sensor garbled", "the driver, when samples are sound";
-    /// The data-ready line of the vehicle's inertial sensor is silent; the part is read by the clock.
+    /// The data-ready line of the vehicle's inertial sensor is silent; the sensor is polled by the clock.
     ImuLineSilent = "inertial sensor: data-ready line silent", "the driver, when edges come again";
     /// No fresh frame from the receiver.
     RcLost = "radio lost", "fresh frames";
@@ -91,27 +91,27 @@ arming_checks! {
     ServoBatterySilent = "servo battery not measured", "the servo battery's input, when it reads a voltage";
     /// The servo battery is below its low voltage.
     ServoBatteryLow = "servo battery low", "another servo battery";
-    /// The analog inputs give nothing.
+    /// The analog inputs deliver no conversions.
     AnalogSilent = "analog inputs silent", "the driver, when inputs answer";
     /// A pressure sensor of a chosen arm is faulty or silent.
     FsrFault = "pressure sensor fault", "the sensor, or another choice of arms";
-    /// What the pressure sensor of arm 1 can read ends too near the grip pressure.
+    /// The range of arm 1's pressure sensor ends too near the grip pressure.
     FsrRange1 = "pressure sensor 1: range too small", "a range that reaches the grip, at the next start";
-    /// What the pressure sensor of arm 2 can read ends too near the grip pressure.
+    /// The range of arm 2's pressure sensor ends too near the grip pressure.
     FsrRange2 = "pressure sensor 2: range too small", "a range that reaches the grip, at the next start";
-    /// What the pressure sensor of arm 3 can read ends too near the grip pressure.
+    /// The range of arm 3's pressure sensor ends too near the grip pressure.
     FsrRange3 = "pressure sensor 3: range too small", "a range that reaches the grip, at the next start";
-    /// What the pressure sensor of arm 4 can read ends too near the grip pressure.
+    /// The range of arm 4's pressure sensor ends too near the grip pressure.
     FsrRange4 = "pressure sensor 4: range too small", "a range that reaches the grip, at the next start";
-    /// The marks of a servo have not been measured: where it stands, and what its arm is pulled by, is not known.
+    /// A servo's marks have not been measured: its position and the pull on its arm are unknown.
     ServoUnmarked = "servo not calibrated", "`calibrate servo` for each, at the next start";
-    /// The sensor on arm 1 gives nothing.
+    /// The sensor on arm 1 is silent.
     ArmSensor1 = "arm sensor 1 silent", "the task `arms`, when the sensor answers";
-    /// The sensor on arm 2 gives nothing.
+    /// The sensor on arm 2 is silent.
     ArmSensor2 = "arm sensor 2 silent", "the task `arms`, when the sensor answers";
-    /// The sensor on arm 3 gives nothing.
+    /// The sensor on arm 3 is silent.
     ArmSensor3 = "arm sensor 3 silent", "the task `arms`, when the sensor answers";
-    /// The sensor on arm 4 gives nothing.
+    /// The sensor on arm 4 is silent.
     ArmSensor4 = "arm sensor 4 silent", "the task `arms`, when the sensor answers";
     /// The flight level misses its deadlines.
     Overruns = "deadlines missed", "a second without misses";

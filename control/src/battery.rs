@@ -1,8 +1,8 @@
 //! Flight battery from voltage and current, servo battery from its voltage.
 //!
-//! [`Monitor::step`] runs at 100 Hz in the task `analog` (V, A, s). A voltage that is no measurement gives no message: the
-//! last one ages, is stale after 500 ms, and the vehicle lands a second later. Thrusts are compensated for the last voltage
-//! meanwhile. A current that is no measurement costs itself alone.
+//! [`Monitor::step`] runs at 100 Hz in the task `analog` (V, A, s). An implausible voltage publishes no message: the
+//! last one ages, is stale after 500 ms, and the vehicle lands a second later; until then thrusts are compensated for
+//! the last voltage. An implausible current drops only the current.
 
 use crate::maths::filter::LowPass;
 use crate::maths::hold_timer::HoldTimer;
@@ -17,13 +17,13 @@ const CURRENT_CUTOFF: f32 = 12.6;
 const RATIO_BOUNDS: (f32, f32) = (0.7, 1.25);
 /// Largest plausible readings: V, A.
 const SANE: (f32, f32) = (60.0, 300.0);
-/// Counts from which a reading may be the rail that a torn lead floats to: full scale less the converter's total error
-/// (5 counts at most: STM32F405 and F765 datasheets, ADC accuracy).
+/// Counts from which a reading may be the rail, to which a torn lead floats: full scale less the converter's total
+/// error (5 counts at most: STM32F405 and F765 datasheets, ADC accuracy).
 const RAIL_COUNTS: u16 = 4090;
-/// Time without a current after which the charge is no longer known, s: 2 % of the battery in hover.
+/// Time without a current after which the charge is unknown, s: 2 % of the battery in hover.
 const UNCOUNTED_MAX: f32 = 10.0;
 
-/// The voltage (or current) of `counts` with `scale` for each; `None` at full scale, where it is that or more.
+/// The voltage (or current) of `counts`, `scale` per count; `None` at full scale, where the input saturates.
 pub fn reading(counts: u16, scale: f32) -> Option<f32> {
     (counts < RAIL_COUNTS).then(|| f32::from(counts) * scale)
 }
@@ -33,7 +33,7 @@ pub fn reading(counts: u16, scale: f32) -> Option<f32> {
 pub struct Battery {
     /// Voltage under load, V, low-passed.
     pub voltage: f32,
-    /// Current, A, low-passed; `None` while its reading is no measurement.
+    /// Current, A, low-passed; `None` while its reading is implausible.
     pub current: Option<f32>,
     /// Charge drawn since power-up, A·s; `None` once too much of it went uncounted.
     pub used: Option<f32>,
@@ -56,8 +56,8 @@ pub struct Monitor {
 }
 
 impl Monitor {
-    /// Adds `voltage` V and `current` A, `dt` s after the last. `None` without a plausible voltage: what was measured
-    /// before is older than this step.
+    /// Adds `voltage` V and `current` A, `dt` s after the last. `None` without a plausible voltage: the last
+    /// measurement is older than this step.
     pub fn step(
         &mut self,
         p: &Params,
@@ -82,7 +82,7 @@ impl Monitor {
         })
     }
 
-    /// The current, and its charge. After a gap the filter starts from the reading.
+    /// Filters the current and counts its charge. After a gap the filter starts from the reading.
     fn step_current(&mut self, current: Option<f32>, dt: f32) -> Option<f32> {
         let Some(current) = current else {
             self.current = None;
@@ -105,20 +105,21 @@ impl Monitor {
     }
 }
 
-/// Time below a level of the servo battery, s: longer than a closing (2.6 to 3.9 s in the paper), under which it sags.
+/// Time below a level of the servo battery before it counts, s: longer than a closing (2.6 to 3.9 s in the paper),
+/// under which the voltage sags.
 pub const SERVO_SAG_TIME: f32 = 5.0;
 
-/// What is known of the servo battery.
+/// State of the servo battery.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ServoSupply {
-    /// No one measures it.
+    /// The board does not measure it.
     #[default]
     NotFitted,
-    /// It should be measured, and nothing fresh is there.
+    /// It should be measured, but its voltage is stale.
     Silent,
     /// Below `servo_batt_low`: no perch begins.
     Low,
-    /// Below `servo_batt_warn`: a perch should end.
+    /// Below `servo_batt_warn`: the vehicle should leave its perch.
     NearEnd,
     /// Above both.
     Good,
@@ -129,7 +130,7 @@ pub enum ServoSupply {
 pub struct ServoBattery {
     /// Voltage under load, V, low-passed.
     pub voltage: f32,
-    /// How it is by that: `Low`, `NearEnd` or `Good`.
+    /// Level of that voltage: `Low`, `NearEnd` or `Good`.
     pub supply: ServoSupply,
 }
 
@@ -148,7 +149,7 @@ impl ServoMonitor {
     pub fn step(&mut self, p: &Params, voltage: Option<f32>, dt: f32) -> Option<ServoBattery> {
         self.unread = scalar::clamp(self.unread + dt, 0.0, 1.0);
         let voltage = voltage.filter(|v| (0.0..SANE.0).contains(v))?;
-        // What is connected at power-up has no closing behind it.
+        // A low battery at power-up is not sagging under a closing: it counts at once.
         let held = if self.voltage.is_none() {
             SERVO_SAG_TIME
         } else {

@@ -1,7 +1,7 @@
-//! Calibration on the table: from samples at rest to what a parameter should be, or to the number that forbids it.
+//! Calibration on the table: turns samples at rest into a parameter's value, or into the number that forbids it.
 //!
-//! Nothing here is kept or applied: the console shows the result and `save` stores it, MAVLink stores it as a parameter
-//! that was set.
+//! The functions neither store nor apply the result: the console shows it and `save` stores it, and MAVLink stores it
+//! as a parameter that was set.
 
 pub mod flow;
 
@@ -12,67 +12,68 @@ use crate::params::Params;
 
 /// Least samples of a mean.
 pub const SAMPLES_MIN: u16 = 100;
-/// Largest spread (standard deviation) of the specific force at rest, m/s²: a table that is touched gives more.
+/// Largest spread (standard deviation) of the specific force at rest, m/s²: touching the table exceeds it.
 pub const FORCE_SPREAD_MAX: f32 = 0.15;
 /// Largest spread of the gyro at rest, rad/s (0.57 deg/s).
 pub const RATE_SPREAD_MAX: f32 = 0.01;
 /// Largest bias of an accelerometer, m/s²: 60 mg, the range of the parameters.
 pub const BIAS_MAX: f32 = 0.6;
-/// Largest lean of a face from the vertical, rad (8°): it takes 1 % off the gravity that this face reads, half of it
-/// goes into the bias (0.05 m/s²).
+/// Largest lean of a face from the vertical, rad (8°): it reduces the gravity that this face reads by 1 %, half of
+/// which goes into the bias (0.05 m/s²).
 pub const FACE_LEAN_MAX: f32 = deg(8.0);
-/// What may be read of gravity on the side that lies below, share of it: the largest bias there is and was taken off
-/// (0.6 m/s² and half of it), the scale and the lean.
+/// Allowed reading of gravity along the side that lies below, share of gravity: covers the largest bias with the one
+/// already subtracted (0.6 m/s² and half of it), the scale and the lean.
 pub const SIDE_SHARE: [f32; 2] = [0.8, 1.2];
-/// Scale of an accelerometer's axis that can be taken out, as of its parameter: beyond it the part is broken.
+/// Scale of an accelerometer's axis that can be corrected, the range of its parameter: beyond it the part is broken.
 pub const SCALE: [f32; 2] = [0.9, 1.1];
 /// Largest spread of the battery's voltage, share of it.
 pub const VOLTAGE_SPREAD_MAX: f32 = 0.01;
-/// Batteries that a meter can have read, V.
+/// Plausible battery voltages of a meter, V.
 pub const METER: [f32; 2] = [3.0, 60.0];
-/// Range of the battery's divider, as of its parameter.
+/// Range of the battery's divider, that of its parameter.
 pub const DIVIDER: [f32; 2] = [1.0, 60.0];
 
 /// Largest spread of a pressure at rest, Pa.
 pub const PRESSURE_SPREAD_MAX: f32 = 30.0;
-/// Pressures that a weight for the calibration makes, Pa: a fifth of a grip at least, and what the sensor bears.
+/// Pressures of a calibration weight, Pa: at least a fifth of a grip, at most the sensor's limit.
 pub const WEIGHT_PRESSURE: [f32; 2] = [200.0, 5000.0];
-/// Range of a sensor's conductance over the common one, and of its zero (Pa), as of their parameters.
+/// Range of a sensor's conductance relative to the common one, that of its parameter.
 pub const TRIM: [f32; 2] = [0.2, 5.0];
-/// The zero's.
+/// Range of a sensor's zero, Pa, that of its parameter.
 pub const ZERO: [f32; 2] = [0.0, 300.0];
 /// Largest spread of an arm's tilt at rest, rad.
 pub const TILT_SPREAD_MAX: f32 = 0.02;
-/// Turn of an arm that is bent up by hand, rad: enough for its sign, and not another thing.
+/// Rotation of an arm that is bent up by hand, rad: the lower bound suffices for its sign, the upper one excludes other
+/// motions.
 pub const TURN: [f32; 2] = [0.1, 1.5];
-/// Largest tilt that the sensor of a straight arm may show, rad, as of its parameter.
+/// Largest tilt that the sensor of a straight arm may show, rad, that of its parameter.
 pub const ARM_ZERO_MAX: f32 = 0.6;
 
 /// Parameters that hold the bias of the accelerometer's axes.
 pub const BIAS: [&str; 3] = ["accel_bias_x", "accel_bias_y", "accel_bias_z"];
-/// And their scale.
+/// Parameters that hold their scale.
 pub const SCALES: [&str; 3] = ["accel_scale_x", "accel_scale_y", "accel_scale_z"];
 
-/// The value to a thousandth: no calibration is better.
+/// Rounds the value to a thousandth: no calibration is more precise.
 pub fn thousandths(value: f32) -> f32 {
     let half = if value < 0.0 { -0.5 } else { 0.5 };
     (value * 1000.0 + half) as i32 as f32 / 1000.0
 }
 
-/// What is wrong with the samples: the number, and what is allowed.
+/// Reason for which samples are unfit: the quantity, its value and its limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unfit {
-    /// What it is.
+    /// Name of the quantity.
     pub what: &'static str,
-    /// What was found.
+    /// Measured value.
     pub value: f32,
-    /// Least and most that is allowed.
+    /// Least and largest allowed value.
     pub allowed: [f32; 2],
-    /// Unit of all three.
+    /// Unit of the value and both limits.
     pub unit: &'static str,
 }
 
-/// `Ok` for a value within `allowed`; a value that is no number is not.
+/// `Ok` for a value within `allowed`; NaN is not.
 pub(crate) fn within(
     what: &'static str,
     value: f32,
@@ -97,12 +98,12 @@ pub(crate) fn within(
 pub struct Samples {
     count: u16,
     mean: Vec3,
-    /// Squares of the distances to the mean.
+    /// Sum of the squared distances to the mean.
     squares: Vec3,
 }
 
 impl Samples {
-    /// Takes one sample; after 65,535 no more. One that is no number spoils them all.
+    /// Takes one sample; ignores samples after 65,535. A sample that is not finite spoils the set.
     pub fn add(&mut self, sample: Vec3) {
         if self.count < u16::MAX {
             self.count += 1;
@@ -125,7 +126,7 @@ impl Samples {
         sqrt(widest / f32::from(self.count.max(1)))
     }
 
-    /// The mean of enough samples that are quiet: spread at most `most` in `unit`.
+    /// The mean, if the samples are enough and quiet: spread at most `most` in `unit`.
     fn quiet_mean(&self, most: f32, unit: &'static str) -> Result<Vec3, Unfit> {
         let enough = [f32::from(SAMPLES_MIN), f32::from(u16::MAX)];
         within("samples", f32::from(self.count), enough, "")?;
@@ -136,27 +137,27 @@ impl Samples {
     }
 }
 
-/// What the gyro reads at rest, rad/s.
+/// Gyro reading at rest, rad/s.
 ///
 /// # Errors
-/// Samples that are few or noisy.
+/// Samples are too few or too noisy.
 pub fn rest_rate(samples: &Samples) -> Result<Vec3, Unfit> {
     samples.quiet_mean(RATE_SPREAD_MAX, "rad/s")
 }
 
-/// What is made of the inertial sensor's readings already: what is found counts on top of it.
+/// Correction that the inertial sensor's readings already contain; a new result adds to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AccelFit {
     /// Bias of each axis of the board, m/s².
     pub bias: Vec3,
-    /// What each axis of the board reads over what there is.
+    /// Reading of each axis of the board over the true value.
     pub scale: Vec3,
-    /// From the board's axes to the vehicle's.
+    /// Rotation from the board's axes to the vehicle's.
     pub mounting: Mounting,
 }
 
 impl AccelFit {
-    /// That of the parameters.
+    /// The correction by the parameters.
     pub fn of(p: &Params) -> Self {
         Self {
             bias: Vec3::new(p.accel_bias_x, p.accel_bias_y, p.accel_bias_z),
@@ -165,18 +166,19 @@ impl AccelFit {
         }
     }
 
-    /// The bias with `error` (m/s², vehicle) taken off as well.
+    /// The bias with `error` (m/s², vehicle) subtracted as well.
     fn beyond(&self, error: Vec3) -> Vec3 {
         self.bias + self.mounting.to_board(error).scale_by(self.scale)
     }
 }
 
-/// The accelerometer's bias by one rest on a level table, m/s², board; samples were read with the fit `now`.
+/// Accelerometer bias from one rest on a level table, m/s², board axes; the samples were read with the correction
+/// `now`.
 ///
-/// A table that leans by 1° goes into x and y as 0.17 m/s², and an error of the scale into z.
+/// A table that leans by 1° adds 0.17 m/s² to x and y, and an error of the scale goes into z.
 ///
 /// # Errors
-/// Samples that are few or noisy, or a bias that no sound part on a level table has.
+/// Samples are too few or too noisy, or the bias is impossible for a sound part on a level table.
 pub fn level(samples: &Samples, now: &AccelFit) -> Result<Vec3, Unfit> {
     let mean = samples.quiet_mean(FORCE_SPREAD_MAX, "m/s2")?;
     checked_bias(now.beyond(mean + Vec3::new(0.0, 0.0, GRAVITY)))
@@ -190,7 +192,7 @@ fn checked_bias(bias: Vec3) -> Result<Vec3, Unfit> {
     Ok(bias)
 }
 
-/// A side of the vehicle that can lie below.
+/// Side of the vehicle that lies below.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Face {
     /// Belly down: level.
@@ -208,7 +210,7 @@ pub enum Face {
 }
 
 impl Face {
-    /// All six, in the order in which they are asked for.
+    /// All six, in the order of the procedure.
     pub const ALL: [Self; 6] = [
         Self::Belly,
         Self::Back,
@@ -218,7 +220,7 @@ impl Face {
         Self::Left,
     ];
 
-    /// How the vehicle lies.
+    /// Orientation of the vehicle, in words.
     pub const fn text(self) -> &'static str {
         match self {
             Self::Belly => "level, belly down",
@@ -248,14 +250,14 @@ impl Face {
 pub struct SixFaces {
     /// Bias of each axis of the board, m/s².
     pub bias: Vec3,
-    /// What each axis of the board reads over what there is.
+    /// Reading of each axis of the board over the true value.
     pub scale: Vec3,
 }
 
 /// The mean over one rest with `face` down, m/s².
 ///
 /// # Errors
-/// Samples that are few or noisy, or another side that lies below, or one that leans.
+/// Samples are too few or too noisy, another side lies below, or the vehicle leans.
 pub fn face(samples: &Samples, face: Face) -> Result<Vec3, Unfit> {
     let mean = samples.quiet_mean(FORCE_SPREAD_MAX, "m/s2")?;
     let expected = face.force();
@@ -268,16 +270,16 @@ pub fn face(samples: &Samples, face: Face) -> Result<Vec3, Unfit> {
     Ok(mean)
 }
 
-/// Bias and scale from the means with each side down, in the order of [`Face::ALL`], read with the fit `now`. A
-/// table that leans does no harm: of each axis only the two faces count in which it is vertical.
+/// Bias and scale from the means with each side down, in the order of [`Face::ALL`], read with the correction `now`. A
+/// leaning table does no harm: each axis uses only the two faces in which it is vertical.
 ///
 /// # Errors
-/// A bias or a scale that no sound part has.
+/// A bias or a scale that is impossible for a sound part.
 pub fn six_faces(means: &[Vec3; 6], now: &AccelFit) -> Result<SixFaces, Unfit> {
     let [belly, back, nose, tail, right, left] = means;
     let centre = Vec3::new(tail.x + nose.x, left.y + right.y, back.z + belly.z) * 0.5;
     let span = Vec3::new(tail.x - nose.x, left.y - right.y, back.z - belly.z);
-    // Of an axis and of its opposite the scale is the same.
+    // The scale is the same for both directions of an axis.
     let share = now.mounting.to_board(span * (0.5 / GRAVITY)).map(f32::abs);
     let scale = share.scale_by(now.scale);
     for (name, value) in ["scale of x", "scale of y", "scale of z"]
@@ -292,10 +294,10 @@ pub fn six_faces(means: &[Vec3; 6], now: &AccelFit) -> Result<SixFaces, Unfit> {
     })
 }
 
-/// The direction that the firmware takes to point down in this rest.
+/// Axis of the vehicle that points down in this rest, as the firmware reads it.
 ///
 /// # Errors
-/// Samples that are few or noisy, or gravity along none of them.
+/// Samples are too few or too noisy, or gravity lies along none of the axes.
 pub fn below(samples: &Samples) -> Result<Direction, Unfit> {
     let [x, y, z] = samples.quiet_mean(FORCE_SPREAD_MAX, "m/s2")?.to_array();
     // Specific force points up.
@@ -311,11 +313,11 @@ pub fn below(samples: &Samples) -> Result<Direction, Unfit> {
     Ok(if force > 0.0 { positive } else { negative })
 }
 
-/// The divider with which the battery reads what a meter reads, `meter` V; with `divider` it reads the mean of
+/// Divider that makes the battery's reading equal to a meter's, `meter` V; with `divider` the battery reads the mean of
 /// `samples` (V, along x).
 ///
 /// # Errors
-/// Samples that are few or noisy, a meter's reading that is no battery's, or a divider out of its range.
+/// Samples are too few or too noisy, the meter's reading is implausible, or the divider is out of its range.
 pub fn divider(samples: &Samples, divider: f32, meter: f32) -> Result<f32, Unfit> {
     within("the meter's reading", meter, METER, "V")?;
     let most = VOLTAGE_SPREAD_MAX * clamp(samples.mean().x.abs(), 1.0, 100.0);
@@ -326,20 +328,20 @@ pub fn divider(samples: &Samples, divider: f32, meter: f32) -> Result<f32, Unfit
     Ok(new)
 }
 
-/// What makes a pressure of a sensor's conductance beside what all have in common.
+/// Correction of one pressure sensor relative to the common model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FsrFit {
-    /// Its conductance over the common one.
+    /// Conductance over the common one.
     pub trim: f32,
-    /// What it shows while nothing presses it, Pa.
+    /// Reading of the unloaded sensor, Pa.
     pub zero: f32,
 }
 
-/// The fit with which the sensor shows nothing when `empty` and `pressure` (Pa) when `loaded`; pressures (Pa, along x)
-/// were read with the fit `now`.
+/// Correction with which the sensor reads 0 when `empty` and `pressure` (Pa) when `loaded`; the samples (Pa, along x)
+/// were read with the correction `now`.
 ///
 /// # Errors
-/// Samples that are few or noisy, a weight that is too small or too large, or a fit out of its range.
+/// Samples are too few or too noisy, the weight is too small or too large, or the correction is out of its range.
 pub fn pressure_sensor(
     empty: &Samples,
     loaded: &Samples,
@@ -358,27 +360,27 @@ pub fn pressure_sensor(
     Ok(FsrFit { trim, zero })
 }
 
-/// What makes a tilt of what an arm's sensor shows.
+/// Correction of an arm's tilt sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ArmFit {
-    /// 1, or -1 for a sensor that is mounted the other way round.
+    /// 1, or -1 for a sensor that is mounted in reverse.
     pub sign: f32,
-    /// Tilt that it shows while the arm is straight, rad, by this sign.
+    /// Reading of a straight arm after the sign, rad.
     pub zero: f32,
 }
 
 impl ArmFit {
-    /// The tilt of an arm whose sensor shows `shown`, rad.
+    /// Tilt of an arm whose sensor reads `shown`, rad.
     pub fn tilt(&self, shown: f32) -> f32 {
         self.sign * shown - self.zero
     }
 }
 
-/// The fit of a sensor on an arm that was held straight, and then bent up; tilts (rad, along x) were read with the fit
-/// `now`.
+/// Correction of the sensor of an arm that was held straight and then bent up; the tilts (rad, along x) were read with
+/// the correction `now`.
 ///
 /// # Errors
-/// Samples that are few or noisy, an arm that was hardly bent, or a zero out of its range.
+/// Samples are too few or too noisy, the arm was hardly bent, or the zero is out of its range.
 pub fn arm_sensor(straight: &Samples, up: &Samples, now: ArmFit) -> Result<ArmFit, Unfit> {
     let [straight, up] = [
         straight.quiet_mean(TILT_SPREAD_MAX, "rad")?.x,

@@ -1,21 +1,22 @@
 //! Gripper controller: contact pressure in, tendon force out.
 //!
 //! [`Gripper::step`] runs at 100 Hz in the task `clamp`. Forces are along the tendon (N), pressures on the sensor (Pa),
-//! tilts positive with the tip up (rad). A late step delays the control; 200 ms without a step hold the servos, and
-//! with them the grip.
+//! tilts positive with the tip up (rad). A late step delays the control; after 200 ms without a step the servos hold
+//! their angle, and with it the grip.
 //!
-//! Each arm bends down steadily until its sensor feels a touch. The force is then set to the tendon's tension, which
-//! lags in motion, and a PID leads the pressure along a reference that approaches the target from below. On release the
-//! force falls at a limited rate.
+//! Each arm bends down steadily until its sensor detects a touch. The force is then set to the tendon's tension, which
+//! lags in motion, and a PID controls the pressure along a reference that approaches the target from below. On release
+//! the force falls at a limited rate.
 //!
-//! Two feed-forwards: the arm's stiffness sets the rise, and a tendon force in proportion to the rotor's thrust balances
-//! what this bends the arm off the pipe, so the pressure hardly moves when the rotors stop. A thrust at the tip and a
-//! tendon along the arm bend a beam differently: how much each does, free and on the pipe, are two parameters.
+//! Two feed-forwards: the arm's stiffness sets the rate of rise, and a tendon force in proportion to the rotor's thrust
+//! balances the thrust's bending of the arm off the pipe, so the pressure hardly changes when the rotors stop. A thrust
+//! at the tip and a tendon along the arm bend a beam differently: two parameters give the ratio, for a free arm and on
+//! the pipe.
 //!
 //! | word | meaning |
 //! |---|---|
 //! | force | asked of a tendon |
-//! | tension | what the servo can be giving, by angle and tilt; it lags behind the force |
+//! | tension | the servo's possible force on the tendon, by angle and tilt; it lags behind the force |
 //! | lag | force less tension |
 //! | touch | pressure above the sensor's threshold |
 //! | hold position | the servo stays, whatever the force, until the tension is known after a restart |
@@ -66,9 +67,10 @@ pub struct ArmOutput {
 pub struct GripperOutput {
     /// Per arm.
     pub arms: PerArm<ArmOutput>,
-    /// All chosen arms (at least one) hold, were within the tolerance together for the dwell time, and lay round a pipe.
+    /// All chosen arms (at least one) hold, were within the tolerance together for the dwell time, and are bent as
+    /// round a pipe.
     pub proven: bool,
-    /// Why they do not, where all else is given.
+    /// Reason for which the geometry alone prevents the proof.
     pub misfit: Option<Misfit>,
     /// Every arm is free.
     pub released: bool,
@@ -84,7 +86,7 @@ pub struct Gripper {
 }
 
 impl Gripper {
-    /// Resumes the loops of closed arms (those with a force) after a restart, with the responses that they had learnt.
+    /// Resumes the loops of closed arms (those with a force) after a restart, with their learnt responses.
     pub fn resume(
         force: PerArm<f32>,
         fault: PerArm<Option<GripFault>>,
@@ -109,7 +111,8 @@ impl Gripper {
             released: true,
             ..GripperOutput::default()
         };
-        // Arms that let go one after another turn the body about the last: all tendons are slack at once.
+        // Arms that release one after another would turn the body about the last one: all tendons become slack
+        // together.
         let opening = self.arms.iter().zip(input).filter(|(_, i)| !i.close);
         let most = opening.map(|(arm, _)| arm.force).fold(0.0, f32::max);
         let (mut holding, mut within) = (input.iter().any(|i| i.close), true);
@@ -123,7 +126,8 @@ impl Gripper {
             within &= !input.close || (grip.pressure - cfg.demand.pressure).abs() <= cfg.demand.tolerance;
             out.released &= arm.is_free(input.pressure);
         }
-        // A proven grip is doubted by arm only: a push moves the pressures without loosening it.
+        // A proven grip is doubted for each arm alone: a push changes the pressures together without loosening the
+        // grip.
         self.together = if within {
             scalar::clamp(self.together + dt, 0.0, 10.0)
         } else {
@@ -142,7 +146,7 @@ impl Gripper {
         out
     }
 
-    /// The closed arms whose tilt is known.
+    /// The closed arms with a known tilt.
     fn laid(&self, cfg: &Config, input: &PerArm<ArmInput>) -> PerArm<Option<Laid>> {
         let mut laid = [None; 4];
         for ((slot, arm), input) in laid.iter_mut().zip(&self.arms).zip(input) {

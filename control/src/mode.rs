@@ -1,8 +1,8 @@
 //! The vehicle's modes, and the mode logic, stepped at 100 Hz.
 //!
-//! `modes` names them; each has a file in `states` with its fields (`behaviour::Behaviour`); `context` holds what outlives
-//! it. `table::transitions` lists the transitions by priority, shown in `docs/modes.md`, with conditions in `table::guards`
-//! and entry functions in `table::entries`.
+//! `modes` lists the modes; each has a file in `states` with its fields (`behaviour::Behaviour`); `context` holds the
+//! data that outlive a mode. `table::transitions` lists the transitions by priority, as printed in `docs/modes.md`;
+//! `table::guards` has their conditions and `table::entries` their entry functions.
 
 mod behaviour;
 mod context;

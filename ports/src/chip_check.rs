@@ -1,4 +1,4 @@
-//! Checks of the chip that the start-up makes: what was read of a setting, and what the firmware is made for.
+//! Start-up checks of the chip: each compares a setting's reading with the value for which the firmware is built.
 
 use heapless::{String, Vec};
 use sophie_control::arming::ArmingInhibit;
@@ -13,7 +13,7 @@ pub struct ChipCheck {
     pub name: &'static str,
     /// The reading.
     pub read: String<READ>,
-    /// What the firmware is made for.
+    /// The value for which the firmware is built.
     pub expected: &'static str,
     /// The reading is as expected.
     pub ok: bool,

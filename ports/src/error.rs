@@ -1,13 +1,13 @@
-//! Why a port gave nothing.
+//! Errors of the ports.
 
-/// Why a port gave nothing.
+/// Why a port returned no value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PortError {
     /// The part did not answer in time.
     Timeout,
-    /// The part answered with something that fails its own check.
+    /// The part's answer fails its own check.
     Corrupt,
-    /// The part is not there or was never set up.
+    /// The part is missing or was never set up.
     Absent,
     /// Another part answers.
     WrongPart,

@@ -1,6 +1,7 @@
-//! The ports of the SOPHIE flight stack: what a board implements and a driver gives, and the messages that pass through.
+//! The ports of the SOPHIE flight stack: interfaces that boards and drivers implement, and the messages that pass
+//! through.
 //!
-//! Drivers and tasks meet here and do not know each other. Every unit is SI unless said otherwise.
+//! Drivers and tasks both depend on this crate and not on each other. Units are SI unless noted.
 
 #![no_std]
 #![deny(

@@ -1,13 +1,13 @@
-//! Memory that outlives a reset, and what caused the reset.
+//! Memory that survives a reset, and the cause of the reset.
 
 /// Words of one copy of the retained state, whose layout is the tasks'.
 pub const WORDS: usize = 17;
 /// One copy as it lies in memory.
 pub type Words = [u32; WORDS];
 
-/// Memory that outlives a reset, though not a loss of power.
+/// Memory that survives a reset, but not a loss of power.
 pub trait Retain {
-    /// Keeps `words` as the second copy or the first. A reset in the midst of it may spoil this copy, never the other.
+    /// Stores `words` as the second copy or the first. A reset during the call may spoil this copy, never the other.
     fn keep(&mut self, second: bool, words: &Words);
 }
 
@@ -28,7 +28,7 @@ pub enum StartCause {
 }
 
 impl StartCause {
-    /// Memory is noise.
+    /// The retained memory is noise after this start.
     pub const fn loses_memory(self) -> bool {
         matches!(self, Self::PowerOn | Self::BrownOut)
     }

@@ -1,4 +1,4 @@
-//! Sensors of the vehicle. Every unit is SI unless said otherwise.
+//! Sensors of the vehicle. Units are SI unless noted.
 
 use embassy_time::{Duration, Instant};
 use sophie_control::allocation::wrench::PerArm;
@@ -9,17 +9,17 @@ use sophie_control::navigation::flow_range_sample::GroundView;
 
 use crate::error::PortError;
 
-/// Most samples that an inertial sensor hands over at once.
+/// Largest number of samples in one batch of an inertial sensor.
 pub const IMU_BATCH: usize = 8;
 
-/// A read of the inertial sensor that takes longer is dropped, and made again.
+/// Limit of one read of the inertial sensor; a longer one is dropped and repeated.
 pub const IMU_SILENCE: Duration = Duration::from_millis(3);
 /// Limit of one reading of the barometer: most of a period, after which the next one begins.
 pub const BAROMETER_READING: Duration = Duration::from_millis(36);
 
 /// The vehicle's inertial sensor.
 pub trait Imu {
-    /// What is handed over at once: no more room than the part's driver fills, since it is copied at each read.
+    /// One batch of samples: no larger than the driver needs, since each read copies it.
     type Batch: AsRef<[ImuReading]>;
 
     /// Samples per second: a whole multiple of 1 kHz within 2 %, for which the filters are designed.
@@ -32,12 +32,12 @@ pub trait Imu {
     /// A silent or garbled sensor.
     async fn read(&mut self) -> Result<Self::Batch, PortError>;
 
-    /// When the newest sample that was read was ready in the part: its data-ready, not the end of the transfer. While the
-    /// line is silent, when the part was asked for it.
+    /// Time at which the newest sample was ready in the part: its data-ready edge, not the end of the transfer. While
+    /// the line is silent, the time of the request.
     fn ready_at(&self) -> Instant;
 
-    /// The data-ready line is silent for good, or again and again, and samples are read by the clock. A port without such
-    /// a line has none that could be silent.
+    /// The data-ready line is silent for good, or again and again, and the samples are read by the clock. A port
+    /// without such a line returns false.
     fn line_silent(&self) -> bool {
         false
     }
@@ -55,10 +55,10 @@ pub trait ArmImus {
 
 /// The board's barometer.
 pub trait Barometer {
-    /// A board that has none spawns no task for it.
+    /// False for a board without a barometer, which spawns no task for it.
     const FITTED: bool;
 
-    /// Measures once, within [`BAROMETER_READING`]: waits for it and holds no bus meanwhile.
+    /// Measures once, within [`BAROMETER_READING`]; holds no bus while it waits.
     ///
     /// # Errors
     /// A silent, absent or garbled part.
@@ -83,13 +83,13 @@ pub struct AnalogFrame {
     pub battery_voltage: u16,
     /// Pin of the current sensor.
     pub battery_current: u16,
-    /// Pin of the servo battery's voltage; anything where nothing is connected.
+    /// Pin of the servo battery's voltage; arbitrary if not connected.
     pub servo_battery: u16,
 }
 
 /// The analog inputs.
 pub trait Analog {
-    /// Voltage at a pin for each count, V. What it means of the battery, the parameters say.
+    /// Voltage at a pin per count, V. The parameters convert it to the battery's voltage.
     fn volts_per_count(&self) -> f32;
 
     /// Converts all inputs once.
@@ -99,11 +99,12 @@ pub trait Analog {
     async fn read(&mut self) -> Result<AnalogFrame, PortError>;
 }
 
-/// The protocol of a module of optical flow and range: what it sees out of the bytes of its line, however these are cut.
+/// Decoder of an optical-flow and range module: extracts measurements from the bytes of its line, however these are
+/// split.
 pub trait GroundDecoder {
-    /// Takes bytes that were there at `at`; gives the newest flow and range when they held one.
+    /// Takes bytes received at `at`; returns the newest flow and range if the bytes completed one.
     fn take(&mut self, bytes: &[u8], at: Instant) -> Option<GroundView>;
 
-    /// The line has failed: bytes are missing.
+    /// The line failed: bytes are missing.
     fn broken(&mut self);
 }

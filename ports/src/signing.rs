@@ -1,11 +1,11 @@
-//! MAVLink's signing key, as it is stored.
+//! MAVLink's signing key, in its stored form.
 
-/// The secret that both ends know. It is never shown.
+/// The secret shared by both ends. It is never printed.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Key([u8; 32]);
 
 impl Key {
-    /// Length of its text.
+    /// Length of the key as text, in hexadecimal digits.
     pub const DIGITS: usize = 64;
 
     /// From its bytes.
@@ -44,32 +44,32 @@ impl core::fmt::Debug for Key {
     }
 }
 
-/// What is stored of signing.
+/// Stored state of signing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Record {
     /// The secret.
     pub key: Key,
-    /// No frame with a later time has been taken, in units of 10 µs since 2015.
+    /// Upper bound of every accepted time stamp, in units of 10 µs since 2015.
     pub bound: u64,
 }
 
 impl Record {
-    /// A key that has signed nothing yet.
+    /// A key that has not signed anything yet.
     pub const fn fresh(key: Key) -> Self {
         Self { key, bound: 0 }
     }
 }
 
-/// What is known of the stored key.
+/// Result of reading the stored key.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Stored {
-    /// None is stored.
+    /// No key is stored.
     #[default]
     None,
-    /// This one.
+    /// The stored key.
     Key(Record),
-    /// The storage cannot be read: there may be one.
+    /// The storage cannot be read and may hold a key.
     Unreadable,
-    /// There may have been one in what could not be read and was erased: as good as unreadable until one is set, or none.
+    /// The unreadable part was erased and may have held a key: treated as unreadable until a key is set or removed.
     Lost,
 }

@@ -1,5 +1,4 @@
-//! How deep the board's one stack has been. All levels share it, and one that overflows ends the run with the motors
-//! stopped.
+//! Greatest depth of the board's one stack. All levels share it, and an overflow ends the run with the motors stopped.
 
 use core::fmt::Write;
 
@@ -7,23 +6,23 @@ use heapless::String;
 
 use crate::chip_check::{ChipCheck, READ};
 
-/// Least share of the stack that is to stay unused, parts of it: what no test has reached, such as every level at its
-/// deepest at once or a driver's handler of errors, has this room.
+/// Share of the stack that must stay unused, as its inverse: room for depths that no test has reached, such as every
+/// level at its deepest at once or a driver's error handler.
 const RESERVE: u32 = 4;
 
-/// Names of the rows of [`StackUse`].
+/// Name of the row for the start-up.
 pub const AT_START: &str = "stack at start-up";
-/// See [`AT_START`].
+/// Name of the row for the time since.
 pub const SINCE: &str = "stack since";
 
-/// Bytes of the stack, and the most that were in use.
+/// Size of the stack and its greatest depth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StackUse {
-    /// Its size.
+    /// Size, bytes.
     pub bytes: u32,
-    /// Greatest depth while the board started.
+    /// Greatest depth while the board started, bytes.
     pub start: u32,
-    /// Greatest depth since.
+    /// Greatest depth since then, bytes.
     pub flight: u32,
 }
 
@@ -33,12 +32,12 @@ impl StackUse {
         !self.leaves_reserve(self.start) || !self.leaves_reserve(self.flight)
     }
 
-    /// As a row of what is looked at in the chip.
+    /// The depth at start-up, as a row of the chip's checks.
     pub fn at_start(&self) -> ChipCheck {
         self.look(AT_START, self.start)
     }
 
-    /// See [`Self::at_start`].
+    /// The depth since start-up, as a row of the chip's checks.
     pub fn in_flight(&self) -> ChipCheck {
         self.look(SINCE, self.flight)
     }

@@ -1,19 +1,19 @@
-//! Where parameters and the signing key outlive power.
+//! Storage of parameters and of the signing key without power.
 
 use sophie_control::params::Params;
 
 use crate::signing::{Record, Stored};
 
-/// What reading the stored parameters gave.
+/// Result of reading the stored parameters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Loaded {
-    /// Parameters taken over.
+    /// Number of parameters loaded.
     pub taken: u16,
-    /// Stored values that were left out: unknown here, or no longer allowed.
+    /// Number of stored values that were ignored: unknown here, or outside their present range.
     pub refused: u16,
-    /// The storage is damaged, or does not answer: what could not be read keeps its default.
+    /// The storage is damaged or does not answer: unread parameters keep their defaults.
     pub unreadable: bool,
-    /// Whose data lie there instead of parameters, where that is another firmware; the defaults are in force.
+    /// Name of another firmware whose data occupy the storage; the defaults are in force.
     pub foreign: Option<&'static str>,
     /// MAVLink's key.
     pub signing: Stored,
@@ -22,14 +22,14 @@ pub struct Loaded {
 /// Why parameters were not stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StorageError {
-    /// They do not fit.
+    /// The parameters do not fit.
     Full,
-    /// The memory does not keep what is written to it, or does not answer.
+    /// The memory does not keep written data, or does not answer.
     Broken,
 }
 
 impl StorageError {
-    /// What is wrong, for people.
+    /// Error text for people.
     pub const fn text(self) -> &'static str {
         match self {
             Self::Full => "the storage is full",
@@ -38,27 +38,28 @@ impl StorageError {
     }
 }
 
-/// Where parameters outlive power.
+/// Storage of parameters without power.
 pub trait Storage {
-    /// The parameters of this board when nothing is stored.
+    /// Defaults of this board, in force if nothing is stored.
     fn defaults(&self) -> &'static Params {
         &Params::DEFAULT
     }
 
-    /// Puts what is stored into `params`, which holds the defaults. Blank storage changes nothing and is no fault.
+    /// Loads the stored parameters into `params`, which holds the defaults. Blank storage changes nothing and reports
+    /// no error.
     async fn load(&mut self, params: &mut Params) -> Loaded;
 
-    /// Stores every parameter that differs from its default, and nothing else; whatever was damaged before is gone then.
-    /// May stall the processor for a second: only while the motors stand still.
+    /// Stores exactly the parameters that differ from their defaults; this also removes damaged entries. May stall the
+    /// processor for a second: call only while the motors are stopped.
     ///
     /// # Errors
-    /// Storage that is full or broken. What was stored before may be lost.
+    /// The storage is full or broken; the previous parameters may be lost.
     async fn save(&mut self, params: &Params) -> Result<(), StorageError>;
 
-    /// Stores MAVLink's key, or that there is none, and leaves the stored parameters as they are. May stall the processor
-    /// as [`Self::save`] does.
+    /// Stores MAVLink's key, or its absence, and keeps the stored parameters. May stall the processor as [`Self::save`]
+    /// does.
     ///
     /// # Errors
-    /// Storage that is full, broken, or not readable: it keeps what it has then.
+    /// The storage is full, broken, or not readable; its contents then stay unchanged.
     async fn save_signing(&mut self, signing: Option<Record>) -> Result<(), StorageError>;
 }

@@ -32,28 +32,30 @@ struct Cli {
     fly: FlyArgs,
 }
 
-/// What this process is to do.
+/// The subcommand of this process, with its options.
 #[derive(Debug, Subcommand)]
 pub enum Task {
     /// Fly a mission and report it (the default; the word may be left out).
     ///
     /// Exit status: 0 mission accomplished, 1 not accomplished, 2 bad input or unwritable output.
     Fly(FlyArgs),
-    /// Check whether a vehicle can fly its mission, in a moment and without flying it.
+    /// Check in a moment whether a vehicle can fly its mission, by calculation alone.
     ///
-    /// A row each for thrust, throttle, yaw, the control loops, the arms, batteries, wind and grip: value, limit, verdict,
-    /// and what to do where it fails. Exit status: 0 it can fly, 1 it cannot, 2 bad input.
+    /// A row each for thrust, throttle, yaw, the control loops, the arms, batteries, wind and grip: value, limit,
+    /// verdict, and what to do if it fails. Exit status: 0 it can fly, 1 it cannot, 2 bad input.
     Check(CheckArgs),
-    /// Lead through the set-up of a vehicle over its board's console, and write a protocol.
+    /// Lead through the set-up of a vehicle over its board's console, and record it in a protocol.
     ///
-    /// Each step says what to do with hands, asks, types the console's commands and judges the answers. Stopped by q,
-    /// Ctrl-C or a lost line, it continues with the first step that has not passed. Answers may be piped in, a line each.
+    /// Each step names the work for the hands, asks, types the console's commands and judges the answers. Stopped by q,
+    /// Ctrl-C or a lost line, it continues with the first step that has not passed. Answers may be piped in, a line
+    /// each.
     /// Exit status: 0 all passed, 1 something failed, skipped or not done, 2 bad input, file or port.
     Bringup(BringupArgs),
     /// Write a board's parameters into a file, compare them with a file, or set them from a file.
     ///
-    /// FILE is the params table of a scenario file. `dump` writes all that the board has, - is stdout. `diff` shows where FILE
-    /// differs from the board. `load` checks FILE as a whole, sets what differs, saves, restarts, and reads back.
+    /// FILE is the params table of a scenario file. `dump` writes all that the board has, - is stdout. `diff` shows
+    /// where FILE differs from the board. `load` checks FILE as a whole, sets what differs, saves, restarts, and reads
+    /// back.
     /// Exit status: 0 done or equal, 1 different, refused by the board or lost on the way, 2 bad file or port.
     Params(ParamsArgs),
     /// Fly touches of the pipe, and draw which are held, refused, flown away from or lost.
@@ -61,7 +63,7 @@ pub enum Task {
     /// Half come from anywhere on the pipe, half are what a careful pilot means; of these the half-widths are measured.
     /// Exit status: 0 nothing lost, 1 a vehicle was lost, 2 bad input or unwritable output.
     Capture(CaptureArgs),
-    /// Fly a family of varied vehicles, and compare with what the design check says of each.
+    /// Fly a family of varied vehicles, and compare the results with the design check of each.
     ///
     /// Exit status: 0 done, 2 bad input or unwritable output.
     Study(StudyArgs),
@@ -83,8 +85,8 @@ pub enum Task {
     Timing(TimingArgs),
     /// Run recorded sensors or bytes through this stack's own filter, estimators and decoders.
     ///
-    /// FILE is text, plain or gzipped: a line for each measurement (I inertial sample, F flow, R range, L thrust), a table
-    /// whose first line names t_us, gx, gy, gz, ax, ay, az and others, or lines of a time in us and a byte
+    /// FILE is text, plain or gzipped: a line for each measurement (I inertial sample, F flow, R range, L thrust), a
+    /// table whose first line names t_us, gx, gy, gz, ax, ay, az and others, or lines of a time in us and a byte
     /// (docs/recording.md). S and all times count from its first line.
     /// Exit status: 0 read, 2 bad input.
     Recording(RecordingArgs),
@@ -100,7 +102,7 @@ pub struct CheckArgs {
     pub json: bool,
 }
 
-/// Where the paper's results go.
+/// Output of the paper's results.
 #[derive(Args, Debug)]
 pub struct PaperArgs {
     /// Directory for paper.html and paper.json.
@@ -121,7 +123,7 @@ fn parse_from(
 ) -> Result<Task, Message> {
     let cli = Cli::try_parse_from(args).map_err(Message)?;
     let task = cli.command.unwrap_or(Task::Fly(cli.fly));
-    // Options that are right one by one.
+    // Options that are valid one by one, but not together.
     let together = match &task {
         Task::Capture(args) => values::seeds(args.seed, args.touches, "touches"),
         Task::Study(args) => values::seeds(args.seed, args.count, "vehicles"),

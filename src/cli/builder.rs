@@ -1,4 +1,4 @@
-//! The builder at the terminal, or a pipe in its place.
+//! The builder at the terminal, or a pipe that replaces him.
 
 use std::io::{BufRead, IsTerminal, Write};
 use std::sync::Arc;
@@ -10,18 +10,18 @@ use sophie_bringup::{Reply, User};
 
 /// Width of a row that replaces the last one.
 const WIDTH: usize = 79;
-/// Time after which Ctrl-C is noticed while a reply is awaited.
+/// Longest delay until Ctrl-C is noticed while a reply is awaited.
 const NOTICED: Duration = Duration::from_millis(50);
 
 /// Standard input and output.
 pub struct Terminal {
-    /// Lines as they are typed; a thread reads them, so that numbers can be shown meanwhile.
+    /// Typed lines; a thread reads them, so that measurements can be shown meanwhile.
     lines: Receiver<String>,
-    /// Both are a terminal: replies are seen as they are typed, and a row may be overwritten.
+    /// Input and output are both a terminal: replies are echoed as they are typed, and a row may be overwritten.
     terminal: bool,
-    /// The row on the screen that is overwritten next.
+    /// The row on the screen that the next one overwrites.
     row: Option<String>,
-    /// Raised by Ctrl-C: there are no more replies then.
+    /// Raised by Ctrl-C: no replies follow.
     stop: Arc<AtomicBool>,
 }
 
@@ -55,16 +55,16 @@ impl Terminal {
         }
     }
 
-    /// Writes without a line end; a reader that has gone misses it.
+    /// Writes without a line end; ignores a closed pipe.
     fn write(&mut self, text: &str) {
         let mut out = std::io::stdout().lock();
         let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
     }
 
-    /// Leaves the row that was shown last.
+    /// Ends the row that was shown last.
     fn end_row(&mut self) {
         if let Some(row) = self.row.take() {
-            // Where rows are not watched, the last one is kept.
+            // Without a terminal, only the last row is printed.
             let end = if self.terminal {
                 "\n".to_owned()
             } else {
@@ -74,7 +74,7 @@ impl Terminal {
         }
     }
 
-    /// What was replied; where it is piped, it has not been shown yet.
+    /// The reply; from a pipe it has not been echoed yet, so it is printed.
     fn replied(&mut self, line: String) -> Reply {
         if !self.terminal {
             self.write(&format!("{line}\n"));
@@ -112,7 +112,7 @@ impl User for Terminal {
         match self.lines.try_recv() {
             Ok(line) => {
                 if self.terminal {
-                    // Its Enter has ended the row.
+                    // The reply's Enter has ended the row.
                     self.row = None;
                 }
                 self.end_row();
@@ -124,7 +124,7 @@ impl User for Terminal {
     }
 }
 
-/// The line within [`WIDTH`], broken between words, what follows indented by two more.
+/// The line wrapped to [`WIDTH`] between words, with continuation lines indented by two more.
 fn wrapped(line: &str) -> String {
     if line.len() <= WIDTH {
         return line.to_owned();

@@ -1,10 +1,10 @@
-//! The key that signs MAVLink, from a file: on a command line everyone would read it.
+//! Reads the key that signs MAVLink from a file: on a command line other users could read it.
 
 use std::path::Path;
 
 use sophie_sim::live::Key;
 
-/// Bytes that a file with a key may have: its digits, and blanks around them.
+/// Largest size of a key file, bytes: its digits and white space around them.
 const MAX_BYTES: u64 = 4096;
 
 /// The key in `file`.

@@ -14,7 +14,7 @@ use super::args::{FlyArgs, LiveArgs};
 use super::interrupt::on_ctrl_c;
 use super::{PROGRAM, introduce, key, report};
 
-/// Flies the mission, reports it and waits for Ctrl-C; without a pilot waits at once. False when the mission was not
+/// Flies the mission, reports it and waits for Ctrl-C; without a pilot, only waits. False when the mission was not
 /// accomplished.
 pub fn run(args: &FlyArgs) -> Result<bool, String> {
     let scenario = args.mission.scenario()?;

@@ -1,7 +1,7 @@
 //! The `sophie` command line.
 //!
-//! Exit status: 0 when the mission was accomplished, the vehicle can fly, the log was read or the board did what was
-//! asked, 1 when the mission was not accomplished, the vehicle cannot fly or the board refused, 2 when it could not be
+//! Exit status: 0 when the mission was accomplished, the vehicle can fly, the log was read or the board obeyed; 1 when
+//! the mission was not accomplished, the vehicle cannot fly or the board refused; 2 when the mission could not be
 //! flown, read or reported.
 
 mod args;
@@ -35,7 +35,7 @@ use self::args::{FlyArgs, Study, Task};
 const FAILED: u8 = 1;
 /// Bad input, or the results could not be written.
 const REFUSED: u8 = 2;
-/// Name before every complaint.
+/// Program name at the start of every error line.
 const PROGRAM: &str = "sophie";
 
 /// Runs the command line of this process.
@@ -76,10 +76,10 @@ fn run(args: &FlyArgs) -> Result<bool, String> {
     report(&record, &out, &console, args.json)
 }
 
-/// Says what is to be flown, and whether it can be.
+/// Prints the planned flight, and warns if the design check fails.
 fn introduce(scenario: &Scenario, console: &Console) {
     console.say(&result::intro(scenario));
-    // Flown all the same: a study may want to see how it fails.
+    // Flown anyway: a study may examine how it fails.
     for row in Check::of(scenario).failing() {
         complain(PROGRAM, &format!("check: {}: {}", row.shortfall(), row.advice));
     }

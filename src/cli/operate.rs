@@ -1,4 +1,4 @@
-//! `sophie bringup` and `sophie params`: what is done at a board's console.
+//! `sophie bringup` and `sophie params`: operations at a board's console.
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -29,14 +29,14 @@ pub fn bringup(args: &BringupArgs) -> ExitCode {
 pub fn params(args: &ParamsArgs) -> ExitCode {
     let done = match args.verb {
         ParamsVerb::Dump => dump(args).map(|()| true),
-        // Status 1 says that they differ and nothing else.
+        // Status 1 is reserved for a difference.
         ParamsVerb::Diff => diff(args).map_err(|failure| Failure::Input(failure.to_string())),
         ParamsVerb::Load => load(args).map(|()| true),
     };
     status(done)
 }
 
-/// The exit status, after the line that says why.
+/// The exit status, after printing the reason.
 fn status(done: Result<bool, Failure>) -> ExitCode {
     match done {
         Ok(true) => ExitCode::SUCCESS,
@@ -97,12 +97,12 @@ fn load(args: &ParamsArgs) -> Result<(), Failure> {
     let settings = read(&args.file)?;
     let mut session = session(args)?;
     parameters::load(&mut session, &settings, &mut |line| {
-        // A closed pipe is no reason to leave the board half-way.
+        // If stdout is closed, the board must still be set completely.
         let _ = console::print(line);
     })
 }
 
-/// The parameters of the file, all of them checked.
+/// The parameters of the file, all validated.
 fn read(file: &Path) -> Result<Vec<Setting>, Failure> {
     settings::read(file).map_err(|error| Failure::Input(error.to_string()))
 }

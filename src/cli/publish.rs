@@ -1,4 +1,4 @@
-//! Results of a study: tables on the terminal, a page and JSON on disk, JSON on stdout where it is asked for.
+//! Results of a study: tables on the terminal, a page and JSON on disk, and JSON on stdout on request.
 
 use std::time::Instant;
 
@@ -7,7 +7,7 @@ use sophie_research::results::{page, text};
 use sophie_terminal::console::{self, Console};
 use sophie_terminal::output::OutDir;
 
-/// Where results go.
+/// Destination of the results.
 pub struct Publisher {
     out: OutDir,
     console: Console,
@@ -17,7 +17,7 @@ pub struct Publisher {
 }
 
 impl Publisher {
-    /// Results as `files`, page and JSON, in `dir`; `json` also on stdout.
+    /// Writes results to `files`, page and JSON, in `dir`; `json`: also to stdout.
     ///
     /// # Errors
     /// One line: the directory cannot be written.
@@ -43,7 +43,7 @@ impl Publisher {
         }
     }
 
-    /// Writes all, and says where. `results` is JSON text.
+    /// Writes all results, and prints their places. `results` is JSON text.
     ///
     /// # Errors
     /// One line: a file or stdout cannot be written.

@@ -1,4 +1,4 @@
-//! `sophie recording`: what this stack makes of recorded sensors or bytes.
+//! `sophie recording`: runs recorded sensors or bytes through this stack.
 
 use sophie_control::params::Params;
 use sophie_recording::bytes::{self, Protocol};
@@ -11,7 +11,7 @@ use sophie_terminal::console::{self, Console};
 use super::PROGRAM;
 use super::args::{Kind, RecordingArgs};
 
-/// Runs the recording and shows what came out.
+/// Runs the recording and prints the results.
 pub fn run(args: &RecordingArgs) -> Result<(), String> {
     let mut params = Params::default();
     for (row, value) in &args.params {

@@ -33,7 +33,7 @@ pub fn paper(args: &PaperArgs) -> Result<bool, String> {
 
 /// Fits an arm to bench data.
 pub fn fit_arm(args: &FitArgs) -> Result<bool, String> {
-    // It goes into the files of parameters as a comment.
+    // The files of parameters name it in a comment.
     let file = console::one_line(&args.bench.display().to_string());
     let points = arm_data::load(&args.bench)?;
     let t = Printed::read().table_1;
@@ -70,7 +70,7 @@ pub fn fit_arm(args: &FitArgs) -> Result<bool, String> {
     Ok(true)
 }
 
-/// Fits the tendon to the second table, where one is given.
+/// Fits the tendon to the second table, if given.
 fn fit_tendon(args: &FitArgs, arm: &Fit, infill: f64) -> Result<Option<TendonFit>, String> {
     let Some(path) = &args.tendon else {
         return Ok(None);

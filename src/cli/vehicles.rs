@@ -5,7 +5,7 @@ use sophie_research::study::vehicles::{self, report};
 use super::args::StudyArgs;
 use super::publish::Publisher;
 
-/// Flies and writes the family. Always true: what fails is a result.
+/// Flies and writes the family. Always true: a failed flight is a result.
 pub fn run(args: &StudyArgs) -> Result<bool, String> {
     let publisher = Publisher::new(&args.out, ["vehicles.html", "vehicles.json"], args.json)?;
     publisher.say(&format!("{} vehicles from seed {}", args.count, args.seed));

@@ -1,8 +1,8 @@
-//! The firmware besides the tasks' code: start, levels, background tasks, lights and log.
+//! The firmware except the tasks' code: start, levels, background tasks, lights and log.
 //!
 //! A package of its own, since generic code and futures are compiled with the package that makes them concrete: these
-//! for size, those of `sophie_flight` for speed (`Cargo.toml`). Chip code is in `sophie_boards`. The host has none
-//! of it.
+//! for size, those of `sophie_flight` for speed (`Cargo.toml`). Chip code is in `sophie_boards`. On the host the
+//! package is empty.
 
 #![cfg_attr(target_os = "none", no_std)]
 #![cfg(target_os = "none")]
@@ -38,9 +38,9 @@ static LINKS: StaticCell<Links> = StaticCell::new();
 #[embassy_executor::main(entry = "cortex_m_rt::entry")]
 async fn main(background: Spawner) {
     let (beginning, memory) = begin();
-    // Before the clocks: where one never comes, what the run before ended with says so.
+    // Logged before the clocks start: if a clock fails to start, the log still has the end of the previous run.
     greet(&beginning);
-    // Parameters before ports: what a pin does may depend on them.
+    // Parameters before ports: a pin's function may depend on them.
     let board = sophie_boards::take().await;
     let links = links(board.params, beginning.start);
     loaded(links, board.loaded);
@@ -77,13 +77,13 @@ fn links(params: Params, start: Start) -> &'static Links {
     LINKS.init_with(|| Links::starting(params, start))
 }
 
-/// Logs version, board, reset cause and what the last run left.
+/// Logs version, board, reset cause and the state retained from the last run.
 fn greet(beginning: &Beginning) {
     let Beginning { cause, start, kept } = beginning;
     defmt::info!(
         "SOPHIE {=str} on {=str}, start after {}",
         env!("CARGO_PKG_VERSION"),
-        // As one text in the image, by which programs know whose it is.
+        // As one text in the image, by which programs identify its board.
         core::hint::black_box(sophie_boards::NAME),
         cause
     );

@@ -8,7 +8,7 @@
 //! | double flash each second | on the pipe, rotors stopped |
 //!
 //! The fault light is on while arming is refused or the failsafe acts; the buzzer sounds in the failsafe and while the
-//! vehicle leaves the pipe by itself.
+//! vehicle leaves the pipe autonomously.
 
 use embassy_time::{Duration, Ticker};
 use sophie_control::mode::Mode;
@@ -16,7 +16,7 @@ use sophie_tasks::links::Links;
 
 use sophie_boards::LightsPort;
 
-/// Step; ten make a pattern.
+/// Duration of a step; ten steps make a pattern.
 const PERIOD: Duration = Duration::from_millis(100);
 
 /// Ten steps, in order.

@@ -1,8 +1,8 @@
-//! The defmt log while the firmware runs. Background: logging never delays a flight.
+//! The defmt log of the running firmware. Background: logging never delays a flight.
 //!
-//! At the start its duration and the chip's checks; a line at each change of state, reason, warning or hardware arming
-//! inhibit, and for each arm of a proven grip; each second the timing of every task and missed deadlines
-//! ([`super::timing`]), and the greatest stack depth where it has grown.
+//! At the start it logs the duration of the start and the chip's checks; a line at each change of state, reason,
+//! warning or hardware arming inhibit, and for each arm of a proven grip; each second the timing of every task and
+//! missed deadlines ([`super::timing`]), and the greatest stack depth if it has grown.
 
 use embassy_futures::select::{Either, select};
 use embassy_time::{Duration, Instant, Ticker};
@@ -55,7 +55,7 @@ pub async fn run(links: &Links, checks: &[ChipCheck]) -> ! {
     }
 }
 
-/// Looks at the stack. By the first second every task has begun: that is the start-up's depth.
+/// Logs the stack's depth. By the first second every task has begun, which ends the depth of the start-up.
 fn stack(links: &Links, logged: &mut u32) {
     let first = *logged == 0;
     if first {

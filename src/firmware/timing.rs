@@ -52,7 +52,7 @@ impl TimingReport {
         let missed = totals
             .overruns
             .wrapping_sub(core::mem::replace(&mut self.contact_recorded, totals.overruns));
-        // No pulse before the first command, and while no pressure is fresh.
+        // Before the first command, and while the pressure is stale, no pulse exists.
         if pulse.count() == 0 {
             return;
         }
@@ -82,7 +82,7 @@ impl TimingReport {
         let missed = totals
             .overruns
             .wrapping_sub(core::mem::replace(recorded, totals.overruns));
-        // A task that does not run, such as telemetry beside SBUS.
+        // A task that does not run, such as telemetry with SBUS.
         if run.count() == 0 && missed == 0 {
             return;
         }

@@ -6,8 +6,8 @@
 //! trace lost 12
 //! ```
 //!
-//! The number before the events is that of the first one since the start, which shows what the probe dropped; each
-//! event has eight bytes ([`sophie_boards::trace`]), low byte first.
+//! The number before the events is the index of the first one since the start, which reveals events that the probe
+//! dropped; each event has eight bytes ([`sophie_boards::trace`]), low byte first.
 
 use core::cell::RefCell;
 
@@ -40,7 +40,7 @@ static TASKS_SPAWNED: Mutex<Raw, RefCell<Vec<Named, TASKS>>> = Mutex::new(RefCel
 pub fn named<S>(level: Level, name: &'static str, token: SpawnToken<S>) -> SpawnToken<S> {
     trace::start();
     let id = token.id();
-    // One that does not fit is shown by its number.
+    // A task that does not fit is shown by its number.
     TASKS_SPAWNED.lock(|tasks| {
         let _ = tasks.borrow_mut().push(Named { id, level, name });
     });

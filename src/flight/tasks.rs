@@ -1,4 +1,4 @@
-//! The wrappers. Each is spawned once, by the firmware.
+//! The wrappers of the tasks. The firmware spawns each once.
 
 use sophie_boards::retained::Memory;
 use sophie_control::allocation::mixer::Flexible;
@@ -13,8 +13,8 @@ const SELF_TESTS: u8 = 3;
 
 /// Inertial sensor.
 ///
-/// `self_test` actuates it first (1.5 s): only where the vehicle must be at rest, never after a reset in flight. A
-/// failed one is repeated, since a vehicle being carried also fails; the last verdict counts.
+/// `self_test` actuates it first (1.5 s): only while the vehicle must be at rest, never after a reset in flight. A
+/// failed test is repeated, since it also fails while the vehicle is carried; the last result counts.
 #[embassy_executor::task]
 pub async fn imu(links: &'static Links, mut port: sophie_boards::ImuPort, self_test: bool) -> ! {
     for _ in 0..if self_test { SELF_TESTS } else { 0 } {
@@ -91,13 +91,13 @@ pub async fn commander(links: &'static Links) -> ! {
     sophie_tasks::pilot::commander::run(links).await
 }
 
-/// Position for the hold.
+/// Position estimate for the hold.
 #[embassy_executor::task]
 pub async fn position(links: &'static Links) -> ! {
     sophie_tasks::navigation::position::run(links).await
 }
 
-/// Deadline supervision and watchdog. Also keeps the state that outlives a reset.
+/// Deadline supervision and watchdog. Also stores the state that survives a reset.
 #[embassy_executor::task]
 pub async fn supervisor(links: &'static Links, port: sophie_boards::Dog, memory: Memory) -> ! {
     sophie_tasks::supervision::supervisor::run(links, port, memory).await

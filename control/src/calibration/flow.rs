@@ -1,7 +1,7 @@
-//! Scale and mounting of a module of optical flow, by turning it over a floor.
+//! Calibrates scale and mounting of an optical-flow module by turning it over a floor.
 //!
-//! What it sees of a turn about a point that lies `l` over the lens is `1 + l / d` times the turn, `d` m from the floor. Of
-//! two distances the scale without that share follows, and hands need not turn the vehicle about its lens.
+//! At `d` m from the floor, a turn about a point that lies `l` m above the lens appears as `1 + l / d` times the turn.
+//! Two distances separate the scale from that factor, so the vehicle need not be turned about the lens.
 
 #[cfg(test)]
 mod tests;
@@ -13,33 +13,33 @@ use crate::navigation::flow_range_sample::GroundView;
 use crate::navigation::history::between;
 use crate::params::FlowMounting;
 
-/// Attitudes kept, 0.16 s at 100 Hz: an interval and what the module is late.
+/// Attitudes kept, 0.16 s at 100 Hz: one flow interval plus the module's delay.
 const KEPT: usize = 16;
-/// Flows that a round wants, 2.5 s at 50 Hz.
+/// Flows that a round requires, 2.5 s at 50 Hz.
 const FLOWS_MIN: f32 = 125.0;
-/// Least quality of their mean, of 255.
+/// Range of the flows' mean quality, of 255.
 const QUALITY: [f32; 2] = [20.0, 255.0];
-/// Turning about each axis, rad/s RMS: less is lost in the module's noise, more is blurred.
+/// Rate about each axis, rad/s RMS: below it the module's noise dominates, above it the image blurs.
 const TURNING: [f32; 2] = [0.3, 3.0];
-/// Turning about the down axis, share of that about the others.
+/// Rate about the down axis, share of the rate about the other axes.
 const YAW: [f32; 2] = [0.0, 0.7];
 /// Ranges of the near and the far round, m.
 const DISTANCE: [[f32; 2]; 2] = [[0.3, 0.8], [1.2, 2.4]];
 /// Share of the flow that the turning explains.
 const EXPLAINED: [f32; 2] = [0.8, 1.0];
-/// Departure from the nearest quarter turn, deg.
+/// Angle to the nearest quarter turn, deg.
 const ASKEW: [f32; 2] = [-15.0, 15.0];
-/// What the two rounds may differ by, as height of the point of turning over the lens, m.
+/// Allowed difference of the two rounds, as height of the turning point above the lens, m.
 const PIVOT: [f32; 2] = [-0.25, 0.25];
-/// Counts of a degree, as of the parameter.
+/// Counts per degree, the range of the parameter.
 const SCALE: [f32; 2] = [0.5, 200.0];
 
-/// What a round of turning has shown.
+/// Result of one round of turning.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Round {
-    /// Flow over turn, along the axes of the turn: row by row.
+    /// Flow over turn, along the axes of the turn, row by row.
     factor: [[f32; 2]; 2],
-    /// Mean of one over the distance, 1/m.
+    /// Mean of the inverse distance, 1/m.
     nearness: f32,
 }
 
@@ -53,7 +53,7 @@ pub struct FlowTurns {
     seconds: f32,
     quality: f32,
     nearness: (f32, f32),
-    /// Flow times turn, turn times turn (xx, xy, yy), flow times flow, yaw times yaw.
+    /// Sums of flow times turn, turn times turn (xx, xy, yy), flow times flow, yaw times yaw.
     crossed: [[f32; 2]; 2],
     turned: [f32; 3],
     seen: f32,
@@ -79,7 +79,7 @@ impl Default for FlowTurns {
 }
 
 impl FlowTurns {
-    /// Takes the attitude `q` of `at_us` µs, and what the module has seen by then.
+    /// Takes the attitude `q` of `at_us` µs and the module's latest view.
     pub fn add(&mut self, at_us: u64, q: Quat, view: &GroundView) {
         if !q.is_finite() {
             return;
@@ -121,7 +121,7 @@ impl FlowTurns {
         self.yawed += z * z;
     }
 
-    /// The attitude at `at_us` µs, between the two about it.
+    /// The attitude at `at_us` µs, interpolated.
     fn at(&self, at_us: u64) -> Option<Quat> {
         let known = || self.attitudes.iter().flatten();
         let (before, a) = known().filter(|(at, _)| *at <= at_us).max_by_key(|(at, _)| *at)?;
@@ -130,10 +130,10 @@ impl FlowTurns {
         Some(between(*a, *b, at_us.saturating_sub(*before) as f32 / whole))
     }
 
-    /// What the round has shown; `far` for the second one.
+    /// Result of the round; `far` for the second one.
     ///
     /// # Errors
-    /// Few flows, a dark picture, another distance, or hardly any turning about an axis.
+    /// Too few flows, a dark image, a wrong distance, or too little turning about an axis.
     pub fn round(&self, far: bool) -> Result<Round, Unfit> {
         within("flows", self.flows, [FLOWS_MIN, f32::MAX], "")?;
         within("quality of the picture", self.quality / self.flows, QUALITY, "")?;
@@ -142,7 +142,7 @@ impl FlowTurns {
         let distance = if nearness > 0.0 { 1.0 / nearness } else { 0.0 };
         within("range", distance, if far { farther } else { near }, "m")?;
         let [xx, xy, yy] = self.turned;
-        // Per flow the square of an angle; over its mean interval a rate.
+        // Sums per flow are squared angles; divided by the mean interval squared they are squared rates.
         let per = self.flows / (self.seconds * self.seconds);
         for (what, square) in [("rolling", xx), ("pitching", yy)] {
             within(what, scalar::sqrt(square * per), TURNING, "rad/s")?;
@@ -167,16 +167,16 @@ impl FlowTurns {
     }
 }
 
-/// What makes an angle of a module's counts.
+/// Correction of an optical-flow module.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlowFit {
-    /// Counts of a degree.
+    /// Counts per degree.
     pub scale: f32,
-    /// Where its x axis points.
+    /// Direction of its x axis.
     pub mounting: FlowMounting,
 }
 
-/// Scale and turn of one factor, 1 and rad.
+/// Scale and rotation of one factor, 1 and rad.
 fn turn_of(factor: &[[f32; 2]; 2]) -> Result<(f32, f32), Unfit> {
     let [[a, b], [c, d]] = *factor;
     let proper = scalar::sqrt((a + d) * (a + d) + (c - b) * (c - b));
@@ -190,11 +190,11 @@ fn turn_of(factor: &[[f32; 2]; 2]) -> Result<(f32, f32), Unfit> {
     Ok((0.5 * proper, scalar::atan2(c - b, a + d)))
 }
 
-/// The fit of a module that was turned `near` the floor and `far` from it, read with the fit `now`, and the height of the
-/// point about which it was turned over its lens, m.
+/// Correction of a module that was turned `near` the floor and `far` from it, read with the correction `now`, and the
+/// height of the turning point above its lens, m.
 ///
 /// # Errors
-/// A flow that is mirrored, a module between two quarter turns, or rounds that do not agree.
+/// A mirrored flow, a module between two quarter turns, or rounds that disagree.
 pub fn flow_fit(near: &Round, far: &Round, now: FlowFit) -> Result<(FlowFit, f32), Unfit> {
     let (near_scale, near_turn) = turn_of(&near.factor)?;
     let (far_scale, far_turn) = turn_of(&far.factor)?;
@@ -219,7 +219,7 @@ pub fn flow_fit(near: &Round, far: &Round, now: FlowFit) -> Result<(FlowFit, f32
     )?;
     let scale = now.scale * scale;
     within("scale", scale, SCALE, "1/deg")?;
-    // Seen turned by as much as the parameter is too large.
+    // A mounting parameter that is too large turns the flow by the same angle.
     let ways = FlowMounting::ALL;
     let is = ways.iter().position(|way| *way == now.mounting).unwrap_or(0) as i32;
     let mounting = ways

@@ -1,4 +1,4 @@
-//! Evidence from the inertial sensor that something carries the vehicle.
+//! Evidence from the inertial sensor that a support carries the vehicle.
 //!
 //! [`ContactForce::step`] runs at 100 Hz in the mode logic. Forces are along the body's thrust axis (N). A missed step
 //! delays the evidence; 50 ms without an inertial sample end it.
@@ -18,9 +18,9 @@ use crate::params::Params;
 pub const RESTING_FORCE: f32 = 3.0;
 /// Support below which the vehicle no longer rests, N.
 pub const LEAVING_FORCE: f32 = 1.5;
-/// Support worth a trial by reducing thrust, N.
+/// Support above which the failsafe tries a reduced thrust, N.
 pub const HINT_FORCE: f32 = 1.8;
-/// Time above [`RESTING_FORCE`] of a sure touch, s: three steps.
+/// Time above [`RESTING_FORCE`] that proves a touch, s: three steps.
 pub const TOUCH_TIME: f32 = 0.03;
 /// Time below [`LEAVING_FORCE`] after which a touch has ended, s.
 pub const LIFT_TIME: f32 = 0.3;
@@ -28,7 +28,7 @@ pub const LIFT_TIME: f32 = 0.3;
 pub const RESTING_TIME: f32 = 0.3;
 /// Share of the weight of a grounded vehicle, rotors stopped or idle.
 const GROUNDED_SHARE: f32 = 0.7;
-/// Time that it must last, s.
+/// Time for which it must last, s.
 pub const GROUNDED_TIME: f32 = 0.5;
 /// Largest body rate for evidence, rad/s.
 const RATE_MAX: f32 = 0.7;
@@ -135,12 +135,12 @@ impl ContactForce {
         self.resting
     }
 
-    /// True once something carries for [`TOUCH_TIME`].
+    /// True once the support has lasted for [`TOUCH_TIME`].
     pub fn touched(&self) -> bool {
         self.pressed.time() >= TOUCH_TIME
     }
 
-    /// True once nothing has carried for [`LIFT_TIME`].
+    /// True once the support has been absent for [`LIFT_TIME`].
     pub fn lifted(&self) -> bool {
         self.unloaded.time() >= LIFT_TIME
     }
@@ -151,7 +151,7 @@ impl ContactForce {
     }
 
     /// Sink rate, m/s, downwards positive, within ±10 m/s: decaying integral of the accelerometer, good for damping a
-    /// descent, not for its speed.
+    /// descent, not for controlling its speed.
     pub fn sink(&self) -> f32 {
         self.sink
     }

@@ -1,18 +1,18 @@
-//! A fall beside the pipe: the speed that a vehicle gains downwards while nothing carries it.
+//! Detects a fall beside the pipe by the downward speed that the vehicle gains without support.
 //!
-//! The sink rate since take-off drifts with the accelerometer, so only what was gained lately counts.
+//! The sink rate since take-off drifts with the accelerometer's bias, so only recently gained speed counts.
 
 use crate::contact::contact_force::{ContactForce, RESTING_FORCE};
 use crate::maths::scalar::clamp;
 
-/// Decay time of the gained speed, s: well beyond a fall, and 10 mg of bias come to 5 cm/s.
+/// Decay time of the gained speed, s: much longer than a fall, while 10 mg of bias add up to 5 cm/s.
 const MEMORY: f32 = 0.5;
 /// Largest speed that counts, m/s.
 const SPEED_MAX: f32 = 10.0;
-/// Speed gained without support that is a fall, m/s: a set-down gains 0.2 over its last centimetre.
+/// Speed gained without support that indicates a fall, m/s: a set-down gains 0.2 over its last centimetre.
 const FALL_SPEED: f32 = 0.25;
 
-/// Downward speed gained lately.
+/// Recently gained downward speed.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Fall {
     /// m/s, downwards positive.
@@ -28,12 +28,12 @@ impl Fall {
         self.carried = contact_force.force() > RESTING_FORCE;
     }
 
-    /// Downward speed gained lately, m/s, within ±10.
+    /// Recently gained downward speed, m/s, within ±10.
     pub fn speed(&self) -> f32 {
         self.speed
     }
 
-    /// It falls, and nothing carries it.
+    /// The vehicle falls without support.
     pub fn falls(&self) -> bool {
         !self.carried && self.speed > FALL_SPEED
     }

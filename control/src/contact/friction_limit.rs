@@ -1,25 +1,25 @@
-//! The seat on a pipe: up to which lean friction holds a vehicle that rests on it with both belly pads.
+//! Friction limit on a pipe: the lean up to which friction holds a vehicle that rests on it with both belly pads.
 //!
-//! Beside the crown the body turns about the pipe's axis, H = sqrt(R² - w²) + h above it with the pads at ±w and h above
-//! them. Of the weight the rotors carry the share s, square to the pads. With cos ψ = sqrt(1 - w²/R²), and μ the friction,
-//! it sticks while
+//! Beside the crown the body turns about the pipe's axis. The pads lie at ±w, and the centre of mass h above them,
+//! H = sqrt(R² - w²) + h above the axis. The rotors carry the share s of the weight, normal to the pads. With
+//! cos ψ = sqrt(1 - w²/R²) and friction μ, the vehicle sticks while
 //!
 //!   sin θ · K <= cos θ - s,   K = H cos ψ / (μ R) + μ (H cos ψ / R - 1)
 //!
-//! so more thrust holds less: at μ 0.6 on 0.3 m up to 25° without, 16° at 0.375, 11° at 0.56.
+//! so more thrust holds less: at μ 0.6 on 0.3 m up to 25° without thrust, 16° at a share of 0.375, 11° at 0.56.
 
 use crate::maths::scalar::{clamp, cos, sin, sqrt};
 use crate::params::Params;
 
-/// Belly pads beside the middle, m (assumed).
+/// Distance of a belly pad from the middle, m (assumed).
 const PAD: f32 = 0.03;
 /// Centre of mass above the pads, m (assumed).
 const HEIGHT: f32 = 0.04;
 
-/// The seat on the pipe that the parameters describe.
+/// Friction limit on the pipe that the parameters describe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrictionLimit {
-    /// K of the module's text.
+    /// K of the formula above.
     slope: f32,
 }
 

@@ -1,10 +1,11 @@
-//! Lean across the pipe: whether the vehicle stays on the crown, slides off, turns, or leans too far to let go.
+//! Lean across the pipe: whether the vehicle stays on the crown, slides off, twists, or leans too far to release.
 //!
-//! What friction holds is the [seat](crate::contact::friction_limit)'s; less friction than its parameter shows in a lean that grows.
+//! The [friction limit](crate::contact::friction_limit) is computed from the parameters; if the real friction is lower,
+//! the lean grows.
 //!
-//! A vehicle that is headed off the pipe by ψ turns about the pipe's axis all the same, in its own axes by cos ψ in roll and
-//! sin ψ in pitch: the lean is the length of both. Pitch counts from the touch, for before it is the flight's and the pipe's
-//! slope, and so does the heading, of which nothing else is known.
+//! A vehicle whose nose points off the pipe by ψ still turns about the pipe's axis, which splits the lean into cos ψ in
+//! roll and sin ψ in pitch: the lean is the length of both. Pitch is measured from the value at the touch, since before
+//! it pitch belongs to the flight and to the pipe's slope; so is the heading, whose angle to the pipe is unknown.
 
 use crate::attitude::motion::Motion;
 use crate::contact::contact_force::{ContactForce, LEAVING_FORCE, RESTING_FORCE};
@@ -16,46 +17,48 @@ use crate::pilot::release_throttle::release_thrust;
 
 /// Rate at which the attitude loop reduces a lean, rad/s.
 const LEVELLING_RATE: f32 = 0.2;
-/// Lean too large for closing arms whatever the friction, rad: they touch after 1.3 s, a slide reaches the flank in 0.35 s.
+/// Lean too large for closing arms at any friction, rad: they touch after 1.3 s, a slide reaches the flank in 0.35 s.
 const HOPELESS_LEAN: f32 = deg(25.0);
-/// Lean of a fall beside the pipe, rad: seats on 0.2 to 0.4 m hold 10 to 17° while the arms close, so nothing was to come of it.
+/// Lean that proves a fall beside the pipe, rad: pipes of 0.2 to 0.4 m hold 10 to 17° while the arms close, so a perch
+/// has failed anyway.
 const FALL_LEAN: f32 = deg(18.0);
 /// Rate of a growing lean, rad/s.
 const GROWING_RATE: f32 = 0.3;
-/// Growth of the lean since the arms began to close, rad, and its rate, rad/s, that mean less friction than the parameter's: on 0.3
-/// of friction the arms' first touch starts a slide at 10 to 14°. A sound closing 45 mm beside the crown grows by 2°.
+/// Growth of the lean since the arms began to close, rad, and its rate, rad/s, that indicate friction below its
+/// parameter: with friction 0.3 the arms' first touch starts a slide at 10 to 14°. A sound closing 45 mm beside the
+/// crown grows by 2°.
 const CREEP: f32 = deg(6.0);
 const CREEP_RATE: f32 = 0.1;
-/// Growth since a release began, rad: the rotors take the belly off the pipe, and friction that is less than the parameter's gives
-/// way under arms that hold.
+/// Growth of the lean since a release began, rad: the rotors lift the belly off the pipe, and friction below its
+/// parameter gives way although the arms hold.
 const GIVEN: f32 = deg(2.0);
-/// Turn of the heading since the touch, rad, and its rate, rad/s, that end a closing: on one pad friction holds no heading, and
-/// no grip is proven on a pipe that is more oblique than this (`grip_fit`).
+/// Turn of the heading since the touch, rad, and its rate, rad/s, that end a closing: on one pad friction holds no
+/// heading, and a grip on a pipe more oblique than this cannot be proven (`grip_geometry`).
 const TWIST: f32 = deg(13.0);
 const TWIST_RATE: f32 = 0.1;
-/// Time for which a lean must slide, s: three steps.
+/// Time for which a lean must exceed the limit, s: three steps.
 const SLIDE_TIME: f32 = 0.03;
 /// Time after a touch for which a lean is a slide off the pipe, s.
 const TOUCH_MEMORY: f32 = 0.5;
 /// Largest lean at which the arms let go at all, rad: level rotors pull the vehicle away from the flank up to here.
 const RELEASE_LEAN_MAX: f32 = deg(28.0);
-/// Lean below which its growth is not known from its rate, rad.
+/// Lean below which its growth cannot be computed from the rates, rad.
 const LEAN_MIN: f32 = deg(1.0);
-/// A fall: time (s) with little support at a collective below this share of weight.
+/// Time with little support that indicates a fall, s, at a collective below this share of the weight.
 const FALL_TIME: f32 = 0.05;
 const FALL_SHARE: f32 = 0.8;
 
 #[derive(Clone, Copy, Debug)]
 pub struct Lean {
     friction_limit: FrictionLimit,
-    /// Share of the weight on the rotors while the arms close, and at least while they open.
+    /// Share of the weight on the rotors while the arms close, and the least one while they open.
     closing_share: f32,
     release_share: f32,
-    /// Pitch and yaw in the last moment of free air, rad.
+    /// Pitch and yaw at the last moment of free air, rad.
     before: Option<[f32; 2]>,
-    /// Last known turn about the pipe, rad, at least 0.
+    /// Last known turn about the pipe, rad, >= 0.
     lean: f32,
-    /// Least lean since the arms began to close or to let go, rad.
+    /// Least lean since the arms began to close or to open, rad.
     lean_at_contact: f32,
     creeping: HoldTimer,
     giving: HoldTimer,
@@ -63,7 +66,7 @@ pub struct Lean {
     leaning: HoldTimer,
     twisting: HoldTimer,
     falling: HoldTimer,
-    /// Time since something carried, s.
+    /// Time since the last support, s.
     apart: HoldTimer,
 }
 
@@ -110,7 +113,7 @@ impl Lean {
                 });
         let (nod, twist) = (pitch - level, wrap_pi(yaw - ahead));
         let lean = sqrt(roll * roll + nod * nod);
-        // Body rates are those of roll, pitch and yaw near enough for a growth.
+        // Small angles: body rates approximate the rates of roll, pitch and yaw.
         let outward = (roll * motion.rate.x + nod * motion.rate.y) / lean.max(LEAN_MIN);
         self.lean = lean;
         let grows = outward > GROWING_RATE && !self.friction_limit.holds(lean, share);
@@ -132,47 +135,47 @@ impl Lean {
         self.friction_limit.holds(self.lean, self.closing_share)
     }
 
-    /// Friction holds the vehicle once the rotors stand.
+    /// Friction holds the vehicle once the rotors have stopped.
     pub fn may_stay(&self) -> bool {
         self.friction_limit.holds(self.lean, 0.0)
     }
 
-    /// No seat holds such a lean while the arms close.
+    /// The lean exceeds the friction limit of any pipe while the arms close.
     pub fn beyond_seats(&self) -> bool {
         self.lean > FALL_LEAN
     }
 
-    /// The lean is or will be beyond closing arms.
+    /// The lean exceeds, or will exceed, the limit for closing arms.
     pub fn slides(&self) -> bool {
         self.sliding.time() >= SLIDE_TIME
     }
 
-    /// The heading turns away from that of the touch, and still does.
+    /// The heading turns away from that of the touch, and keeps turning.
     pub fn twists(&self) -> bool {
         self.twisting.time() >= SLIDE_TIME
     }
 
-    /// The lean has grown since a release began, and still does.
+    /// The lean has grown since a release began, and keeps growing.
     pub fn gives_way(&self) -> bool {
         self.giving.time() >= SLIDE_TIME
     }
 
-    /// The arms begin to close, or to let go, here.
+    /// Captures the lean at which the arms begin to close or to open.
     pub fn capture_lean(&mut self) {
         self.lean_at_contact = self.lean;
     }
 
-    /// The lean has grown since the arms began to close, and still does: less friction than the parameter's.
+    /// The lean has grown since the arms began to close, and keeps growing: friction is below its parameter.
     pub fn creeps(&self) -> bool {
         self.creeping.time() >= SLIDE_TIME
     }
 
-    /// A vehicle about to perch leans at the touch, or soon after it.
+    /// A vehicle about to perch exceeds the friction limit at the touch, or soon after it.
     pub fn slides_at_touch(&self) -> bool {
         self.leaning.time() >= SLIDE_TIME && self.apart.time() < TOUCH_MEMORY
     }
 
-    /// Friction does not hold the vehicle while the arms let go: the rotors must lift it off.
+    /// Friction does not hold the vehicle while the arms open: the rotors must lift it off.
     pub fn lifts_off(&self) -> bool {
         !self.friction_limit.holds(self.lean, self.release_share)
     }

@@ -1,12 +1,12 @@
-//! A perched body that turns about the pipe, at once or creeping: the arms tighten, a few times, and it is named when it
-//! does not help.
+//! Slip of a perched body about the pipe, fast or creeping: the arms tighten a limited number of times; if the body
+//! keeps turning, the slip is reported.
 //!
-//! With the rotors stopped the arms turn on the pipe where friction gives way, at R μ ΣN, so pressure is what answers it. Not
-//! every turn of the body is one: arms that press lift much of the weight off the belly, and wind or a push across rocks the
-//! body on its pads, by 0.8° for 1.5 N, and lets it back. The pipe holds the arms meanwhile: they bend by as much on one side
-//! and unbend on the other, and their tips stay as they were in the world. A belly that slides first looks the same, so that
-//! excuses some of a turn that stands, and nothing of one that runs. A pair holds the rocking half as stiffly: twice as much
-//! is excused where the turn stands, and what it rocks more than four where it runs.
+//! With the rotors stopped the arms turn on the pipe once the moment exceeds the friction's R μ ΣN, so more pressure
+//! stops the slip. Some turns of the body are no slip: pressing arms lift much of the weight off the belly, and wind or
+//! a push across rocks the body on its pads, by 0.8° for 1.5 N, and lets it back. The pipe then holds the arms: they
+//! bend by as much on one side and unbend on the other, and their tips stay in place in the world. A sliding belly looks
+//! the same at first, so the bending excuses some of a steady turn, and nothing of a fast one. A pair of arms resists
+//! the rocking half as stiffly: twice as much is excused of a steady turn, and the excess over four arms of a fast one.
 
 use crate::allocation::wrench::{PerArm, SIDE};
 use crate::attitude::motion::Motion;
@@ -14,40 +14,43 @@ use crate::maths::filter::LowPass;
 use crate::maths::hold_timer::HoldTimer;
 use crate::maths::scalar::{clamp, deg, slew};
 
-/// Turn since the grip was proven, or tightened last, that is a creep, rad, and the time that it must last, s: a gust
-/// passes. Friction that fails slowly gives so much before it gives way (measured in the plant).
+/// Turn since the grip was proven, or last tightened, that indicates a creep, rad, and the time for which it must last,
+/// s: longer than a gust. Friction that fails slowly allows as much before it gives way (measured in the plant).
 const CREEP: (f32, f32) = (deg(0.5), 0.5);
-/// Rate at which that reference follows, rad/s: an accelerometer that drifts by 10 mg turns no more than 0.6° in minutes.
+/// Rate at which that reference follows, rad/s: an accelerometer that drifts by 10 mg shows a turn of at most 0.6° in
+/// minutes.
 const DRIFT: f32 = deg(0.005);
-/// Turn and outward rate, rad/s, that are a slip, and their time, s: a lean grows e-fold in 0.16 s once friction gives way.
+/// Turn and outward rate, rad/s, that indicate a slip, and their time, s: a lean grows e-fold in 0.16 s once friction
+/// gives way.
 const SLIP: (f32, f32, f32) = (deg(1.0), 0.03, 0.03);
-/// Turn that four arms which bend against it excuse where it stands, rad: a push of 1.5 N in gusts. The fewer arms, the less
-/// stiffly they hold the rocking.
+/// Steady turn excused by the opposite bending of four arms, rad: a push of 1.5 N in gusts. Fewer arms resist the
+/// rocking less stiffly, and excuse more.
 const ROCKS: f32 = deg(0.6);
-/// Cut-off of the arms' bending, rad/s: their sensors' noise of 4 mrad, well within the time of a creep.
+/// Cut-off of the arms' bending, rad/s: suppresses their sensors' noise of 4 mrad, and settles well within the time of
+/// a creep.
 const BEND_CUTOFF: f32 = 10.0;
-/// Least time between answers, s: the pressure follows its reference in 0.25 s.
+/// Least time between tightenings, s: the pressure follows its reference in 0.25 s.
 pub const ANSWER_TIME: f32 = 0.3;
 
-/// See the module's text.
+/// Slip detector, as described in the module header.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Slip {
-    /// Roll, pitch and bending from which turns count, rad.
+    /// Reference of roll, pitch and bending, rad.
     from: Option<[f32; 3]>,
     /// Bending to the right, rad.
     bend: Option<LowPass>,
-    /// Turn that bending excuses where it stands, rad.
+    /// Steady turn that bending excuses, rad.
     rocks: f32,
     creeps: HoldTimer,
     slips: HoldTimer,
-    /// Since the last answer, s.
+    /// Time since the last tightening, s.
     since: f32,
-    /// No answer was left.
+    /// The body slips after the last tightening.
     helpless: bool,
 }
 
 impl Slip {
-    /// One step of `dt` s with the arms' [`bending`], while that is known; true where the arms are to tighten, which they
+    /// One step of `dt` s with the arms' [`bending`], if known; true when the arms must tighten, provided that they
     /// `may`.
     pub fn step(&mut self, motion: Motion, bent: Option<Bent>, may: bool, dt: f32) -> bool {
         let (roll, pitch, _) = motion.q.to_euler();
@@ -67,9 +70,9 @@ impl Slip {
         let [rolled, nodded, bent] = [roll - from[0], pitch - from[1], bend - from[2]];
         let against = -bent * sign(rolled);
         let less = |most: f32| (rolled.abs() - clamp(against, 0.0, most)).max(nodded.abs());
-        // Of a turn that runs bending excuses only what a pair rocks more than four: nothing with four.
+        // Of a fast turn, bending excuses only the excess of a pair over four arms: 0 with four.
         let (stands, runs) = (less(self.rocks), less((self.rocks - ROCKS).max(0.0)));
-        // Body rates are those of roll and pitch near enough for a sign.
+        // Small angles: body rates approximate the rates of roll and pitch, well enough for a sign.
         let outward = if rolled.abs() > nodded.abs() {
             motion.rate.x * sign(rolled)
         } else {
@@ -92,22 +95,22 @@ impl Slip {
         answers
     }
 
-    /// It keeps turning, and the arms do not tighten any more.
+    /// The body keeps turning after the last tightening.
     pub fn helpless(&self) -> bool {
         self.helpless
     }
 }
 
-/// How the arms that hold are bent.
+/// Bending of the arms that hold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bent {
-    /// Mean turn of their tips to the right against the body, rad.
+    /// Mean turn of their tips to the right, relative to the body, rad.
     right: f32,
-    /// Their number.
+    /// Number of these arms.
     arms: f32,
 }
 
-/// Of the `chosen` arms; `None` while a tilt is unknown.
+/// Bending of the `chosen` arms; `None` while a tilt is unknown.
 pub fn bending(tilts: &PerArm<Option<f32>>, chosen: PerArm<bool>) -> Option<Bent> {
     let (mut sum, mut count) = (0.0, 0.0);
     for ((tilt, side), _) in tilts.iter().zip(SIDE).zip(chosen).filter(|(_, chosen)| *chosen) {

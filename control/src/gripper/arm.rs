@@ -17,8 +17,8 @@ const REGAIN_RATE_MAX: f32 = 30.0;
 const LAG_STUCK: f32 = 8.0;
 /// Time at the force limit before the arm counts as limited, s.
 const LIMITED_AFTER: f32 = 1.0;
-/// Age up to which a learnt response is kept for the next run, s: well beyond a closing. Longer under load a printed arm creeps,
-/// and sun or shade changes it; the free arm of the next closing teaches it again.
+/// Age up to which a learnt response is kept for the next run, s: well beyond a closing. Under longer load a printed
+/// arm creeps, and sun or shade changes it; the free arm of the next closing is learnt again.
 const RESPONSE_AGE: f32 = 60.0;
 /// Time of known pressure and tilt after a restart, s: ten servo frames of 20 ms.
 const RESUME_TIME: f32 = 0.2;
@@ -60,15 +60,15 @@ pub struct ArmGripper {
     tilt_missing: f32,
     /// Time at the force limit, s.
     at_limit: f32,
-    /// Unfiltered, Pa.
+    /// Last unfiltered pressure, Pa.
     last_pressure: Option<f32>,
     hold: HoldProof,
     free: FreeProof,
 }
 
 impl ArmGripper {
-    /// Resumes a closed arm with the retained `force` (N), a latched `fault`, which lasts until release, and the `response`
-    /// that it had learnt.
+    /// Resumes a closed arm with the retained `force` (N), a latched `fault`, which lasts until release, and the learnt
+    /// `response`.
     pub fn resume(force: f32, fault: Option<GripFault>, response: Option<f32>) -> Self {
         Self {
             phase: Phase::Resume(0.0),
@@ -241,8 +241,8 @@ impl ArmGripper {
         self.ceiling_watch.pause();
     }
 
-    /// After a restart: seeds the force from the tension by the new attitude, which may shift every tilt by 0.02 rad,
-    /// once known for [`RESUME_TIME`]. The old force would make the servo jump.
+    /// After a restart: once tension and tilt have been known for [`RESUME_TIME`], seeds the force from the tension by
+    /// the new attitude, which may shift every tilt by 0.02 rad. The old force would make the servo jump.
     fn take_over(&mut self, cfg: &Config, contact: &Contact, seen: f32) {
         if seen < RESUME_TIME {
             self.phase = Phase::Resume(seen);
@@ -255,7 +255,7 @@ impl ArmGripper {
             self.bend_watch = Some(BendWatch::of_a_start(&self.bend_sample(contact)));
             Phase::Approach
         };
-        // It may lie on the pipe unfelt.
+        // The arm may lie on the pipe although its sensor shows no touch.
         if !self.response.is_known() {
             self.response = Response::ASSUMED;
             self.response_age = RESPONSE_AGE;
@@ -312,7 +312,7 @@ impl ArmGripper {
         }
     }
 
-    /// An arm without touch must bend as the force rises; otherwise the force returns to its value before.
+    /// An arm without touch must bend as the force rises; otherwise the force returns to its previous value.
     fn watch_bending(&mut self, cfg: &Config, contact: &Contact, dt: f32) {
         self.ceiling_watch.pause();
         let sample = self.bend_sample(contact);

@@ -1,11 +1,11 @@
-//! Detects an arm without touch that does not bend as its load rises, and learns from a free one how far it does.
+//! Detects an arm without touch that does not bend as its load rises, and learns the response of a free arm.
 //!
-//! An obstacle that the sensor does not feel (a cable, the wrong side of a pipe) stops the arm, and the controller
-//! would wind to the force limit. How soft an arm is, the parameters know within a factor of two; how much less one
-//! bends on a pipe, 0.2 to 0.5, is no more than that. So each window of the closing is compared with the free ones
-//! before it.
+//! An obstacle that the sensor does not detect (a cable, the wrong side of a pipe) stops the arm, and the controller
+//! would wind to the force limit. The parameters give an arm's softness only within a factor of two, and on a pipe an
+//! arm bends by only 0.2 to 0.5 of a free one: no fixed threshold separates the two. So each window of the closing
+//! is compared with the free windows before it.
 //!
-//! Load is the tendon's force less what the rotor's thrust takes from it.
+//! The load is the tendon's force minus the share that balances the rotor's thrust.
 
 use super::Config;
 use crate::maths::filter::LowPass;
@@ -13,31 +13,31 @@ use crate::maths::scalar;
 
 /// Bending over which an arm is judged, rad, by its tilt or by its load.
 const WINDOW: f32 = 0.15;
-/// Bending after which a tendon pulls, rad, and the tension that it needs beside, N.
+/// Bending after which a tendon pulls, rad, and the tension that it also needs, N.
 const SETTLED: (f32, f32) = (0.1, 8.0);
 /// Tension at which a tendon pulls in any case, N: below it may be slack, knotted 1 mm too long (8 N) with the tilt off
 /// by 0.03 rad (4 N).
 const TENSION_MIN: f32 = 20.0;
 /// Least share of the free arm's bending: 1 for a free arm, 0.2 to 0.5 on a pipe's skin.
 const BEND_SHARE_MIN: f32 = 0.6;
-/// Response of arms that fly at all, over the parameters'.
+/// Plausible response of flying arms, relative to the parameters.
 pub const RESPONSE: (f32, f32) = (0.4, 2.5);
-/// Response of the stiffest arm, below whose [`BEND_SHARE_MIN`] none bends that is free.
+/// Response of the stiffest arm; a free arm bends by at least [`BEND_SHARE_MIN`] of it.
 const STIFFEST: f32 = 0.5;
 /// Delay of the watch on an arm that starts under tension, s.
 const START_TIME: f32 = 0.4;
 /// Cut-off of tilt, load and tension, rad/s.
 const CUTOFF: f32 = 20.0;
 
-/// Bending of this arm over that of the parameters, learnt while it is free.
+/// Bending of this arm relative to the parameters, learnt while it is free.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Response(Option<f32>);
 
 impl Response {
-    /// As the parameters have it: of an arm that may lie on the pipe already.
+    /// The parameters' response, for an arm that may lie on the pipe already.
     pub const ASSUMED: Self = Self(Some(1.0));
 
-    /// As an earlier run learnt it, 0.4 to 2.5; out of that range, or none, it is unknown.
+    /// Response learnt by an earlier run, 0.4 to 2.5; outside this range, or missing, it is unknown.
     pub fn resumed(learnt: Option<f32>) -> Self {
         let (least, most) = RESPONSE;
         Self(learnt.filter(|r| (least..=most).contains(r)))
@@ -62,7 +62,7 @@ impl Response {
         BEND_SHARE_MIN * self.0.unwrap_or(STIFFEST)
     }
 
-    /// Takes the largest: an arm that bends down gets softer, contact makes it stiffer.
+    /// Keeps the largest: an arm that bends down gets softer, contact makes it stiffer.
     fn learn(&mut self, measured: f32) {
         let (least, most) = RESPONSE;
         let measured = scalar::clamp(measured, least, most);
@@ -108,7 +108,7 @@ impl BendWatch {
         }
     }
 
-    /// For an arm that starts under tension: its late tilt looks like a rise.
+    /// For an arm that starts under tension: its delayed tilt looks like a rise.
     pub fn of_a_start(sample: &BendSample) -> Self {
         Self {
             wait: START_TIME,
@@ -117,7 +117,7 @@ impl BendWatch {
     }
 
     /// One step of `dt` s; returns the force before the rise, N, if the load rose by a window but the tilt hardly fell.
-    /// A window that an arm bends freely raises its `response` where it is unknown or `free` says that it may.
+    /// A window of free bending raises the arm's `response` if that is unknown or `free` allows it.
     pub fn step(
         &mut self,
         cfg: &Config,
@@ -150,7 +150,7 @@ impl BendWatch {
         self.from = Some(now);
         let (_, most) = RESPONSE;
         if expected < WINDOW / most {
-            // Something else than the tendon moved it.
+            // Another force than the tendon's moved the arm.
             return None;
         }
         let measured = bent / expected;

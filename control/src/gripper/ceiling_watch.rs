@@ -6,8 +6,8 @@
 use super::Config;
 use crate::maths::filter::LowPass;
 
-/// Tension rise over which the pressure must rise, N: from touch to grip on a skin of 70 Pa/N, and more than a swinging
-/// arm feels.
+/// Tension rise over which the pressure must rise, N: from touch to grip on a skin of 70 Pa/N, and more than the
+/// disturbance of a swinging arm.
 const WINDOW: f32 = 12.0;
 /// Cut-off of the tension, rad/s: a tilt wrong by 0.1 rad is 20 N for a frame.
 const CUTOFF: f32 = 20.0;

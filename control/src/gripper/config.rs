@@ -11,10 +11,11 @@ pub fn force_per_thrust(p: &Params) -> f32 {
     p.tendon_relief * p.arm_d / p.tendon_lever
 }
 
-/// How often a grip that slips is tightened.
+/// Number of times that a slipping grip is tightened.
 pub const TIGHTENINGS: u8 = 2;
-/// Share of the grip pressure by which it is, each time: friction on the pipe grows with it, 2,850 Pa in all, below the 3 kPa
-/// of a bump. Half of it comes too late: a slip at the limit of friction then goes on (measured in the plant).
+/// Increase at each tightening, share of the grip pressure: friction on the pipe grows with it, to 2,850 Pa in all,
+/// below the 3 kPa of a bump. Half of it is too little: a slip at the limit of friction continues (measured in the
+/// plant).
 const TIGHTER: f32 = 1.0;
 
 /// Derived from the parameters.
@@ -64,13 +65,13 @@ impl Config {
         }
     }
 
-    /// For a grip that was tightened `times`.
+    /// Configuration of a grip that was tightened `times`.
     pub fn tightened(mut self, times: u8) -> Self {
         self.demand.pressure *= 1.0 + TIGHTER * f32::from(times.min(TIGHTENINGS));
         self
     }
 
-    /// For an arm that lets go of `force` while the tightest lets go of `most`, N.
+    /// Configuration of an arm that releases from `force` while the tightest releases from `most`, N.
     pub(super) fn releasing(mut self, force: f32, most: f32) -> Self {
         if most > 0.0 {
             self.release_rate *= scalar::clamp(force / most, 0.0, 1.0);

@@ -1,7 +1,7 @@
 //! Grip and release detector, 100 Hz: whether an arm holds the pipe or is free of it.
 //!
 //! Stepped by the [gripper](crate::gripper), pressures in Pa, forces along the tendon in N. A late step delays a proof,
-//! and the rotors' stop.
+//! and with it the rotors' stop.
 
 use crate::allocation::wrench::PerArm;
 use crate::gripper::grip_fault::GripFault;
@@ -12,9 +12,10 @@ use crate::params::Params;
 /// State of the grip.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct GripState {
-    /// All chosen arms together held the pressure for the dwell time with a force below the limit, and lay round a pipe.
+    /// All chosen arms together held the pressure for the dwell time with a force below the limit, and are bent as
+    /// round a pipe.
     pub proven: bool,
-    /// They hold the pressure, but no pipe; or they close on one that lies across.
+    /// The arms hold the pressure but not a pipe, or close on a pipe that lies across.
     pub misfit: Option<Misfit>,
     /// Every arm is free: no pressure, tendon slack, servo back at release.
     pub released: bool,
@@ -35,7 +36,7 @@ pub struct ArmGrip {
     pub closure: Option<f32>,
     /// Cause of [`ArmState::Faulty`].
     pub fault: Option<GripFault>,
-    /// Bending over the parameters', learnt in this closing less than a minute ago; for the next run.
+    /// Bending relative to the parameters, learnt in this closing less than a minute ago; for the next run.
     pub response: Option<f32>,
 }
 
@@ -66,7 +67,7 @@ const DOUBT_FACTOR: f32 = 4.0;
 const FORCE_SHARE_MAX: f32 = 0.98;
 /// Time for which an arm must look free, s.
 const FREE_DWELL: f32 = 0.1;
-/// With a failed sensor, s: the arm needs time to spring back.
+/// The same with a failed sensor, s: the arm needs time to spring back.
 const FREE_DWELL_BLIND: f32 = 1.0;
 
 /// Demands of a proof.

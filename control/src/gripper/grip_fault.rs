@@ -7,11 +7,11 @@ pub enum GripFault {
     Stale,
     /// The pressure sensor failed; stays until release.
     Sensor,
-    /// An obstacle that the sensor does not feel; stays until release.
+    /// An obstacle that the sensor does not detect; stays until release.
     Unfelt,
     /// The pressure stayed below that of a grip while the force rose: the sensor cannot read it; stays until release.
     Ceiling,
-    /// Tilt missing; ends with it.
+    /// The tilt is missing; ends when it returns.
     Tilt,
     /// A value is not finite; ends when it is.
     NotFinite,

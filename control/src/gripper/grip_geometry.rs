@@ -1,8 +1,8 @@
-//! Whether arms that press lie round one pipe that runs lengthwise: by their tilts, and by what their tendons give.
+//! Whether pressing arms lie round one lengthwise pipe, by their tilts and their tendons' forces.
 //!
 //! Pressure alone proves no grip: an arm may press on its neighbour, and arms across an oblique pipe on each other. An
-//! arm laid round a pipe of radius R is bent by L/R at its tip, whatever its stiffness. The four tilts have a mean and
-//! three differences, each with one cause:
+//! arm laid round a pipe of radius R is bent by L/R at its tip, at any stiffness. The four tilts have a mean and three
+//! differences, each with one cause:
 //!
 //! | part | cause | limit |
 //! |---|---|---|
@@ -14,28 +14,28 @@
 use crate::allocation::wrench::PerArm;
 use crate::maths::scalar::deg;
 
-/// Mean tilt over that round the pipe of the parameters.
+/// Range of the mean tilt, relative to that round the pipe of the parameters.
 const SHARE: (f32, f32) = (0.65, 1.7);
 /// Largest half difference of the pairs: left and right, the two diagonals, front and rear, rad.
 const BESIDE_MAX: f32 = deg(25.0);
 const OBLIQUE_MAX: f32 = deg(60.0);
 const STRAY_MAX: f32 = deg(15.0);
-/// Largest force of a tendon over the smallest: arms of ±20 % (1.5) 70 mm beside the crown (2.5). A weaker one is
-/// pressed by the others.
+/// Largest force of a tendon over the smallest: arms of ±20 % (1.5) 70 mm beside the crown (2.5). The other arms press
+/// an arm with a weaker tendon.
 const FORCE_RATIO_MAX: f32 = 4.0;
-/// What is not known of a tendon's force, N: 1 mm of thread at its knot.
+/// Uncertainty of a tendon's force, N: 1 mm of thread at its knot.
 const FORCE_UNSURE: f32 = 8.0;
 
-/// Why arms that press do not hold a pipe.
+/// Reason for which pressing arms do not hold a pipe.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Misfit {
-    /// Bent as round a pipe of another thickness, or round none.
+    /// Bent as round a pipe of another diameter, or round none.
     Thickness,
     /// The pipe does not run lengthwise.
     Oblique,
     /// The pipe lies to one side, or one arm is elsewhere.
     Uneven,
-    /// A tendon gives so little that the other arms press this one.
+    /// A tendon pulls so little that the other arms press its arm.
     Opposed,
 }
 
@@ -44,11 +44,11 @@ pub enum Misfit {
 pub struct Laid {
     /// Tilt, rad.
     pub tilt: f32,
-    /// Force of its tendon less its share against the rotor's thrust, N.
+    /// Force of its tendon minus the share that balances the rotor's thrust, N.
     pub force: f32,
 }
 
-/// What is wrong with the closed `arms` (`None`: not chosen) round a pipe that bends them by `bend` rad.
+/// Misfit of the closed `arms` (`None`: not chosen) round a pipe that bends them by `bend` rad.
 pub fn misfit(arms: &PerArm<Option<Laid>>, bend: f32) -> Option<Misfit> {
     let laid = || arms.iter().flatten();
     let count = laid().count() as f32;
@@ -71,19 +71,20 @@ pub fn misfit(arms: &PerArm<Option<Laid>>, bend: f32) -> Option<Misfit> {
     opposed.then_some(Misfit::Opposed)
 }
 
-/// No proof is left for closing `arms`, whether they press yet or not: an arm that has found no pipe goes on bending, and that
-/// only adds to the difference of the diagonals.
+/// A proof has become impossible for closing `arms`, pressing or not: an arm that misses the pipe keeps bending, which
+/// only increases the difference of the diagonals.
 pub fn lies_across(arms: &PerArm<Option<Laid>>) -> bool {
     let [_, oblique, _] = differences(arms);
     oblique > OBLIQUE_MAX
 }
 
-/// Half differences of left and right, the diagonals, front and rear, rad; NaN for arms that are no choice of the pilot's.
+/// Half differences of left and right, the diagonals, front and rear, rad; NaN for a set of arms that the pilot cannot
+/// choose.
 fn differences(arms: &PerArm<Option<Laid>>) -> [f32; 3] {
     let half = |a: f32, b: f32| 0.5 * (a - b).abs();
     match arms.map(|a| a.map(|a| a.tilt)) {
         [Some(a), Some(b), Some(c), Some(d)] => [half(a + b, c + d), half(a + d, b + c), half(a + c, b + d)],
-        // Of two arms, beside the crown and oblique are one.
+        // With two arms, the offsets beside the crown and oblique give the same difference.
         [Some(a), None, Some(b), None] | [None, Some(a), None, Some(b)] => [0.0, (a - b).abs(), 0.0],
         _ => [f32::NAN, 0.0, 0.0],
     }

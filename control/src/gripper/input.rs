@@ -13,7 +13,7 @@ const THRUST_CUTOFF: f32 = 30.0;
 pub enum Pressure {
     /// Pa.
     Known(f32),
-    /// Nothing fresh.
+    /// The pressure is stale.
     #[default]
     Stale,
     /// Sensor open, shorted or out of range.

@@ -15,21 +15,21 @@ pub(super) const LAG_MAX: f32 = 20.0;
 /// Cut-off of the fallback force after a lost touch, rad/s.
 const MEAN_FORCE_CUTOFF: f32 = 3.0;
 
-/// Force by which a newton per square metre more is pressed on a pipe, N/Pa (94 Pa/N, docs/design/physics.md).
+/// Tendon force per pressure on a pipe, N/Pa (94 Pa/N, docs/design/physics.md).
 const FORCE_PER_PRESSURE: f32 = 0.0106;
-/// Change of the target that is one, Pa.
+/// Least change of the target that counts as a tightening, Pa.
 const TIGHTENED: f32 = 1.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PressureLoop {
-    /// At the last step, Pa.
+    /// Target at the last step, Pa.
     target: Option<f32>,
     /// Commanded less actual force at touch, decaying, N.
     touch_transient: CascadedLowPass,
     /// Mean force of the last third of a second in touch, N.
     mean_force: LowPass,
     reference: f32,
-    /// N.
+    /// Integral part of the force, N.
     integral: f32,
     last: f32,
     slope: LowPass,
@@ -39,8 +39,8 @@ impl PressureLoop {
     /// Bumpless start: output `force` N, with `transient` N in it, at the contact's pressure, which becomes the
     /// reference.
     ///
-    /// The transient is what the tendon lacked while the arm moved and its tilt came late. As the tilt catches up on
-    /// the standing arm, the same reel position means the smaller force.
+    /// The transient is the force that the tendon lacked while the arm moved and its tilt came late. As the tilt
+    /// catches up on the standing arm, the same reel position means the smaller force.
     pub fn new(contact: &Contact, force: f32, transient: f32) -> Self {
         let base = force - transient - contact.feed_forward;
         Self {
@@ -59,7 +59,7 @@ impl PressureLoop {
         let tighter = cfg.demand.pressure - self.target.unwrap_or(cfg.demand.pressure);
         self.target = Some(cfg.demand.pressure);
         if tighter > TIGHTENED {
-            // A slip does not wait for the reference.
+            // A slip needs the pressure at once: the reference jumps.
             self.reference += tighter;
             self.integral += FORCE_PER_PRESSURE * tighter;
         }

@@ -11,7 +11,7 @@ pub enum GripMemory {
     /// Not checked since power-up: the arms may be closed.
     #[default]
     Unknown,
-    /// Open, or opening on the pilot's wish.
+    /// Open, or opening on the pilot's command.
     Open,
     /// Closed, closing, or not proven free: the clamp loops hold these arms.
     Controlled(ArmChoice),

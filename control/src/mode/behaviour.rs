@@ -11,10 +11,10 @@ use crate::gripper::retained_grip::GripMemory;
 
 /// One state with its fields.
 pub trait Behaviour {
-    /// Before the transitions: updates what their guards read.
+    /// Runs before the transitions and updates the values that their guards read.
     fn observe(&mut self, _step: &mut Step<'_>) {}
 
-    /// When no transition applies.
+    /// Runs when no transition applies.
     fn advance(&mut self, _step: &mut Step<'_>) {}
 
     /// Grip to retain: closed from the first step of closing until every arm is proven free.

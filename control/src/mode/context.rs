@@ -1,4 +1,4 @@
-//! What outlives a state: parameters, the pilot's switches, evidence of support and lean, dangers, the collective.
+//! State that outlives a mode: parameters, the pilot's switches, evidence of support and lean, dangers, the collective.
 
 use super::inputs::Inputs;
 use super::inputs::auto_perch::AutoPerch;
@@ -47,14 +47,14 @@ pub struct PerchSwitch {
     pub seen_off: bool,
     /// On since the arms closed: turning it off opens them.
     pub seen_on: bool,
-    /// On since power-up: its position is no wish of the pilot.
+    /// On since power-up: the arms stay as they are until the pilot has moved it.
     pub left_on: bool,
     /// Time since it was turned off, s.
     pub off: HoldTimer,
 }
 
 impl PerchSwitch {
-    /// Where it stands from here on is no wish, if it is `changed` without the pilot.
+    /// Requires a new turn of the switch if its meaning has `changed` without the pilot.
     pub fn forget(&mut self, changed: bool) {
         self.seen_off &= !changed;
         self.seen_on &= !changed;
@@ -74,10 +74,10 @@ pub struct Context {
     pub gesture: Option<Gesture>,
     /// Last throttle: held when the radio is lost on the pipe.
     pub throttle: f32,
-    /// Off since power-up.
+    /// The arm switch was off since power-up.
     arm_seen_off: bool,
     pub perch_switch: PerchSwitch,
-    /// The hold switch was off since it was last in force.
+    /// The hold switch was off since the last hold.
     pub hold_seen_off: bool,
     pub power_up_grip: PowerUpGripCheck,
     pub lean: Lean,
@@ -85,11 +85,11 @@ pub struct Context {
     pub crown: CrownOffset,
     /// Acceleration along world down, m/s².
     pub accel_down: f32,
-    /// The same summed, beside the estimate's speed.
+    /// Vertical speed from the integral of this acceleration, independent of the position estimate.
     pub vertical_fallback: VerticalFallback,
     pub collective: Collective,
     pub ground_probe: GroundProbe,
-    /// How often the arms have tightened since they closed.
+    /// Number of times that the arms have tightened since they closed.
     pub tightened: u8,
     pub bench: Bench,
     pub remote: Remote,
@@ -154,7 +154,7 @@ impl Context {
         }
         let down = i.motion.map_or(-self.gravity, |m| m.q.rotate(m.accel).z);
         if at_rest && i.motion.is_some() {
-            // Measured at rest: the bias would add up in the sink rate.
+            // Measured at rest: otherwise the bias would add up in the sink rate.
             let seen = clamp(-down, GRAVITY_BOUNDS.0, GRAVITY_BOUNDS.1);
             self.gravity += (seen - self.gravity) * dt / (dt + GRAVITY_TIME);
         }
@@ -173,7 +173,7 @@ impl Context {
         self.dangers.step(i, &self.params, dt);
     }
 
-    /// Makes the gesture that `order` stands for.
+    /// Sets the gesture that `order` stands for.
     pub fn obey(&mut self, order: RemoteOrder) {
         self.gesture = remote::gesture(order).or(self.gesture);
         self.remote.kill = order == RemoteOrder::Kill;
@@ -205,7 +205,7 @@ impl Context {
         }
     }
 
-    /// On which side the crown is, while the vehicle rests beside it.
+    /// Side of the vehicle on which the crown lies, while it rests beside it.
     pub fn crown_side(&self) -> Option<Reason> {
         self.crown.side().map(|side| match side {
             CrownSide::Left => Reason::CrownLeft,
@@ -219,7 +219,8 @@ impl Context {
             .arms()
             .unwrap_or(i.sticks.unwrap_or_default().arms)
             .mask();
-        // Opening arms still pull at the pipe, and rotors would at them: only proven-free arms are free.
+        // Opening arms still pull at the pipe, and running rotors would pull at these arms: only arms that are proven
+        // free count.
         let arms_closed = match grip_memory {
             GripMemory::Open => !i.grip.is_some_and(|grip| grip.released),
             GripMemory::Controlled(_) | GripMemory::HeldByGears(_) => !self.grasps(i, grip_memory),
@@ -251,8 +252,9 @@ impl Context {
             .filter(|(_, chosen)| !chosen)
             .fold(inhibits, |all, (range, _)| all.without(range));
         if grip_memory.arms().is_some() {
-            // Armed on the pipe, the rotors stay stopped. The perch switch is on there, and off opens the arms; a
-            // broken supply cannot be repaired, and servos that will be without power are to open the arms before.
+            // Armed on the pipe, the rotors stay stopped. The perch switch is on there, and turning it off opens the
+            // arms. A broken servo supply cannot be repaired there, and the servos should open the arms before they
+            // lose power.
             inhibits
                 .without(ArmingInhibit::PerchSwitchOn)
                 .without(ArmingInhibit::BrownOut)
@@ -263,8 +265,8 @@ impl Context {
         }
     }
 
-    /// The arms of `grip_memory` hold something. For the gears some pressure is enough: a weak servo yields to what its
-    /// friction carries.
+    /// True if the arms of `grip_memory` hold something. For arms held by their gears some pressure is enough: a weak
+    /// servo yields until its friction carries the load.
     pub fn grasps(&self, i: &Inputs, grip_memory: GripMemory) -> bool {
         match grip_memory {
             GripMemory::Controlled(arms) => held(i.grip, arms, &self.params),
@@ -286,7 +288,7 @@ impl Context {
         }
     }
 
-    /// The arms of `wish` as tight as they have become.
+    /// Replaces a closing `wish` by the number of tightenings made so far.
     pub fn tight(&self, wish: ClampCommand) -> ClampCommand {
         match wish {
             ClampCommand::Close { arms } if self.tightened > 0 => ClampCommand::Tighten {
@@ -302,8 +304,8 @@ impl Context {
         4.0 * self.params.thrust_max
     }
 
-    /// The collective on the pipe while the arms close, N: `perch_lift` of the weight; not more than the pilot's throttle,
-    /// unless that is centred for a perch by itself.
+    /// Collective on the pipe while the arms close, N: `perch_lift` of the weight, limited to the pilot's throttle;
+    /// autonomous perching ignores the throttle, which is centred.
     pub fn set_down_thrust(&self) -> f32 {
         let most = self.params.perch_lift * self.contact_force.weight();
         if self.auto_perch.active {

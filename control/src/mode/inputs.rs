@@ -1,4 +1,4 @@
-//! Inputs of the mode logic, and what follows from them alone: autonomous perching, orders of ground station and bench,
+//! Inputs of the mode logic and their direct consequences: autonomous perching, orders of ground station and bench,
 //! dangers.
 
 pub mod auto_perch;
@@ -47,14 +47,14 @@ pub struct Inputs {
     pub bench: Option<BenchRequest>,
     /// Order of a remote link.
     pub remote: Option<RemoteRequest>,
-    /// Where the vehicle is; its own age says since when that is only by the inertial sensor.
+    /// Position estimate; its age is the time since it became inertial only.
     pub position: Option<Estimate>,
-    /// Where the pipe is, in the axes of the poses.
+    /// Position of the pipe, in the axes of the poses.
     pub target: Option<PipeTarget>,
 }
 
 impl Inputs {
-    /// Why the servo battery allows no perch, nor a longer one.
+    /// Reason for which the servo battery forbids a perch, or the continuation of one.
     pub fn servo_trouble(&self) -> Option<ArmingInhibit> {
         match self.servo_supply {
             ServoSupply::Silent => Some(ArmingInhibit::ServoBatterySilent),
@@ -68,12 +68,12 @@ impl Inputs {
         self.motion.is_some() && self.position_younger(FRESH_AGE)
     }
 
-    /// The inertial sensor alone is no longer good for an approach.
+    /// Dead reckoning has lasted too long for an approach.
     pub fn position_adrift(&self) -> bool {
         !self.position_younger(APPROACH_AGE)
     }
 
-    /// The position, the height included, is no longer known.
+    /// The position, including the height, has been lost.
     pub fn position_lost(&self) -> bool {
         let by_pressure = self.position.is_some_and(|e| e.by_pressure);
         !self.position_younger(if by_pressure { PRESSURE_AGE } else { HEIGHT_AGE })

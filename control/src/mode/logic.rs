@@ -26,12 +26,12 @@ pub struct ModeLogic {
 }
 
 impl ModeLogic {
-    /// A vehicle just powered up: it first finds out whether its arms are closed.
+    /// A vehicle just powered up: it first checks whether its arms are closed.
     pub fn new(params: &Params) -> Self {
         Self::resume(params, GripMemory::Unknown)
     }
 
-    /// A vehicle restarted with this grip. The rotors wait for the pilot in any case.
+    /// A vehicle restarted with this grip. The rotors wait for the pilot in either case.
     pub fn resume(params: &Params, grip_memory: GripMemory) -> Self {
         Self {
             context: Context::new(params),
@@ -113,7 +113,7 @@ impl ModeLogic {
         self.decide(inputs, dt)
     }
 
-    /// What speaks against `order`; where nothing does, the perch switch is turned.
+    /// Reason against `order`; without one, turns the perch switch.
     fn weigh(&mut self, order: RemoteOrder, inputs: &Inputs, dt: f32) -> Option<RemoteRefusal> {
         let inputs = &self.context.remote.apply(*inputs);
         let step = &Step {

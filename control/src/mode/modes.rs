@@ -15,7 +15,7 @@ macro_rules! for_each_mode {
                 Flight in flight = 3, "FLIGHT";
                 /// Free flight that holds the position; the sticks ask for velocities.
                 Hold in hold = 11, "HOLD";
-                /// Free flight onto the pipe, or off it, by itself.
+                /// Autonomous free flight onto the pipe, or off it.
                 Approach in approach = 12, "APPROACH";
                 /// Resting on the pipe with the rotors still helping; attitude held, yaw given up.
                 Contact in contact = 4, "CONTACT";
@@ -25,11 +25,12 @@ macro_rules! for_each_mode {
                 Perched in perched = 6, "PERCHED";
                 /// Rotors spooled up again, tendons paying out until every arm is proven free.
                 Releasing in releasing = 7, "RELEASING";
-                /// Leaving the pipe by itself after a slide or a closing that was given up, until the pilot takes the throttle.
+                /// Leaving the pipe autonomously after a slide or an abandoned closing, until the pilot takes the
+                /// throttle.
                 Escaping in escaping = 10, "ESCAPING";
                 /// On the ground again, rotors idle, about to disarm.
                 Landed in landed = 8, "LANDED";
-                /// The pilot is lost or the battery empty: descend, stop on whatever carries.
+                /// Radio lost or battery empty: descend, stop on any support.
                 Failsafe in failsafe = 9, "FAILSAFE";
         }
     };
@@ -63,7 +64,7 @@ impl Mode {
         Self::ALL.into_iter().find(|m| m.name() == name)
     }
 
-    /// The rotors stand still. In other modes the transitions that stop everything apply.
+    /// The rotors are stopped. In other modes the transitions that stop everything apply.
     pub const fn rotors_stand(self) -> bool {
         matches!(self, Self::Calibrating | Self::Disarmed | Self::Perched)
     }

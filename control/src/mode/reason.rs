@@ -3,13 +3,13 @@
 use crate::arming::ArmingInhibit;
 use crate::gripper::grip_fault::GripFault;
 
-/// Declares the reasons that carry nothing, with the text of each.
+/// Declares the reasons without a field, with the text of each.
 macro_rules! reasons {
     ($($(#[$doc:meta])+ $name:ident = $text:literal,)+) => {
-        /// Why the vehicle is in its mode, stays in it, or has left the one before.
+        /// Why the vehicle entered its mode, stays in it, or left the previous one.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum Reason {
-            /// What also forbids arming.
+            /// A failed arming check.
             Check(ArmingInhibit),
             /// A chosen arm is faulty.
             ArmFault(Option<GripFault>),
@@ -17,7 +17,7 @@ macro_rules! reasons {
         }
 
         impl Reason {
-            /// Every reason beside those of the arming checks and of the arms' faults.
+            /// Every reason except the arming checks and the arms' faults.
             pub const PLAIN: &'static [Self] = &[$(Self::$name),+];
 
             /// For the pilot's display: at most 40 ASCII characters.
@@ -46,53 +46,53 @@ reasons! {
     TippedOver = "tipped over",
     /// A landing on the pipe takes a new turn of the perch switch.
     PerchSwitchNotOff = "turn perch switch off first",
-    /// It feels the pipe and leans too much to close the arms.
+    /// It touches the pipe and leans too much to close the arms.
     NotOnCrown = "leaning, not on the crown",
     /// A hold takes a new turn of its switch.
     HoldSwitchNotOff = "turn hold switch off first",
-    /// Nobody has said in time where the vehicle is.
+    /// The position estimate is missing or too old to begin a hold.
     NoPosition = "no position to hold",
-    /// Holding: height and learnt wind alone, until a position comes or the hold ends.
+    /// Hold by dead reckoning: height and estimated wind only, until a position returns or the hold ends.
     PositionStale = "position stale: steer it",
     /// The hold has ended.
     PositionLost = "position lost: throttle to hover",
-    /// Perching by itself takes centred sticks, so that their motion can end it.
+    /// Autonomous perching requires centred sticks, so that the pilot ends it by moving one.
     SticksNotCentred = "centre the sticks to perch",
-    /// Perching by itself takes a fresh range, or a place of the pipe.
+    /// Autonomous perching requires a fresh range, or a known position of the pipe.
     NoRange = "no range to perch by",
-    /// The pilot has ended the perching by itself.
+    /// The pilot has ended autonomous perching.
     TakenOver = "perching ended by the pilot",
-    /// Perching by itself: no pipe across the whole search.
+    /// Autonomous perching: the whole search found no pipe.
     NoPipe = "no pipe found",
-    /// Perching by itself: no room between the pipe's ends.
+    /// Autonomous perching: too little room between the pipe's ends.
     PipeTooShort = "pipe too short to perch",
-    /// Perching by itself: the range no longer sees the pipe.
+    /// Autonomous perching: the range has lost the pipe.
     PipeLost = "pipe lost from below",
-    /// Perching by itself: not at rest over the crown in time.
+    /// Autonomous perching: the vehicle did not settle over the crown in time.
     NotCentred = "not settled over the crown",
-    /// Perching by itself: nothing was touched.
+    /// Autonomous perching: no contact at touchdown.
     NotTouched = "nothing touched at the crown",
-    /// Perching by itself: something carries it where nothing was seen so near.
+    /// Autonomous perching: contact earlier than the range predicts.
     TouchedEarly = "touched before the crown: climbing",
-    /// Perching by itself: the range is missing.
+    /// Autonomous perching: the range is missing.
     RangeStale = "range stale",
-    /// Perching by itself: the height by the range goes another way than the vehicle.
+    /// Autonomous perching: height by the range is inconsistent with the vehicle's motion.
     RangeMisfit = "range does not fit the motion",
-    /// Perching by itself: another computer no longer says where the pipe is.
+    /// Autonomous perching: the companion computer has stopped sending the pipe's position.
     TargetStale = "pipe target stale",
-    /// Perching by itself: where the pipe is said to be it cannot be.
+    /// Autonomous perching: the reported position of the pipe is implausible.
     TargetFar = "pipe target not near and below",
-    /// Perching by itself: the pipe is said to be elsewhere.
+    /// Autonomous perching: the reported position of the pipe has jumped.
     TargetJumps = "pipe target jumps",
-    /// The vehicle leaves the pipe by itself.
+    /// The vehicle leaves the pipe autonomously.
     SlidesOff = "sliding off the pipe",
-    /// After an escape the throttle has not been moved.
+    /// The throttle has not been moved after an escape.
     NotTakenOver = "throttle not taken over",
     /// The perch switch was turned off while the arms closed.
     ClosingCancelled = "closing cancelled",
-    /// A chosen arm pulls as hard as it may and does not hold.
+    /// A chosen arm pulls at its force limit and does not hold.
     ForceLimit = "force limit reached without grip",
-    /// The arms press as round another pipe than the parameters', or round none.
+    /// The arms are bent as round a pipe of another diameter, or round none.
     PipeMisfit = "arms do not fit the pipe",
     /// The arms press round a pipe that does not run lengthwise.
     PipeOblique = "pipe is oblique: line up with it",
@@ -102,35 +102,35 @@ reasons! {
     ArmsOpposed = "arms pull against each other",
     /// The arms press, but friction would not hold this lean once the rotors stand.
     LeansToStay = "leaning too far to stay",
-    /// The arms have closed for as long as they may.
+    /// The closing has taken its longest time.
     GripNotProven = "grip not proven in time",
-    /// The rotors come back because the arms do not hold any more.
+    /// The rotors spool up again because the arms have lost their hold.
     GripLostSpooling = "grip lost while spooling down",
     /// Resting on the pipe: the crown is to the left.
     CrownLeft = "on the pipe: crown to the left",
     /// Resting on the pipe: the crown is to the right.
     CrownRight = "on the pipe: crown to the right",
-    /// Perched: the body turns about the pipe, and the arms tighten for the first time.
+    /// Perched: the body turns about the pipe; first tightening of the arms.
     TightensOnce = "slips: arms tighten, 1 of 2",
-    /// The same for the last time.
+    /// Second and last tightening.
     TightensLast = "slips: arms tighten, 2 of 2",
-    /// Perched: the body goes on turning about the pipe, and the arms do not tighten any more.
+    /// Perched: the body keeps turning about the pipe after the last tightening.
     Slips = "slipping round the pipe",
-    /// Perched: nothing is known of the grip.
+    /// Perched: the state of the grip is unknown.
     ClampSilent = "clamp loop silent",
-    /// Perched: an arm does not hold any more.
+    /// Perched: an arm has lost its hold.
     GripLost = "grip lost",
     /// A release takes a new turn of the perch switch.
     PerchSwitchNotOn = "turn perch switch on first",
     /// A release takes the arm switch.
     ArmSwitchOff = "arm switch off",
-    /// The arms are not opened: the belly would slide before the rotors carry.
+    /// The arms stay closed: the belly would slide before the rotors carry the weight.
     LeansTooFar = "leaning too far to let go",
-    /// The arms open while the rotors lift it off: the belly would slide.
+    /// The rotors lift the vehicle off while the arms open, since the belly would slide.
     LiftsOff = "leaning: lifting off",
     /// A release takes less throttle.
     ThrottleTooHigh = "throttle too high to release",
-    /// The arms are open, and their sensors still press.
+    /// The tendons are slack, and the arms' pressure sensors still read contact.
     ArmsStuck = "arms do not come free",
 }
 
@@ -141,6 +141,6 @@ impl Reason {
     pub const IMU_SILENT: Self = Self::Check(ArmingInhibit::ImuStale);
     /// No fresh voltage of the flight battery.
     pub const BATTERY_SILENT: Self = Self::Check(ArmingInhibit::BatterySilent);
-    /// The inertial sensor is read by the clock, its data-ready line being silent.
+    /// The data-ready line of the inertial sensor is silent; the sensor is polled by the clock.
     pub const LINE_SILENT: Self = Self::Check(ArmingInhibit::ImuLineSilent);
 }

@@ -9,7 +9,7 @@ use super::states::perched::Perched;
 use crate::pilot::remote::{RemoteOrder, RemoteRefusal};
 use crate::pilot::stick_positions::{centred, keeps_hold};
 
-/// What speaks against `order` before the step; `step` has the pilot's own switches.
+/// Reason against `order`, evaluated before the step; `step` has the pilot's own switches.
 pub fn refusal(order: RemoteOrder, state: &State, step: &Step<'_>) -> Option<RemoteRefusal> {
     let mode = state.mode();
     match order {
@@ -41,7 +41,7 @@ pub fn refusal(order: RemoteOrder, state: &State, step: &Step<'_>) -> Option<Rem
     }
 }
 
-/// Disarmed with arms that the perch switch opens.
+/// Disarmed, with closed arms that the perch switch opens.
 fn at_rest_closed(state: &State) -> Result<(), RemoteRefusal> {
     match state {
         State::Disarmed(d) if d.grip_memory.arms().is_some() => Ok(()),
@@ -49,7 +49,7 @@ fn at_rest_closed(state: &State) -> Result<(), RemoteRefusal> {
     }
 }
 
-/// Why the perch switch turned on would not begin the perching by itself.
+/// Reason for which turning the perch switch on would not start autonomous perching.
 fn not_approached(step: &Step<'_>) -> Option<RemoteRefusal> {
     approach::obstacle(step).map(|why| match why {
         Reason::SticksNotCentred => RemoteRefusal::SticksNotCentred,
@@ -57,7 +57,7 @@ fn not_approached(step: &Step<'_>) -> Option<RemoteRefusal> {
     })
 }
 
-/// Why the perch switch turned off would not let go now: an order leaves no wish behind that acts later.
+/// Reason for which turning the perch switch off would not release now: a refused order must not act later.
 fn not_released(step: &Step<'_>) -> Option<RemoteRefusal> {
     let sticks = step.inputs.sticks?;
     let context = &step.context;
@@ -77,12 +77,12 @@ fn not_released(step: &Step<'_>) -> Option<RemoteRefusal> {
     }
 }
 
-/// What `order` has come to in `mode`, after the step.
+/// Result of `order` in `mode`, after the step.
 pub fn outcome(order: RemoteOrder, mode: Mode) -> Option<RemoteRefusal> {
     match (order, mode) {
         (RemoteOrder::Arm, Mode::Disarmed | Mode::Calibrating) => Some(RemoteRefusal::Checks),
         (RemoteOrder::Disarm, Mode::Perched) => Some(RemoteRefusal::ArmSwitchOn),
-        // Something came up in this very step.
+        // A danger arose in this very step.
         (RemoteOrder::Release, Mode::Perched) => Some(RemoteRefusal::MustStay),
         (RemoteOrder::Disarm, mode) if !mode.rotors_stand() => Some(RemoteRefusal::Flying),
         _ => None,

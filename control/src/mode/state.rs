@@ -1,4 +1,4 @@
-//! The state of the machine: a mode with its fields, and how it begins.
+//! The state of the machine: a mode with its fields, and the entry functions.
 
 use super::behaviour::Behaviour;
 use super::context::Step;

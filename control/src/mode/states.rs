@@ -1,4 +1,4 @@
-//! The state of each mode, one file a mode: its fields, its setpoints, the reason that it shows.
+//! The state of each mode, one file a mode: its fields, its setpoints, its displayed reason.
 
 pub mod approach;
 pub mod armed;

@@ -1,4 +1,4 @@
-//! The transition table: rows, guards and what happens on entry.
+//! The transition table: rows, guards and entry functions.
 
 pub mod entries;
 pub mod guards;

@@ -1,39 +1,39 @@
-//! What a builder tries on the table: orders of the console, and what the mode logic answers.
+//! Bench tests of motors and servos: orders of the console and the replies of the mode logic.
 //!
-//! An order has a number and is renewed under it while it lasts: one that is not renewed ends
+//! An order has a number, and the console renews it under that number while it lasts; without renewal it ends
 //! ([`crate::mode::ModeLogic`], in DISARMED alone).
 
 use crate::allocation::wrench::PerArm;
 
-/// Time for which a motor is spun, s: enough to see which one turns and which way.
+/// Longest spin of a motor, s: enough to see which one turns and in which direction.
 pub const SPIN_TIME: f32 = 2.0;
-/// Largest drive of a motor on the bench, share of full drive: 0.34 N of the 8.3 N that a rotor has at most, a fiftieth of
-/// what lifts the vehicle, should a propeller still be on.
+/// Largest drive of a motor on the bench, share of full drive: 0.34 N of the 8.3 N that a rotor has at most, a fiftieth
+/// of the lift-off thrust, should a propeller still be on.
 pub const SPIN_DRIVE_MAX: f32 = 0.12;
-/// Smallest drive, share of full drive: controllers do not start a motor on less.
+/// Smallest drive, share of full drive: controllers do not start a motor below it.
 pub const SPIN_DRIVE_MIN: f32 = 0.02;
-/// Drive where none is named, share of full drive: about what an armed rotor idles at.
+/// Default drive, share of full drive: about that of an idling rotor when armed.
 pub const SPIN_DRIVE: f32 = 0.08;
-/// Time for which a servo is held away from its release mark, s: one that pulls at an arm gets hot.
+/// Longest time for which a servo is held away from its release mark, s: one that pulls at an arm gets hot.
 pub const PLACE_TIME: f32 = 30.0;
-/// Pulses that a servo takes, µs: the usual 500 to 2500.
+/// Shortest pulse of a servo, µs, of the usual 500 to 2500.
 pub const PULSE_MIN_US: f32 = 500.0;
-/// The longest of them, µs.
+/// Longest pulse, µs.
 pub const PULSE_MAX_US: f32 = 2500.0;
 
 /// One motor at a low drive, the others stopped.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spin {
-    /// Which, 0 to 3.
+    /// Index of the rotor, 0 to 3.
     pub rotor: usize,
-    /// Share of full drive, at most [`SPIN_DRIVE_MAX`]; raised to what turns a rotor.
+    /// Share of full drive, at most [`SPIN_DRIVE_MAX`]; raised to the least drive that turns a rotor.
     pub drive: f32,
-    /// Not raised: looks for the drive that turns it.
+    /// Search for the least drive that turns the rotor: `drive` is not raised.
     pub probes: bool,
 }
 
 impl Spin {
-    /// Turns `rotor` at `drive`, or as slowly as its controller can where that is faster.
+    /// Turns `rotor` at `drive`, or at its controller's least speed if that is faster.
     pub const fn at(rotor: usize, drive: f32) -> Self {
         Self {
             rotor,
@@ -42,7 +42,7 @@ impl Spin {
         }
     }
 
-    /// The drive that it gets, where rotors turn from the command `least` on; 0 beyond the limit.
+    /// Resulting drive if rotors turn from the command `least` on; 0 beyond the limit.
     pub fn drive(&self, least: f32) -> f32 {
         match self.drive {
             drive if drive <= SPIN_DRIVE_MAX && (self.probes || drive > least) => drive,
@@ -51,8 +51,8 @@ impl Spin {
         }
     }
 
-    /// Motor commands, never beyond the limit, where rotors turn from the command `least` on; none for a rotor that there
-    /// is not.
+    /// Motor commands, never beyond the limit, if rotors turn from the command `least` on; all 0 for an invalid rotor
+    /// index.
     pub fn commands(&self, least: f32) -> PerArm<f32> {
         let mut commands = [0.0; 4];
         if let Some(command) = commands.get_mut(self.rotor) {
@@ -69,7 +69,7 @@ impl Spin {
 /// One servo at a pulse, the others at their release marks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
-    /// Which, 0 to 3.
+    /// Index of the servo, 0 to 3.
     pub servo: usize,
     /// Pulse width, µs, within [`PULSE_MIN_US`] and [`PULSE_MAX_US`].
     pub pulse_us: f32,
@@ -81,21 +81,21 @@ impl Place {
     }
 }
 
-/// What is asked.
+/// An order of the bench.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BenchOrder {
-    /// Whatever lasts is to end.
+    /// Ends the running order.
     End,
-    /// The builder says that the propellers are off: motors may be tried.
+    /// The builder confirms that the propellers are off: motors may be tried.
     PropellersOff,
-    /// For [`SPIN_TIME`] at most.
+    /// Spins a motor, for [`SPIN_TIME`] at most.
     Spin(Spin),
-    /// For [`PLACE_TIME`] at most, then back to the release mark.
+    /// Places a servo, for [`PLACE_TIME`] at most, then back to the release mark.
     Place(Place),
 }
 
 impl BenchOrder {
-    /// For how long it may last, s.
+    /// Longest duration, s.
     pub const fn longest(&self) -> f32 {
         match self {
             Self::End | Self::PropellersOff => 0.0,
@@ -114,12 +114,12 @@ impl BenchOrder {
     }
 }
 
-/// An order under its number; under another number it is another one.
+/// An order with its number; the same order under a new number starts again.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BenchRequest {
     /// Counts from 1.
     pub number: u32,
-    /// What is asked.
+    /// The order.
     pub order: BenchOrder,
 }
 
@@ -148,32 +148,32 @@ bench_refusals! {
     Storing = "storing parameters: restart first";
     /// The vehicle may hang on its arms.
     ArmsClosed = "arms closed: perch switch on and off opens them";
-    /// Whether it hangs on its arms has not been found out.
+    /// It is unknown whether the vehicle hangs on its arms.
     GripUnknown = "pressure sensors silent: whether the arms hold is not known";
     /// The builder has not confirmed that the propellers are off.
     PropellersOn = "say 'propellers off' first, once they are";
     /// The motors' path runs at the sensor's pace.
     ImuSilent = "inertial sensor silent: motors wait for it";
-    /// No pulse turns a motor safely.
+    /// The motor pulses are out of order: no pulse turns a motor safely.
     MotorPulses = "motor pulses out of order";
     /// A number is beyond its limits.
     OutOfRange = "out of range";
-    /// Who gave the order has not renewed it.
+    /// The sender of the order has not renewed it.
     NotRenewed = "console silent";
     /// A command to disarm came.
     Disarm = "disarmed by command";
-    /// An order of another line lasts.
+    /// An order of another line is running.
     InUse = "another line uses the bench";
 }
 
-/// The bench as who wants to give an order sees it.
+/// State of the bench as the sender of an order sees it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BenchView {
-    /// Number of the newest order, of whichever line.
+    /// Number of the newest order, from any line.
     pub newest: u32,
-    /// That order is still renewed.
+    /// The sender still renews that order.
     pub renewed: bool,
-    /// The newest answer.
+    /// Reply to that order.
     pub answer: BenchAnswer,
 }
 
@@ -181,7 +181,7 @@ impl BenchView {
     /// The number of the next order of a line whose last one was `own`.
     ///
     /// # Errors
-    /// Another line's order lasts.
+    /// An order of another line is running.
     pub fn next(&self, own: u32) -> Result<u32, BenchRefusal> {
         let lasts = self.answer.number != self.newest || self.answer.state == BenchState::Running;
         if self.newest != own && self.renewed && lasts {
@@ -191,26 +191,26 @@ impl BenchView {
     }
 }
 
-/// What has become of the newest order.
+/// State of the newest order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BenchState {
-    /// There was none, or it has ended as it should.
+    /// No order yet, or the order has ended as intended.
     #[default]
     Done,
-    /// It lasts.
+    /// The order is running.
     Running,
-    /// It never began.
+    /// The order was refused before it began.
     Refused(BenchRefusal),
-    /// It was ended before its time.
+    /// The order was ended before its time.
     Ended(BenchRefusal),
 }
 
-/// The answer to the order with this number.
+/// The reply to the order with this number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BenchAnswer {
-    /// The order's; 0 before the first.
+    /// Number of the order; 0 before the first.
     pub number: u32,
-    /// What has become of it.
+    /// State of that order.
     pub state: BenchState,
 }
 

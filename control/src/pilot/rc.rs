@@ -14,12 +14,12 @@
 //! | 8 | arms that close | all, front, rear |
 //! | 9 | hold switch | off, off, on |
 //!
-//! Channel 9 came later: a transmitter that leaves it out, or centres it, flies without.
+//! Channel 9 is optional: a transmitter that omits or centres it flies without hold.
 //!
-//! Counts above the stick's end come from a transmitter that is there (EdgeTX's extended limits send up to 1984, full
-//! resolution up to 2047): the stick is at its end. So it is over SBUS, which has no checksum: to refuse them would
-//! keep out one of four random frames, where header, flags and end of three in a row keep out all but 5e-14. Counts
-//! below the least are what receivers send without a transmitter.
+//! Counts above the stick's end are valid (EdgeTX's extended limits send up to 1984, full resolution up to 2047) and
+//! read as the stick's end, also over SBUS, which has no checksum: refusing them would reject one of four random
+//! frames, while header, flags and end of three frames in a row reject all but 5e-14. Counts below the least are sent
+//! by receivers without a transmitter.
 
 use crate::maths::scalar::clamp;
 

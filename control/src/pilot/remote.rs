@@ -1,16 +1,17 @@
-//! What a ground station or a companion computer may order beside the pilot's radio, and what the mode logic answers.
+//! Orders that a ground station or a companion computer may give beside the pilot's radio, and the replies of the mode
+//! logic.
 //!
-//! The pilot's link stays the one that flies: an order stands for a gesture or a turn of a switch that he could make, is
-//! held to the same conditions, and never lifts what his own switches forbid ([`crate::mode::ModeLogic`]).
+//! The pilot's link stays in command: an order stands for a gesture or a switch position of the pilot, meets the same
+//! conditions, and never overrides a prohibition by his own switches ([`crate::mode::ModeLogic`]).
 
-/// What is ordered.
+/// An order of a remote link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RemoteOrder {
     /// The arming gesture.
     Arm,
     /// The disarming gesture.
     Disarm,
-    /// The arm switch turned off, wherever the vehicle is.
+    /// The arm switch turned off, in any mode.
     Kill,
     /// The perch switch turned on.
     Grab,
@@ -21,9 +22,9 @@ pub enum RemoteOrder {
 /// An order under its number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RemoteRequest {
-    /// Counts from 1, over all who give orders: one that is not above the last is not obeyed again.
+    /// Counts from 1, over all senders: a number that is not above the last is ignored.
     pub number: u32,
-    /// What is ordered.
+    /// The order.
     pub order: RemoteOrder,
 }
 
@@ -35,10 +36,10 @@ macro_rules! remote_refusals {
         pub enum RemoteRefusal { $($(#[$doc])+ $name,)+ }
 
         impl RemoteRefusal {
-            /// Every one.
+            /// Every refusal.
             pub const ALL: [Self; [$($text),+].len()] = [$(Self::$name),+];
 
-            /// For who gave the order, at most 40 ASCII characters.
+            /// Text for the sender, at most 40 ASCII characters.
             pub const fn text(self) -> &'static str {
                 match self { $(Self::$name => $text,)+ }
             }
@@ -47,39 +48,39 @@ macro_rules! remote_refusals {
 }
 
 remote_refusals! {
-    /// An arming check fails: which ones is in the commander's view.
+    /// An arming check fails; the commander's view lists the failed checks.
     Checks = "arming checks fail";
-    /// A radio is there and forbids running motors, or a release.
+    /// The pilot's radio is received and its arm switch forbids running motors, or a release.
     ArmSwitchOff = "arm switch off";
-    /// Off the pipe or out of its grip the arm switch comes first.
+    /// Off the pipe, or on it without a grip, the arm switch comes first.
     ArmSwitchOn = "arm switch on: turn it off first";
-    /// Rotors carry the vehicle.
+    /// The rotors carry the vehicle.
     Flying = "flying: land first";
-    /// No pilot who could take over.
+    /// Without radio the pilot could not take over.
     RadioLost = "radio lost";
-    /// The perch switch would do nothing here.
+    /// The perch switch has no effect in this mode.
     NotHere = "only in flight or on the pipe";
     /// The pilot's switch has been on since the last try.
     SwitchNotOff = "turn perch switch off first";
-    /// The switch, or a grab, comes before a release.
+    /// A release requires that the switch was on or a grab was obeyed.
     SwitchNotOn = "turn perch switch on or grab first";
-    /// What forbids to leave the pipe: battery or data-ready line.
+    /// A danger forbids leaving the pipe: battery or data-ready line.
     MustStay = "must stay: battery or inertial sensor";
-    /// The belly would slide before the rotors carry.
+    /// The belly would slide before the rotors carry the weight.
     LeansTooFar = "leaning too far to let go";
-    /// The rotors could not carry, or would tear at the arms.
+    /// The throttle is too low to carry the vehicle, or so high that the rotors would tear at the arms.
     Throttle = "throttle not set for a release";
-    /// Perching by itself waits for hands off the sticks.
+    /// Autonomous perching requires centred sticks.
     SticksNotCentred = "centre the sticks first";
-    /// It cannot be done by itself without both.
+    /// Autonomous perching requires a position and a range.
     NoWay = "no position or no range to perch by";
 }
 
-/// The answer to the order with this number.
+/// The reply to the order with this number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RemoteAnswer {
-    /// The order's; 0 before the first.
+    /// Number of the order; 0 before the first.
     pub number: u32,
-    /// Why it was refused; `None`: obeyed.
+    /// Reason of the refusal; `None`: obeyed.
     pub refusal: Option<RemoteRefusal>,
 }

@@ -4,19 +4,19 @@ use super::rc::{StickMode, Sticks};
 
 /// Throttle of a centred stick, 0..1.
 pub const THROTTLE_CENTRE: f32 = 0.5;
-/// Half width of the zone about the centre that asks for no climb, share of the travel.
+/// Half width of the zone about the centre that commands no climb, share of the travel.
 pub const THROTTLE_ZONE: f32 = 0.1;
-/// Deflection of a stick that takes over, share of its travel.
+/// Deflection by which a stick takes over, share of its travel.
 const STICK: f32 = 0.12;
-/// The same of the throttle, from its centre.
+/// The same for the throttle, from its centre.
 const THROTTLE: f32 = THROTTLE_ZONE + 0.05;
 
-/// The pilot asks for a held position. With the perch switch on he lands on the pipe by hand.
+/// The pilot asks for position hold. With the perch switch on he lands on the pipe by hand.
 pub fn asks_hold(s: &Sticks) -> bool {
     keeps_hold(s) && !s.perch_switch
 }
 
-/// The pilot still asks for a held position. The perch switch then means autonomous perching.
+/// The pilot still asks for position hold. The perch switch then means autonomous perching.
 pub fn keeps_hold(s: &Sticks) -> bool {
     s.hold_switch && s.stick_mode == StickMode::Angle
 }

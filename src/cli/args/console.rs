@@ -1,4 +1,4 @@
-//! Which board's console, and what is done there.
+//! Options of the subcommands that use a board's console.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -13,11 +13,12 @@ use sophie_board_link::session::Session;
 use super::values::within;
 use crate::cli::key;
 
-/// Which console, and how patient to be with it.
+/// Console of a board, and its longest silence.
 #[derive(Args, Debug)]
 pub struct LineArgs {
     /// Console of the board: /dev/ttyUSB0, COM3 or tcp:HOST:PORT, serial ports at 115,200 baud; or over MAVLink
-    /// mavlink:/dev/ttyUSB0 (another rate behind a comma), mavlink:tcp:HOST:PORT, udpin:HOST:PORT (listens) or udpout:HOST:PORT.
+    /// mavlink:/dev/ttyUSB0 (another rate behind a comma), mavlink:tcp:HOST:PORT, udpin:HOST:PORT (listens) or
+    /// udpout:HOST:PORT.
     #[arg(long, value_name = "PORT")]
     pub port: PortName,
     /// File with the key that signs MAVLink, 64 hexadecimal digits, where the board has one.
@@ -29,22 +30,22 @@ pub struct LineArgs {
 }
 
 impl LineArgs {
-    /// A session at that console, until `stop` is raised.
+    /// Opens a session at that console; raising `stop` ends it.
     ///
     /// # Errors
-    /// One line: the port cannot be opened, no console answers there, or the key is none.
+    /// One line: the port cannot be opened, no console answers there, or the key is invalid.
     pub fn session(&self, stop: Arc<AtomicBool>) -> Result<Session, Failure> {
         let key = self.mavlink_key.as_deref().map(key::read).transpose();
         Session::open(&self.port, key.map_err(Failure::Input)?, self.patience, stop)
     }
 }
 
-/// Which vehicle, and where its protocol is.
+/// Vehicle and protocol of the set-up.
 #[derive(Args, Debug)]
 pub struct BringupArgs {
     #[command(flatten)]
     pub line: LineArgs,
-    /// Protocol: begun, or continued where it is there.
+    /// Protocol file: continued if it exists, otherwise begun.
     #[arg(long, value_name = "FILE", default_value = "bringup.toml")]
     pub protocol: PathBuf,
     /// Do this step again though it has passed, such as arm-2; may be given more than once.
@@ -52,7 +53,7 @@ pub struct BringupArgs {
     pub again: Vec<String>,
 }
 
-/// What to do with a board's parameters.
+/// Action on a board's parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum ParamsVerb {
     /// Write them into the file.
@@ -63,7 +64,7 @@ pub enum ParamsVerb {
     Load,
 }
 
-/// Which parameters, and where.
+/// Options of `params`.
 #[derive(Args, Debug)]
 pub struct ParamsArgs {
     /// What to do.

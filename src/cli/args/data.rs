@@ -1,4 +1,4 @@
-//! Which measured data are read.
+//! Options of the subcommands that read measured data.
 
 use std::path::PathBuf;
 
@@ -7,7 +7,7 @@ use sophie_control::params::{ParamInfo, Params, Renamed};
 
 use super::values::within;
 
-/// Which log to look at and what to make of it.
+/// Options of `timing`.
 #[derive(Args, Debug)]
 pub struct TimingArgs {
     /// Log: text as `probe-rs run` or the bench writes it, or the log's own bytes.
@@ -23,7 +23,7 @@ pub struct TimingArgs {
     pub out: PathBuf,
 }
 
-/// What a recording holds.
+/// Contents of a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Kind {
     /// Inertial samples, flow, range, thrust.
@@ -36,7 +36,7 @@ pub enum Kind {
     Msp,
 }
 
-/// Which recording, and how it is read.
+/// Options of `recording`.
 #[derive(Args, Debug)]
 pub struct RecordingArgs {
     /// The recording.
@@ -57,7 +57,7 @@ pub struct RecordingArgs {
         default_value = "sensors"
     )]
     pub kind: Kind,
-    /// A parameter of the vehicle, as often as wanted; a name in place of the number where it has one.
+    /// A parameter of the vehicle, may be given more than once; choices are given by name.
     #[arg(long = "param", value_name = "NAME=VALUE", value_parser = parameter)]
     pub params: Vec<(&'static ParamInfo, f32)>,
     /// Print the result as JSON on stdout, everything else on stderr.
@@ -101,7 +101,7 @@ fn parameter(text: &str) -> Result<(&'static ParamInfo, f32), String> {
         .ok_or_else(|| format!("allowed {allowed}"))
 }
 
-/// Which data, and where the fit goes.
+/// Options of `fit-arm`.
 #[derive(Args, Debug)]
 pub struct FitArgs {
     /// Bench data.

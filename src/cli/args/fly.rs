@@ -1,4 +1,4 @@
-//! Where a flight is reported, and how it is flown in real time.
+//! Options of `fly`: reports, and flight in real time.
 
 use std::net::{Ipv4Addr, SocketAddr};
 use std::ops::RangeInclusive;
@@ -12,7 +12,7 @@ use super::values::{within, word};
 /// Permitted seconds of flight in a second of real time: what a host can pace.
 const SPEEDS: RangeInclusive<f64> = 0.01..=1000.0;
 
-/// What to fly and where to report it.
+/// Options of `fly`.
 #[derive(Args, Debug)]
 pub struct FlyArgs {
     #[command(flatten)]
@@ -27,7 +27,7 @@ pub struct FlyArgs {
     pub live: LiveArgs,
 }
 
-/// How to fly in real time.
+/// Options of a flight in real time.
 #[derive(Args, Debug)]
 pub struct LiveArgs {
     /// Fly at the pace of real time with MAVLink on UDP, then wait on the ground until Ctrl-C.
@@ -36,7 +36,7 @@ pub struct LiveArgs {
     /// Seconds flown in a second of real time, 0.01 to 1000.
     #[arg(long, value_name = "X", value_parser = speed, default_value = "1", requires = "wanted", allow_negative_numbers = true)]
     pub speed: f64,
-    /// Where MAVLink is sent to; what is sent back is answered.
+    /// Destination of MAVLink; packets from there are answered.
     #[arg(long, value_name = "ADDR:PORT", value_parser = destination, default_value = "127.0.0.1:14550", requires = "wanted")]
     pub mavlink: SocketAddr,
     /// File with the key that signs MAVLink, 64 hexadecimal digits; without it signing is off.

@@ -1,4 +1,4 @@
-//! What is shown instead of a flight.
+//! Messages shown instead of a flight: help, version, or a refusal.
 
 use std::process::ExitCode;
 
@@ -7,7 +7,7 @@ use sophie_terminal::console;
 
 use crate::cli::refuse;
 
-/// The subcommands, as messages name them.
+/// The subcommands, as listed in messages.
 const VERBS: [&str; 10] = [
     "fly",
     "check",
@@ -21,11 +21,11 @@ const VERBS: [&str; 10] = [
     "recording",
 ];
 
-/// Something to show instead of a flight: help, version, or a refusal.
+/// A message shown instead of a flight.
 pub struct Message(pub(super) clap::Error);
 
 impl Message {
-    /// Shows it and gives the exit status.
+    /// Shows the message and returns the exit status.
     pub fn show(&self) -> ExitCode {
         match self.0.kind() {
             ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => match console::written(self.0.print()) {
@@ -38,13 +38,13 @@ impl Message {
 
     /// clap's message without its usage and hints at help, as one line.
     pub(super) fn line(&self) -> String {
-        // Only behind `help` may no file stand in a subcommand's place.
+        // Only `help` forbids a file in a subcommand's place.
         if self.0.kind() == ErrorKind::InvalidSubcommand
             && let Some(ContextValue::String(topic)) = self.0.get(ContextKind::InvalidSubcommand)
         {
             return format!("no help on '{topic}': allowed are {}", VERBS.join(", "));
         }
-        // clap takes a second file for a subcommand where one could stand.
+        // clap reports a second file as an unknown subcommand if one could stand there.
         let extra = match self.0.kind() {
             ErrorKind::UnknownArgument => self.0.get(ContextKind::InvalidArg),
             ErrorKind::ArgumentConflict => self.0.get(ContextKind::InvalidSubcommand),

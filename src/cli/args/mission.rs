@@ -1,4 +1,4 @@
-//! Which vehicle and mission, of every verb that flies or checks one.
+//! Options for vehicle and mission, common to the subcommands that fly or check one.
 
 use std::path::PathBuf;
 
@@ -10,7 +10,7 @@ use sophie_sim::scenario::{Assist, Overrides, PositionSensor, Scenario, keys};
 
 use super::values::{number, seed, word};
 
-/// Which vehicle and mission. Options win over the file.
+/// Vehicle and mission. Options take precedence over the file.
 #[derive(Args, Debug)]
 pub struct MissionArgs {
     /// Scenario file; without one it is the default mission.
@@ -30,7 +30,7 @@ pub struct MissionArgs {
     /// What measures the position: none, pose (poses over MAVLink), or flow (flow and range below the vehicle).
     #[arg(long, value_name = "NAME", value_parser = position_sensor)]
     sensors: Option<PositionSensor>,
-    /// What the pilot leaves to the vehicle: none, hold (hovers in the mode HOLD), or self (perches by itself).
+    /// Autonomy: none, hold (hovers in the mode HOLD), or self (perches autonomously).
     #[arg(long, value_name = "NAME", value_parser = assist)]
     assist: Option<Assist>,
     /// Gain on the elastic term of the arm equation, 1 (literal) to 10.
@@ -42,10 +42,10 @@ pub struct MissionArgs {
 }
 
 impl MissionArgs {
-    /// The scenario that they choose.
+    /// The resulting scenario.
     ///
     /// # Errors
-    /// One line that names file, line, key, value and what is allowed.
+    /// One line with file, line, key, value and the allowed range.
     pub fn scenario(&self) -> Result<Scenario, String> {
         match &self.scenario {
             Some(path) => Scenario::load(path, &self.overrides()).map_err(|e| e.to_string()),
@@ -53,7 +53,7 @@ impl MissionArgs {
         }
     }
 
-    /// What they change in a scenario.
+    /// The options' overrides of a scenario.
     pub(super) fn overrides(&self) -> Overrides {
         Overrides {
             infill: self.rho,

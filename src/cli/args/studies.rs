@@ -1,4 +1,4 @@
-//! Which family of flights a study flies.
+//! Options of the studies.
 
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
@@ -7,13 +7,13 @@ use clap::{Args, ValueEnum};
 
 use super::values::{seed, within};
 
-/// Permitted touches of a capture map: one of each kind, and half a day.
+/// Permitted touches of a capture map: at least one of each kind, at most half a day's.
 const TOUCHES: RangeInclusive<u64> = 10..=1_000_000;
 
-/// Permitted vehicles of a study: what a day flies.
+/// Permitted vehicles of a study: at most a day's.
 const VEHICLES: RangeInclusive<u64> = 1..=100_000;
 
-/// Which touches, and where their map goes.
+/// Options of `capture`.
 #[derive(Args, Debug)]
 pub struct CaptureArgs {
     /// How many, 10 to 1,000,000.
@@ -36,17 +36,17 @@ pub struct CaptureArgs {
     pub json: bool,
 }
 
-/// What is studied.
+/// Subject of the study.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Study {
     /// Vehicles that differ in stiffness, mass, motors, pilot and pipe.
     Vehicles,
 }
 
-/// Which vehicles, and where the results go.
+/// Options of `study`.
 #[derive(Args, Debug)]
 pub struct StudyArgs {
-    /// What is studied.
+    /// Subject of the study.
     pub study: Study,
     /// How many, 1 to 100,000.
     #[arg(long, value_name = "N", value_parser = vehicles, default_value = "80", allow_negative_numbers = true)]

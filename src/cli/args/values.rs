@@ -1,4 +1,4 @@
-//! Values of options; a refusal says what is allowed.
+//! Parsing of option values; a refusal names the allowed range.
 
 use std::fmt::Display;
 use std::ops::RangeInclusive;
@@ -6,7 +6,7 @@ use std::str::FromStr;
 
 use sophie_sim::scenario::keys::{self, Range};
 
-/// A number within `range`, of which `unit` is named with its space.
+/// A number within `range`; the refusal names the range with `unit`, which begins with a space.
 pub(super) fn within<T: FromStr + PartialOrd + Display>(
     text: &str,
     range: &RangeInclusive<T>,
@@ -27,7 +27,7 @@ pub(super) fn seed(text: &str) -> Result<u64, String> {
     seed.ok_or_else(|| format!("allowed {}", keys::SEED_ALLOWED))
 }
 
-/// Refuses `count` seeds from `first` on whose last is not allowed.
+/// Refuses `count` seeds from `first` on if the last one is not allowed.
 pub(super) fn seeds(first: u64, count: u64, of: &str) -> Result<(), String> {
     let last = first.saturating_add(count.saturating_sub(1));
     match keys::seed(last as f64) {
@@ -39,7 +39,7 @@ pub(super) fn seeds(first: u64, count: u64, of: &str) -> Result<(), String> {
     }
 }
 
-/// One of the words.
+/// One of the allowed words.
 pub(super) fn word<'a>(text: &'a str, allowed: &[&str]) -> Result<&'a str, String> {
     if allowed.contains(&text) {
         Ok(text)

@@ -9,7 +9,7 @@ use crate::pilot::bench_orders;
 /// Bounds of a servo's release and full pulse, µs: the usual 500 to 2500 with room for a trim.
 const PULSE_MIN_US: f32 = 550.0;
 const PULSE_MAX_US: f32 = 2450.0;
-/// Least distance of full and release pulse, µs: less is no servo's travel.
+/// Least distance of full and release pulse, µs: a servo's travel is longer.
 pub const SPAN_MIN_US: f32 = 200.0;
 /// Tilt at which a released servo's tendon is just taut, rad: 23°, beyond flight, so that a flying arm never pulls it
 /// (built so; assumed).
@@ -46,7 +46,7 @@ pub struct Reel {
 
 impl Reel {
     /// The parts of arm `servo` (0..=3). A full pulse closer to the release pulse than [`SPAN_MIN_US`] is moved to that
-    /// distance, on its side where there is room.
+    /// distance, on the side with room.
     pub fn from_params(p: &Params, servo: usize) -> Self {
         let [trim, release, full, slew] = match servo {
             0 => [p.servo_trim_1, p.servo_release_1, p.servo_full_1, p.servo_slew_1],

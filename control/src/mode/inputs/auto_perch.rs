@@ -1,4 +1,4 @@
-//! Perching by itself, beyond the state that flies it: tries, and the pilot's hands on the sticks.
+//! Autonomous perching: number of tries, and whether the pilot has taken over. The state `Approach` flies it.
 
 use crate::maths::vector::Vec3;
 use crate::mode::inputs::Inputs;
@@ -6,29 +6,30 @@ use crate::mode::modes::Mode;
 use crate::pilot::rc::Sticks;
 use crate::pilot::stick_positions::{THROTTLE_CENTRE, centred};
 
-/// Tries after which the vehicle is handed back.
+/// Number of tries after which the vehicle is handed back to the pilot.
 pub const TRIES: u8 = 5;
-/// What the vehicle does without the pilot's sticks.
+/// State of autonomous perching.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AutoPerch {
-    /// It perches or leaves by itself, or has come here so.
+    /// The vehicle perches or leaves autonomously, or has perched so.
     pub active: bool,
-    /// It is leaving: there is no other try.
+    /// It leaves the pipe: no further try follows.
     pub leaving: bool,
-    /// The pilot's hands are on the sticks, or he has turned a switch.
+    /// The pilot has moved a stick or turned a switch.
     pub taken: bool,
-    /// Tries begun.
+    /// Number of tries begun.
     pub tries: u8,
-    /// One has ended because the range did not fit the motion.
+    /// A try has ended because the range was inconsistent with the motion.
     pub misfit: bool,
-    /// Heading at the first one, which is the pipe's, by the vehicle's own attitude, rad.
+    /// Heading of the pipe, taken at the first try, by the vehicle's own attitude, rad.
     pub heading: f32,
-    /// Where the crown was taken to be on the last way down, in the estimate's axes, m, and how often these had jumped.
+    /// Assumed position of the crown at the last descent, in the estimate's axes, m, and the estimate's reset counter
+    /// then.
     pub crown: Option<(Vec3, u8)>,
 }
 
 impl AutoPerch {
-    /// The first try, at `heading` rad.
+    /// Starts the first try, at `heading` rad.
     pub fn begin(&mut self, heading: f32) {
         *self = Self {
             active: true,
@@ -38,7 +39,7 @@ impl AutoPerch {
         };
     }
 
-    /// The way off the pipe.
+    /// Starts the departure from the pipe.
     pub fn leave(&mut self, heading: f32) {
         *self = Self {
             active: true,
@@ -56,7 +57,7 @@ impl AutoPerch {
         let on_pipe = matches!(mode, Mode::Contact | Mode::Clamping | Mode::Releasing);
         let moved = match mode {
             Mode::Approach | Mode::Escaping => !centred(&sticks),
-            // A throttle that is drawn back is no wish to fly.
+            // A lower throttle does not count as taking over.
             _ if on_pipe => !centred(&Sticks {
                 throttle: sticks.throttle.max(THROTTLE_CENTRE),
                 ..sticks
@@ -81,12 +82,12 @@ impl AutoPerch {
         }
     }
 
-    /// Another try is left.
+    /// A further try is allowed.
     pub fn may_try(&self) -> bool {
         self.active && !self.taken && !self.leaving && self.tries < TRIES
     }
 
-    /// It acts, and the pilot has not taken over.
+    /// Autonomous perching is in control: the pilot has not taken over.
     pub fn acts(&self) -> bool {
         self.active && !self.taken
     }

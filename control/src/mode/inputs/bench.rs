@@ -1,4 +1,4 @@
-//! The bench: orders of a builder at the console, begun and kept in DISARMED alone.
+//! Bench orders: a builder gives them at the console; they begin and last in DISARMED alone.
 
 use crate::allocation::motor_pulses::MotorPulses;
 use crate::arming::ArmingInhibit;
@@ -8,16 +8,16 @@ use crate::mode::modes::Mode;
 use crate::params::Params;
 use crate::pilot::bench_orders::{BenchAnswer, BenchOrder, BenchRefusal, BenchRequest, BenchState};
 
-/// What decides whether an order may begin, and go on.
+/// Conditions under which a bench order may begin and continue.
 #[derive(Clone, Copy, Debug)]
 pub struct Table {
     mode: Mode,
     grip_memory: GripMemory,
     arm_switch: bool,
     storing: bool,
-    /// Fresh attitudes: the motors' path runs.
+    /// The attitude is fresh: the motors' path runs.
     motion: bool,
-    /// The motors' pulses are in order.
+    /// The motor pulses are in rising order.
     pulses: bool,
 }
 
@@ -33,7 +33,7 @@ impl Table {
         }
     }
 
-    /// What speaks against `order`, the most basic first.
+    /// Reason against `order`, the most basic first.
     fn refusal(&self, order: &BenchOrder, propellers_off: bool) -> Option<BenchRefusal> {
         let spins = matches!(order, BenchOrder::Spin(_));
         let moves = spins || matches!(order, BenchOrder::Place(_));
@@ -62,7 +62,7 @@ impl Table {
     }
 }
 
-/// An order that lasts, and for how long it has, s.
+/// An order that lasts, with its remaining time, s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Running {
     order: BenchOrder,
@@ -79,7 +79,7 @@ pub struct Bench {
 }
 
 impl Bench {
-    /// One step of `dt` s; `request` is `None` where the console has not renewed it.
+    /// One step of `dt` s; `request` is `None` when the console has not renewed it.
     pub fn step(&mut self, request: Option<BenchRequest>, table: &Table, dt: f32) {
         self.propellers_off &= matches!(table.mode, Mode::Calibrating | Mode::Disarmed);
         match (request, self.running) {
@@ -118,7 +118,7 @@ impl Bench {
         }
     }
 
-    /// The order that lasts ends: someone disarms.
+    /// Ends the running order: someone disarms.
     pub fn stop(&mut self) {
         if self.running.is_some() {
             self.finish(BenchState::Ended(BenchRefusal::Disarm));
@@ -130,12 +130,12 @@ impl Bench {
         self.answer.state = state;
     }
 
-    /// The order that lasts.
+    /// The running order.
     pub fn order(&self) -> Option<BenchOrder> {
         self.running.map(|running| running.order)
     }
 
-    /// What has become of the newest order.
+    /// Reply to the newest order.
     pub fn answer(&self) -> BenchAnswer {
         self.answer
     }

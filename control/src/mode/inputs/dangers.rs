@@ -22,12 +22,13 @@ pub const IMU_LOST_TIME: f32 = 0.05;
 pub const TIPPED_TILT: f32 = deg(100.0);
 /// Time beyond [`TIPPED_TILT`], s.
 pub const TIPPED_TIME: f32 = 0.5;
-/// Largest rate that the gyro surely measures, share of its full scale: less bias and filter.
+/// Largest rate that the gyro surely measures, share of its full scale: the rest is left to bias and filter.
 const GYRO_SATURATED: f32 = 0.98;
-/// Turn at full scale after which the attitude is unknown, rad: twice as fast, it has turned as far again unseen.
+/// Angle turned at full scale after which the attitude is unknown, rad: a vehicle at twice that rate has turned by as
+/// much again unmeasured.
 const UNSEEN_TURN: f32 = deg(30.0);
-/// Time below the critical voltage, or without a fresh one, s: longer than a gust's current peak. A battery that
-/// is no longer measured lands the vehicle 1.5 s after its last voltage, 0.5 s of it by the link's limit; a flight of ten
+/// Time below the critical voltage, or without a fresh one, s: longer than a gust's current peak. If the battery ceases
+/// to be measured, the vehicle lands 1.5 s after the last voltage, 0.5 s of it by the link's limit; a flight of ten
 /// minutes draws 0.25 % of the charge meanwhile.
 pub const BATTERY_TIME: f32 = 1.0;
 
@@ -38,7 +39,7 @@ pub struct Dangers {
     saturated: HoldTimer,
     turned_unseen: bool,
     battery: HoldTimer,
-    /// No fresh voltage: the guard is blind, and what it guards counts as lost.
+    /// The voltage is stale: the guard cannot see an empty battery, so it assumes one.
     battery_blind: bool,
     /// Set by the port after its own delay.
     line_silent: bool,
@@ -74,12 +75,12 @@ impl Dangers {
         self.tipped.time() >= TIPPED_TIME || self.turned_unseen
     }
 
-    /// The battery is at its end, or no one can say.
+    /// The battery is below its critical voltage, or its voltage is unknown.
     pub fn battery_critical(&self) -> bool {
         self.battery().is_some()
     }
 
-    /// What is wrong with the battery.
+    /// The battery's fault.
     pub fn battery(&self) -> Option<Reason> {
         let why = if self.battery_blind {
             Reason::BATTERY_SILENT

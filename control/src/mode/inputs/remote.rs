@@ -1,7 +1,8 @@
-//! Orders of a remote link as the gestures and switch positions that they stand for.
+//! Orders of a remote link, mapped to gestures and switch positions.
 //!
-//! The perch switch by order holds until the pilot moves his own, until a mode begins in which there is no grip, and
-//! before it has had an effect for [`GRAB_WAIT`]. Where it ends without him, where his switch stands is no wish.
+//! A remote perch command overrides the switch until the pilot moves it, the vehicle enters a mode without grip, or
+//! [`GRAB_WAIT`] expires before a touch. If it ends without the pilot, he must turn his switch off and on before it
+//! acts again.
 
 use super::Inputs;
 use crate::arming::Gesture;
@@ -9,35 +10,36 @@ use crate::gripper::retained_grip::GripMemory;
 use crate::mode::modes::Mode;
 use crate::pilot::remote::{RemoteAnswer, RemoteOrder, RemoteRefusal, RemoteRequest};
 
-/// Time for which a grab that was ordered in the air waits for the touch, s: what was ordered for one approach must not
-/// close the arms at a landing much later.
+/// Time for which a grab ordered in the air waits for the touch, s: an order given for one approach must not close the
+/// arms at a much later landing.
 pub const GRAB_WAIT: f32 = 30.0;
 
-/// The orders of a remote link since power-up.
+/// Remote orders since power-up.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Remote {
     answer: RemoteAnswer,
-    /// Position of the perch switch by order.
+    /// Perch switch position set by an order.
     perch: Option<bool>,
-    /// The same before the newest order.
+    /// Its value before the newest order.
     before: Option<bool>,
-    /// Position of the pilot's own, when it was seen last.
+    /// Last position of the pilot's own perch switch.
     pilots: Option<bool>,
     /// Time in the air since a grab was ordered, s.
     waited: f32,
-    /// Rotors are to stop in this step as by the arm switch.
+    /// The rotors stop in this step, as by the arm switch.
     pub kill: bool,
 }
 
 impl Remote {
-    /// An order that has not been answered.
+    /// Returns an order that has not been answered.
     pub fn take(&self, request: Option<RemoteRequest>) -> Option<RemoteRequest> {
-        // Numbers wrap; one that is not above the last is an old one.
+        // Numbers wrap around; a number that is not above the last belongs to an old order.
         let above = |r: &RemoteRequest| (1..1 << 31).contains(&r.number.wrapping_sub(self.answer.number));
         request.filter(above)
     }
 
-    /// One step of `dt` s before any order: the pilot's switch wins when it moves. True where the order ends without it.
+    /// One step of `dt` s before any order: the pilot's switch overrides the order when it moves. True when the order
+    /// ends without it.
     pub fn follow(&mut self, inputs: &Inputs, mode: Mode, grip_memory: GripMemory, dt: f32) -> bool {
         self.kill = false;
         if let Some(sticks) = inputs.sticks {
@@ -53,7 +55,7 @@ impl Remote {
         (self.waited >= GRAB_WAIT || open) && self.perch.take().is_some()
     }
 
-    /// The inputs with the perch switch where it is by order.
+    /// The inputs, with the perch switch replaced by the ordered position.
     pub fn apply(&self, mut inputs: Inputs) -> Inputs {
         if let (Some(sticks), Some(perch)) = (&mut inputs.sticks, self.perch) {
             sticks.perch_switch = perch;
@@ -61,7 +63,7 @@ impl Remote {
         inputs
     }
 
-    /// Puts the perch switch where `order` wants it.
+    /// Sets the perch switch to the position that `order` asks for.
     pub fn turn(&mut self, order: RemoteOrder) {
         self.before = self.perch;
         match order {
@@ -71,18 +73,18 @@ impl Remote {
         }
     }
 
-    /// Takes back a release that nothing has come of.
+    /// Takes back a release that had no effect.
     pub fn turn_back(&mut self, order: RemoteOrder) {
         if order == RemoteOrder::Release {
             self.perch = self.before;
         }
     }
 
-    /// `mode` begins, which the vehicle has come to `auto_perch` or not. True where the order ends with it.
+    /// Called when `mode` begins; `auto_perch`: the vehicle flies autonomously. True when the order ends.
     pub fn enters(&mut self, mode: Mode, auto_perch: bool) -> bool {
         let grips = match mode {
             Mode::Flight | Mode::Contact | Mode::Clamping | Mode::Perched | Mode::Releasing => true,
-            // The way to the next try, and off the pipe.
+            // Autonomous, between two tries or off the pipe.
             Mode::Approach | Mode::Escaping => auto_perch,
             _ => false,
         };
@@ -93,13 +95,13 @@ impl Remote {
         self.answer = RemoteAnswer { number, refusal };
     }
 
-    /// What has become of the newest order.
+    /// Reply to the newest order.
     pub fn answer(&self) -> RemoteAnswer {
         self.answer
     }
 }
 
-/// The gesture that `order` stands for.
+/// The gesture equivalent to `order`.
 pub fn gesture(order: RemoteOrder) -> Option<Gesture> {
     match order {
         RemoteOrder::Arm => Some(Gesture::Arm),

@@ -6,11 +6,11 @@ use crate::navigation::estimate::Estimate;
 use crate::navigation::fix_age::COAST_AGE;
 use crate::position_hold::{PositionHold, VelocityCommand};
 
-/// The law with a position that may go and come back.
+/// Position hold whose position may be lost and return.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoastingHold {
     pub law: PositionHold,
-    /// There is no position at present.
+    /// The position is missing at present.
     pub adrift: bool,
 }
 
@@ -19,8 +19,8 @@ impl CoastingHold {
         Self { law, adrift: false }
     }
 
-    /// One step: up to [`COAST_AGE`] of the estimate it holds, then it keeps level, and holds where the vehicle is once there
-    /// is a position again.
+    /// One step: holds up to [`COAST_AGE`] of the estimate, then keeps level. When a position returns, it holds the
+    /// vehicle's present place.
     pub fn step(&mut self, estimate: &Estimate, wish: &VelocityCommand, step: &Step<'_>) -> Setpoint {
         let adrift = estimate.age > COAST_AGE;
         if self.adrift && !adrift {

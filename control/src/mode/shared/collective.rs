@@ -1,4 +1,4 @@
-//! From sticks to a demand, without a step in the collective and never out of range.
+//! From sticks to a demand; the collective has no step and stays within its limits.
 
 use crate::allocation::wrench::Wrench;
 use crate::chain::setpoint::Setpoint;
@@ -48,7 +48,7 @@ fn stick_rates(s: &Sticks, p: &Params) -> Vec3 {
 pub struct Collective {
     /// Last collective, N; `None` while the rotors are stopped or idle.
     last: Option<f32>,
-    /// Remaining difference to the previous state, N, and time for it, s.
+    /// Remaining difference to the previous state, N, and remaining time for it, s.
     offset: f32,
     left: f32,
     /// Duration of a hand-over to begin, s.
@@ -68,7 +68,7 @@ impl Collective {
         self.last.unwrap_or(0.0)
     }
 
-    /// The demand handed over, limited to four rotors, stopped if not finite.
+    /// Hands the collective over, limits it to the thrust of four rotors, and stops if it is not finite.
     pub fn finish(&mut self, wish: Setpoint, p: &Params, dt: f32) -> Setpoint {
         let begins = self.pending.take();
         if matches!(wish, Setpoint::Stop | Setpoint::Idle | Setpoint::Spin(_)) || !wish.is_finite() {

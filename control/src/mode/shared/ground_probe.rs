@@ -1,4 +1,4 @@
-//! The failsafe's probe: reduces thrust where something seems to carry the vehicle.
+//! The failsafe's probe: reduces thrust when something seems to carry the vehicle.
 
 use crate::contact::contact_force::{ContactForce, HINT_FORCE};
 use crate::maths::scalar::clamp;

@@ -1,4 +1,4 @@
-//! The point on which the failsafe comes down where the position is known: straight below, or beside the pipe that is there.
+//! The point on which the failsafe lands if the position is known: straight below, or beside a pipe below.
 
 use super::coasting_hold::CoastingHold;
 use super::collective::HAND_OVER_TIME;
@@ -14,20 +14,20 @@ use crate::navigation::estimate::Estimate;
 use crate::pilot::rc::Sticks;
 use crate::position_hold::{PositionHold, VelocityCommand};
 
-/// Speed and climb of the way off the pipe, m/s, and its time with nothing that carries, s: with the stop 1 m, where the
+/// Speed and climb of the sidestep off the pipe, m/s, and its time without support, s: with the stop 1 m, of which the
 /// largest pipe and the propellers' reach take 0.5 m.
 const ASIDE_SPEED: f32 = 0.7;
 const ASIDE_CLIMB: f32 = 0.3;
 const ASIDE_TIME: f32 = 1.5;
-/// Time after which it ends in any case, s.
+/// Longest duration of the sidestep, s.
 const ASIDE_MAX: f32 = 4.0;
 
-/// The way off the pipe.
+/// The sidestep off the pipe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Aside {
-    /// Level, length 1, in the estimate's axes.
+    /// Level unit vector in the estimate's axes.
     direction: Vec3,
-    /// With nothing that carries, and in all, s.
+    /// Remaining time without support and remaining time in all, s.
     left: f32,
     limit: f32,
 }
@@ -42,7 +42,7 @@ impl Aside {
     }
 }
 
-/// The level direction to the side of the nose to which the vehicle moves, length 1, in the estimate's axes.
+/// Level unit vector to the side of the nose towards which the vehicle moves, in the estimate's axes.
 fn sideways(step: &Step<'_>) -> Option<Vec3> {
     let (estimate, motion) = (step.inputs.position?, step.inputs.motion?);
     let nose = motion.q.to_euler().2 + estimate.yaw_offset;
@@ -64,12 +64,13 @@ pub struct LandingPoint {
 }
 
 impl LandingPoint {
-    /// Where `hold` holds the vehicle.
+    /// Lands at the point that `hold` holds.
     pub fn held(hold: CoastingHold, step: &mut Step<'_>) -> Self {
         Self::begin(hold, None, step)
     }
 
-    /// Where `law` holds the vehicle, or beside the pipe in the direction `off_pipe`: level, length 1, in the estimate's axes.
+    /// Lands at the point that `law` holds, or beside the pipe in the direction `off_pipe`, a level unit vector in the
+    /// estimate's axes.
     pub fn off_approach(law: PositionHold, off_pipe: Option<Vec3>, step: &mut Step<'_>) -> Self {
         let aside = off_pipe
             .filter(|_| step.inputs.motion.is_some())
@@ -77,13 +78,14 @@ impl LandingPoint {
         Self::begin(CoastingHold::new(law), aside, step)
     }
 
-    /// Beside the pipe, which lies along the nose, on the side to which the vehicle moves; `None` without a fresh position.
+    /// Lands beside the pipe, which lies along the nose, on the side towards which the vehicle moves; `None` without a
+    /// fresh position.
     pub fn beside_pipe(step: &mut Step<'_>) -> Option<Self> {
         let aside = sideways(step).map(Aside::towards);
         Self::from_here(aside, step)
     }
 
-    /// Below the vehicle; `None` without a fresh position.
+    /// Lands straight below; `None` without a fresh position.
     pub fn here(step: &mut Step<'_>) -> Option<Self> {
         Self::from_here(None, step)
     }
@@ -104,7 +106,7 @@ impl LandingPoint {
         spot
     }
 
-    /// One step, steered at the velocities that the sticks of the `pilot` ask for: where he steers, no way off is flown.
+    /// One step; the `pilot` commands velocities by his sticks, which cancels the sidestep.
     pub fn step(&mut self, pilot: Option<Sticks>, step: &mut Step<'_>) {
         if pilot.is_some() {
             self.aside = None;
@@ -117,7 +119,7 @@ impl LandingPoint {
         self.wanted = self.hold.step(&estimate, &wish, step);
     }
 
-    /// What the way off the pipe asks for, until it has ended.
+    /// Velocity command of the sidestep, until it ends.
     fn way_off(&mut self, estimate: &Estimate, step: &mut Step<'_>) -> Option<VelocityCommand> {
         let aside = self.aside.as_mut()?;
         let carried = step.context.contact_force.resting();
@@ -137,7 +139,7 @@ impl LandingPoint {
         })
     }
 
-    /// Over the spot and sinking; level where something seems to carry.
+    /// Sinks over the landing point; level when something seems to carry the vehicle.
     pub fn rotors(&self, context: &Context) -> Setpoint {
         let sinking = descent(context, None);
         match self.wanted {
@@ -151,7 +153,7 @@ impl LandingPoint {
                 roll,
                 pitch,
                 yaw_rate,
-                // The tilt takes lift away, as in a hold.
+                // A tilt reduces lift; compensated as in a hold.
                 thrust: sinking.thrust() / scalar::clamp(scalar::cos(roll) * scalar::cos(pitch), 0.5, 1.0),
             },
             _ => sinking,

@@ -12,13 +12,14 @@ use crate::pilot::rc::ArmChoice;
 
 /// Ramp time from 0 to the pilot's collective, s.
 pub const SPOOL_TIME: f32 = 1.5;
-/// Ramp time to standing rotors, s: the arms take over the roll moment by which the rotors hold a vehicle beside the crown.
+/// Ramp time to stopped rotors, s: the arms take over the roll moment by which the rotors hold a vehicle beside the
+/// crown.
 pub const SPOOL_DOWN_TIME: f32 = 3.0;
 /// Rate of levelling a lean at contact, rad/s.
 const LEVEL_RATE: f32 = 0.2;
 /// Time constant of the held attitude following the present one, s.
 const FOLLOW_TIME: f32 = 1.0;
-/// Share of the collective below which only the grip holds the attitude.
+/// Share of the collective below which the grip alone holds the attitude.
 const LIFT_SHARE: f32 = 0.5;
 /// Share of the grip pressure above which an arm holds outside the tolerance: in spool-down the load moves from the
 /// rotors onto the arms.
@@ -30,7 +31,7 @@ pub struct PipeAttitudeHold {
     pub roll: f32,
     /// Held pitch, rad.
     pub pitch: f32,
-    /// Chosen at contact; the switch is ignored until they are free.
+    /// Arms chosen at contact; the switch is ignored until they are free.
     pub arms: ArmChoice,
 }
 
@@ -140,7 +141,7 @@ const fn misfit(misfit: Misfit) -> Reason {
     }
 }
 
-/// Reason for which the chosen arms will never hold.
+/// Reason for which the chosen arms cannot reach a hold.
 pub fn hopeless(grip: Option<GripState>, arms: ArmChoice) -> Option<Reason> {
     let grip = grip?;
     let chosen = || {

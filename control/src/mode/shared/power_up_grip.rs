@@ -1,11 +1,11 @@
 //! Power-up grip check: whether the arms are closed on something.
 //!
-//! The retained state is lost with the power, but the servos' gears hold the arms, and the first pulse would open them:
-//! none is sent before the pressure sensors have been read.
+//! A power loss erases the retained state, but the servos' gears keep the arms closed, and the first servo pulse would
+//! open them: no pulse is sent until the pressure sensors have been read.
 //!
-//! Pressed arms are left to the gears ([`GripMemory::HeldByGears`]) until a person opens them or the pilot lets the
-//! rotors carry the vehicle. A pulse needs an angle, known only to 0.2 rad or 20 N (1 mm of thread, 0.03 rad of tilt,
-//! unknown stiffness of the skin): it might lose a third of a grip's force.
+//! Pressed arms stay held by their gears ([`GripMemory::HeldByGears`]) until a person opens them or the pilot lets the
+//! rotors carry the vehicle. A pulse would need an angle, known only to 0.2 rad or 20 N (1 mm of thread, 0.03 rad of
+//! tilt, unknown stiffness of the skin): a wrong one might lose a third of a grip's force.
 
 use crate::allocation::wrench::PerArm;
 use crate::gripper::retained_grip::GripMemory;

@@ -1,4 +1,4 @@
-//! Velocity that the sticks ask for in a hold.
+//! Velocity commanded by the sticks in a hold.
 
 use super::collective;
 use crate::chain::setpoint::Setpoint;
@@ -8,7 +8,7 @@ use crate::mode::context::Context;
 use crate::pilot::rc::Sticks;
 use crate::position_hold::{CLIMB_MAX, SPEED_MAX, VelocityCommand};
 
-/// What the sticks ask for, `climb` being a share of the fastest one, -1..1.
+/// Velocity commanded by the sticks; `climb` is a share of the largest climb rate, -1..1.
 pub fn velocity_from_sticks(s: &Sticks, climb: f32, context: &Context) -> VelocityCommand {
     let lean = |stick: f32| GRAVITY * tan(clamp_abs(stick * context.params.stick_angle, 1.0));
     let yaw_rate = match collective::from_sticks(s, &context.params) {

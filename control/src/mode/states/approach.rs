@@ -1,4 +1,4 @@
-//! Free flight onto the pipe, or off it, by itself.
+//! Autonomous free flight onto the pipe, or off it.
 
 use crate::approach::limits::RANGE_AGE;
 use crate::approach::planner::{ApproachAbort, ApproachPlanner, View};
@@ -15,17 +15,17 @@ use crate::navigation::estimate::Estimate;
 use crate::pilot::stick_positions::{centred, keeps_hold};
 use crate::position_hold::{PositionHold, VelocityCommand};
 
-/// See [`crate::mode::Mode::Approach`].
+/// State of the mode [`crate::mode::Mode::Approach`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Approach {
     pub law: PositionHold,
     planner: ApproachPlanner,
     wanted: Setpoint,
-    /// Why no other try follows.
+    /// Reason for which no further try follows.
     pub abort_reason: Option<Reason>,
-    /// The same, once it has climbed.
+    /// Reason that becomes `abort_reason` once the vehicle has climbed.
     pending_abort_reason: Option<Reason>,
-    /// The try ends at a touch.
+    /// The try ended by a contact.
     aborted_in_contact: bool,
 }
 
@@ -36,7 +36,7 @@ pub fn asked(step: &Step<'_>) -> bool {
     turned && step.inputs.sticks.is_some_and(wanted)
 }
 
-/// Why it cannot begin.
+/// Reason for which the approach cannot begin.
 pub fn obstacle(step: &Step<'_>) -> Option<Reason> {
     let sticks = step.inputs.sticks.unwrap_or_default();
     let ranged = |e: Estimate| e.foot.age <= RANGE_AGE;
@@ -56,14 +56,14 @@ pub fn obstacle(step: &Step<'_>) -> Option<Reason> {
 }
 
 impl Approach {
-    /// Searches from where `law` holds.
+    /// Starts the search at the point that `law` holds.
     pub fn search(law: Option<PositionHold>, step: &mut Step<'_>) -> Self {
         Self::begin(law, step, |step, view, e| {
             ApproachPlanner::begin(&step.context.params, view, heading(step, e), e.reset_count)
         })
     }
 
-    /// Climbs, for another search or to be `left` there.
+    /// Climbs off the pipe: `left` ends there, otherwise a new search follows.
     pub fn climb(step: &mut Step<'_>, left: bool) -> Self {
         let crown = step.context.auto_perch.crown.filter(|_| !left);
         Self::begin(None, step, |step, view, e| {
@@ -98,27 +98,27 @@ impl Approach {
         approach
     }
 
-    /// It is on the way down to the pipe.
+    /// The vehicle descends onto the pipe.
     pub fn committed(&self) -> bool {
         self.planner.committed()
     }
 
-    /// It crosses the pipe at a height, and touches nothing.
+    /// The vehicle crosses the pipe at a height where contact is unexpected.
     pub fn not_committed(&self) -> bool {
         !self.committed() && !self.planner.climbs()
     }
 
-    /// Its try has ended while something seemed to carry it.
+    /// The try has ended while something seemed to carry the vehicle.
     pub fn aborted_in_contact(&self) -> bool {
         self.aborted_in_contact
     }
 
-    /// It has climbed off the pipe.
+    /// The vehicle has climbed off the pipe.
     pub fn has_left(&self) -> bool {
         self.planner.has_left()
     }
 
-    /// The level way off the pipe for a vehicle at `position`, length 1, in the estimate's axes; `None` where none is known.
+    /// Level unit vector off the pipe for a vehicle at `position`, in the estimate's axes; `None` if unknown.
     pub fn off_pipe(&self, position: Vec3) -> Option<Vec3> {
         self.planner.off_pipe(position)
     }
@@ -150,7 +150,7 @@ impl Approach {
         self.wanted = self.law.step(estimate, &step.body_motion(), &wish, true, step.dt);
     }
 
-    /// Another try, once, unless it is `proven`; then up and away.
+    /// Allows one more try unless the misfit is `proven`; then climbs away.
     fn misfit(&mut self, proven: bool, view: &View, e: &Estimate, step: &mut Step<'_>) {
         let before = core::mem::replace(&mut step.context.auto_perch.misfit, true) || proven;
         self.again(Reason::RangeMisfit, view, e, step);
@@ -161,7 +161,7 @@ impl Approach {
         }
     }
 
-    /// Another try, or none.
+    /// Starts another try, or ends with the reason `why`.
     fn again(&mut self, why: Reason, view: &View, e: &Estimate, step: &mut Step<'_>) {
         step.context.note(Some(why));
         if self.committed() && step.context.contact_force.force() > HINT_FORCE {

@@ -8,7 +8,7 @@ use crate::mode::inputs::Inputs;
 /// Longest idling of the rotors, s.
 pub const IDLE_MAX: f32 = 30.0;
 
-/// See [`crate::mode::Mode::Armed`].
+/// State of the mode [`crate::mode::Mode::Armed`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Armed;
 

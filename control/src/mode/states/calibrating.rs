@@ -9,7 +9,7 @@ use crate::mode::context::{Context, Step};
 use crate::mode::inputs::Inputs;
 use crate::mode::reason::Reason;
 
-/// See [`crate::mode::Mode::Calibrating`].
+/// State of the mode [`crate::mode::Mode::Calibrating`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Calibrating {
     /// Grip state, retained across motor stop and reset.

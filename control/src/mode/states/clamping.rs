@@ -10,18 +10,18 @@ use crate::mode::inputs::Inputs;
 use crate::mode::reason::Reason;
 use crate::mode::shared::on_pipe::{PipeAttitudeHold, SPOOL_DOWN_TIME, SPOOL_TIME, Spool, held, hopeless};
 
-/// Time from the ramp's end to standing rotors, s: six motor time constants.
+/// Time from the ramp's end until the rotors have stopped, s: six motor time constants.
 pub const STOP_TIME: f32 = 0.3;
 /// Time allowed without proof after the rotors have stopped, s.
 const PROOF_TIME: f32 = 3.0;
 /// Time of an arm at its force limit, or faulty, that ends the closing, s.
 pub const HOPELESS_TIME: f32 = 1.0;
-/// The same where the pipe lies across, s: it comes no better, and on a flank the lean grows meanwhile.
+/// The same for a pipe that lies across, s: waiting does not improve it, and on a flank the lean grows meanwhile.
 const ACROSS_TIME: f32 = 0.1;
 /// Time beyond `clamp_timeout` for spooling down and proof, s.
 const SPOOL_ALLOWANCE: f32 = 10.0;
 
-/// See [`crate::mode::Mode::Clamping`].
+/// State of the mode [`crate::mode::Mode::Clamping`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clamping {
     pub hold: PipeAttitudeHold,
@@ -34,12 +34,12 @@ impl Clamping {
         held(step.inputs.grip, self.hold.arms, &step.context.params)
     }
 
-    /// The grip is proven where the rotors may stop.
+    /// The grip is proven while the rotors may stop.
     fn proven(step: &Step<'_>) -> bool {
         step.grip_proven() && step.context.lean.may_stay()
     }
 
-    /// Reason for which these arms will never let the rotors stop.
+    /// Reason for which the rotors can never stop on these arms.
     fn hopeless(&self, step: &Step<'_>) -> Option<Reason> {
         if !step.grip_proven() {
             hopeless(step.inputs.grip, self.hold.arms)
@@ -50,7 +50,7 @@ impl Clamping {
         }
     }
 
-    /// Reason to end the closing. Without radio no pilot can fly away: a poor grip is then better than none.
+    /// Reason to end the closing. Without radio the pilot cannot fly away: then a poor grip is better than none.
     pub fn doubt(&self, step: &Step<'_>) -> Option<Reason> {
         let sticks = step.inputs.sticks?;
         let context = &step.context;
@@ -75,7 +75,7 @@ impl Clamping {
             // The belly would slide: a poor grip is better than none.
             Some(Reason::LeansTooFar)
         } else if step.context.dangers.line_silent() {
-            // A vehicle that may not fly stays where it is held.
+            // A vehicle that must not fly keeps its grip.
             Some(Reason::LINE_SILENT)
         } else {
             None
@@ -138,7 +138,7 @@ impl Behaviour for Clamping {
             step.context.note(Some(Reason::GripLostSpooling));
         }
         if spool.still >= STOP_TIME + PROOF_TIME {
-            // Held, not proven: carries some weight until proven.
+            // Held, not proven: the rotors carry some weight until the proof.
             spool = Spool::at(0.0);
         }
         self.spool = spool;

@@ -11,12 +11,13 @@ use crate::mode::shared::on_pipe::PipeAttitudeHold;
 
 /// Time on the pipe before the tendons close, s.
 pub const CONTACT_TIME: f32 = 0.2;
-/// Time in which the collective falls to that of the closing, s: about the motors' own. The lean drifts out meanwhile.
+/// Time in which the collective falls to that of the closing, s: about the motors' time constant; a longer one lets the
+/// lean grow.
 const SET_DOWN_TIME: f32 = 0.06;
 /// Throttle above `perch_thr_max` that ends the contact, 1.
 pub const CONTACT_MARGIN: f32 = 0.03;
 
-/// See [`crate::mode::Mode::Contact`].
+/// State of the mode [`crate::mode::Mode::Contact`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
     pub hold: PipeAttitudeHold,

@@ -9,7 +9,7 @@ use crate::mode::inputs::Inputs;
 use crate::mode::reason::Reason;
 use crate::pilot::bench_orders::BenchOrder;
 
-/// See [`crate::mode::Mode::Disarmed`].
+/// State of the mode [`crate::mode::Mode::Disarmed`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Disarmed {
     /// Grip state, retained across motor stop and reset.
@@ -50,7 +50,7 @@ impl Behaviour for Disarmed {
         if self.bench.is_some() {
             return Some(Reason::OnBench);
         }
-        // What just happened precedes what prevents arming again.
+        // A recent event takes precedence over the arming checks.
         match context.noted() {
             None if i.sticks.is_some_and(|s| s.arm_switch) => first(inhibits),
             None if !i.hardware.is_empty() => first(i.hardware),

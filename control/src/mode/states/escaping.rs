@@ -1,8 +1,8 @@
-//! Leaves the pipe by itself: after an abandoned closing, a growing lean, or a release that nothing carries.
+//! Autonomous departure from the pipe after an abandoned closing, a growing lean, or a release without support.
 //!
-//! The rotors lift more than the weight, nearly level, while the tendons pay out. A capped throttle would let a sound
-//! vehicle fall, and so would the pilot's, set for resting: the collective is set here until the throttle stick reaches
-//! hover. If it never moves, the failsafe lands the vehicle.
+//! The rotors lift more than the weight, nearly level, while the tendons pay out. A limited throttle, or the pilot's
+//! throttle, set for resting, would let a sound vehicle fall: this state sets the collective until the throttle stick
+//! reaches hover. If the stick never moves, the failsafe lands the vehicle.
 
 use crate::arming::ArmingInhibits;
 use crate::chain::setpoint::{ClampCommand, Setpoint};
@@ -18,9 +18,9 @@ use crate::pilot::release_throttle::release_thrust;
 
 /// Collective without climb, share of the weight: 3.4 m/s² upwards.
 pub const LIFT_SHARE: f32 = 1.35;
-/// Largest collective, share of the weight: of a vehicle that sinks.
+/// Largest collective, share of the weight, for a sinking vehicle.
 const MOST_SHARE: f32 = 1.7;
-/// Least cosine of its tilt for which the collective makes up.
+/// Least cosine of the tilt that the collective compensates.
 const UPRIGHT_MIN: f32 = 0.7;
 /// Least collective, share of the weight.
 const LEAST_SHARE: f32 = 0.9;
@@ -30,16 +30,17 @@ const CLIMB_GAIN: f32 = 0.7;
 const CLIMB_RATE: f32 = 0.5;
 /// Rise time of the collective on a slide, s: the lean grows e-fold in 0.16 s.
 pub const SLIDE_RAMP: f32 = 0.05;
-/// Later and slower for a standing vehicle, s: the rotors pull at the tendons with 7 times their thrust, so tendons at
-/// their limit must pay out first.
+/// Delay for a standing vehicle, s, whose collective also rises more slowly: the rotors pull at the tendons with 7
+/// times their thrust, so tendons at their limit must pay out first.
 const STAND_DELAY: f32 = 0.25;
 const STAND_RAMP: f32 = 0.5;
-/// Where friction holds it, the rise waits for free arms, at most so long, s: one that is bent round the pipe hooks it, and
-/// its rotor turns the body. From 146° an arm is free after 1.2 s.
+/// Longest wait for free arms while friction holds the vehicle, s: an arm bent round the pipe hooks it, and its rotor
+/// turns the body. From 146° an arm is free after 1.2 s.
 const STAND_MAX: f32 = 2.0;
 /// Time after the rise until the vehicle is clear and the sticks steer, s.
 const CLEAR_TIME: f32 = 0.65;
-/// Time from there that a position may take to come back, s; then the pilot is asked. Flow sees again from 8 cm on.
+/// Time that the position may take to return after that, s; then control goes to the pilot. Optical flow works again
+/// from 8 cm on.
 const WAIT_TIME: f32 = 1.3;
 /// Largest lean away from the pipe, rad: level rotors beside the crown pull the vehicle up along the flank, a lean
 /// across the crown throws it under the pipe.
@@ -51,7 +52,7 @@ pub const TAKE_OVER_TIME: f32 = 7.0;
 /// Its stick thrust, share of the weight.
 pub const TAKE_OVER_SHARE: f32 = 0.9;
 
-/// See [`crate::mode::Mode::Escaping`].
+/// State of the mode [`crate::mode::Mode::Escaping`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Escaping {
     grip_memory: GripMemory,
@@ -61,7 +62,7 @@ pub struct Escaping {
     from: Option<f32>,
     /// Time since the collective began to rise, s.
     rise: f32,
-    /// Climb rate, m/s, from what was gained before.
+    /// Climb rate since the rise began, m/s; starts at the fall's speed.
     climb: f32,
     opening: bool,
 }
@@ -80,19 +81,19 @@ impl Escaping {
         }
     }
 
-    /// Overdue arms that still hold pull the vehicle down.
+    /// Arms that still hold after their time pull the vehicle down.
     pub fn stuck(&self, context: &Context) -> bool {
         self.late(context) && context.contact_force.force() < -HINT_FORCE
     }
 
-    /// The arms are free, and there was time to leave. Unless pulled down, the vehicle flies whatever an arm's sensors
-    /// read.
+    /// The arms are free, and the time to leave has passed. Unless an arm pulls it down, the vehicle flies whatever the
+    /// arm's sensors read.
     pub fn clear(&self, context: &Context) -> bool {
         let free = self.grip_memory == GripMemory::Open || self.late(context);
         self.rise >= self.clear_after() && free
     }
 
-    /// Time of the rise until it is clear, s.
+    /// Duration of the rise until the vehicle is clear, s.
     fn clear_after(&self) -> f32 {
         self.from.map_or(SLIDE_RAMP, |_| STAND_RAMP) + CLEAR_TIME
     }
@@ -110,7 +111,7 @@ impl Escaping {
     }
 }
 
-/// The throttle stick carries the vehicle.
+/// The throttle stick demands enough thrust to carry the vehicle.
 pub fn takes_over(step: &Step<'_>) -> bool {
     let context = &step.context;
     step.inputs.sticks.is_some_and(|s| {
@@ -122,19 +123,19 @@ impl Behaviour for Escaping {
     fn observe(&mut self, step: &mut Step<'_>) {
         let context = &step.context;
         if context.lean.slides() || context.lean.falls() {
-            // Nothing stands there any more that would be worth the wait.
+            // Friction has ceased to hold the vehicle: the wait ends.
             self.from = None;
         }
-        // From the stand, and the first step on: a rise that has begun does not end.
+        // Once begun, the rise does not stop.
         if self.rise > 0.0 || self.rises(context) {
             if self.rise <= 0.0 {
-                // A touch harder than was seen coming looks like a climb.
+                // Only a fall sets a start value: an impact harder than predicted would look like a climb.
                 self.climb = -clamp(context.fall.speed(), 0.0, 10.0);
             }
             self.rise = clamp(self.rise + step.dt, 0.0, 1e3);
             self.climb -= context.accel_down * step.dt;
         }
-        // Below this only the arms keep the vehicle on the pipe.
+        // Below this collective only the arms keep the vehicle on the pipe.
         self.opening |= context.collective.now() >= release_thrust(&context.params);
         if self.opening && step.arms_free() {
             self.grip_memory = GripMemory::Open;
@@ -162,7 +163,7 @@ impl Behaviour for Escaping {
         let clear = self.clear(context);
         let wanted = if clear { 0.0 } else { CLIMB_RATE };
         let share = clamp(1.0 + CLIMB_GAIN * (wanted - self.climb), LEAST_SHARE, MOST_SHARE);
-        // Leaning rotors lift less.
+        // A tilted vehicle has less lift.
         let upright = inputs.motion.map_or(1.0, |m| m.q.down_in_body().z);
         let goal = share * context.contact_force.weight() / clamp(upright, UPRIGHT_MIN, 1.0);
         let thrust = self.from.map_or(goal, |from| {

@@ -1,4 +1,4 @@
-//! Radio lost or battery empty: descends, stops on whatever carries.
+//! Radio lost or battery empty: descends, stops on any support.
 
 use crate::arming::ArmingInhibits;
 use crate::chain::setpoint::Setpoint;
@@ -11,21 +11,21 @@ use crate::mode::shared::landing_point::LandingPoint;
 use crate::pilot::rc::Sticks;
 use crate::pilot::stick_positions;
 
-/// Longest radio silence, beyond the link's staleness, after which flight resumes by itself, s.
+/// Longest radio silence, beyond the link's staleness, after which flight resumes without a stick motion, s.
 pub const RESUME_TIME: f32 = 1.0;
 /// Roll or pitch stick that resumes flight after a longer silence, share of its travel.
 pub const RESUME_STICK: f32 = 0.3;
 
-/// See [`crate::mode::Mode::Failsafe`].
+/// State of the mode [`crate::mode::Mode::Failsafe`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Failsafe {
     pub cause: Reason,
-    /// Where it comes down; `None` without a position, or where the pilot steers by angles.
+    /// Landing point; `None` without a position, or while the pilot commands angles.
     pub landing_point: Option<LandingPoint>,
 }
 
 impl Failsafe {
-    /// Begins for `cause`; `landing_point` gives where it comes down, if a position is known.
+    /// Begins for `cause`; `landing_point` returns the landing point if a position is known.
     pub fn begin(
         cause: Reason,
         step: &mut Step<'_>,
@@ -41,12 +41,12 @@ impl Failsafe {
         failsafe
     }
 
-    /// The pilot, if he steers.
+    /// The pilot's sticks, if he steers.
     fn pilot(&self, inputs: &Inputs) -> Option<Sticks> {
         inputs.sticks.filter(|_| self.cause != Reason::RADIO_LOST)
     }
 
-    /// There is a position, and no pilot whose sticks ask for angles.
+    /// A position is known, and the pilot does not command angles.
     fn holds(&self, inputs: &Inputs) -> bool {
         inputs.motion.is_some()
             && !inputs.position_lost()
@@ -69,7 +69,7 @@ impl Behaviour for Failsafe {
         };
     }
 
-    /// Level and sinking; with radio the pilot steers. What carries the vehicle is no place to be moved on.
+    /// Level and sinking; with radio the pilot steers. Position hold tilts the vehicle only until a support carries it.
     fn rotors(&self, context: &Context, inputs: &Inputs) -> Setpoint {
         match &self.landing_point {
             Some(landing_point) => landing_point.rotors(context),

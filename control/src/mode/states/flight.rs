@@ -10,12 +10,12 @@ use crate::mode::shared::collective;
 use crate::mode::shared::descent::descent;
 use crate::pilot::stick_positions;
 
-/// Time for the throttle to follow the perch switch, s.
+/// Time allowed for the throttle to follow the perch switch, s.
 const SWITCH_FIRST: f32 = 1.0;
-/// Hand-over time of the collective to a pilot who calls a touch off, s: he may see it slide.
+/// Hand-over time of the collective to a pilot who calls a touch off, s: short, since he may see the vehicle slide.
 const CALL_OFF_TIME: f32 = 0.1;
 
-/// See [`crate::mode::Mode::Flight`].
+/// State of the mode [`crate::mode::Mode::Flight`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flight;
 
@@ -27,7 +27,7 @@ impl Flight {
         step.inputs.motion.is_some() && step.inputs.sticks.is_some_and(wanted)
     }
 
-    /// The same, or the switch has just been turned off: until the throttle follows, the vehicle still comes down.
+    /// The same, or the switch has just been turned off: the vehicle still descends until the throttle follows.
     pub fn sets_down(step: &Step<'_>) -> bool {
         let context = &step.context;
         let most = context.params.perch_thr_max;
@@ -61,7 +61,7 @@ impl Behaviour for Flight {
             return;
         }
         if let Some(why) = step.inputs.servo_trouble() {
-            // Before the pipe is reached: arms that would lose their servos must not close.
+            // Before contact: arms whose servos would lose power must not close.
             step.context.note(Some(Reason::Check(why)));
             return;
         }
@@ -78,7 +78,7 @@ impl Behaviour for Flight {
     fn rotors(&self, context: &Context, inputs: &Inputs) -> Setpoint {
         match inputs.sticks {
             Some(s) => collective::from_sticks(&s, &context.params),
-            // Unused: without radio the failsafe flies.
+            // Unreachable: without radio the failsafe flies.
             None => descent(context, None),
         }
     }

@@ -14,24 +14,25 @@ use crate::navigation::estimate::Estimate;
 use crate::pilot::stick_positions::{THROTTLE_CENTRE, THROTTLE_ZONE};
 use crate::position_hold::PositionHold;
 
-/// See [`crate::mode::Mode::Hold`].
+/// State of the mode [`crate::mode::Mode::Hold`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hold {
     pub place: CoastingHold,
     wanted: Setpoint,
-    /// The throttle was centred since the hold began: until then, where it stands is no wish.
+    /// The throttle was centred since the hold began; before that it commands no climb.
     centred: bool,
 }
 
 impl Hold {
-    /// Holds where the vehicle is.
+    /// Holds the present position.
     pub fn here(step: &mut Step<'_>) -> Self {
         let estimate = step.inputs.position.unwrap_or_default();
         let law = PositionHold::begin(&step.context.params, &estimate, &step.body_motion());
         Self::begin(law, false, step)
     }
 
-    /// Holds where the vehicle is after it has flown by itself, with what `law` has learnt: the sticks were centred.
+    /// Holds the present position after autonomous flight, with the wind that `law` has estimated; the sticks are
+    /// centred.
     pub fn after(law: Option<PositionHold>, step: &mut Step<'_>) -> Self {
         let estimate = step.inputs.position.unwrap_or_default();
         let mut law =
@@ -60,7 +61,7 @@ impl Hold {
     }
 }
 
-/// Share of the fastest climb that a throttle asks for, -1..1.
+/// Share of the largest climb rate that a throttle commands, -1..1.
 fn climb(throttle: f32) -> f32 {
     let off = throttle - THROTTLE_CENTRE;
     let beyond = clamp(off.abs() - THROTTLE_ZONE, 0.0, 1.0) / (THROTTLE_CENTRE - THROTTLE_ZONE);

@@ -8,7 +8,7 @@ use crate::mode::inputs::Inputs;
 /// Time from landing to disarming, s.
 pub const LANDED_TIME: f32 = 2.0;
 
-/// See [`crate::mode::Mode::Landed`].
+/// State of the mode [`crate::mode::Mode::Landed`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Landed;
 

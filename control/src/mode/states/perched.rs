@@ -15,7 +15,7 @@ use crate::params::Params;
 use crate::pilot::rc::Sticks;
 use crate::pilot::release_throttle::RELEASE_THROTTLE_MIN;
 
-/// See [`crate::mode::Mode::Perched`].
+/// State of the mode [`crate::mode::Mode::Perched`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Perched {
     /// Closed by the clamp loops, or held by the gears.
@@ -24,7 +24,7 @@ pub struct Perched {
 }
 
 impl Perched {
-    /// On `grip_memory`, wherever the body is now.
+    /// On `grip_memory`, at the body's present attitude.
     pub fn on(grip_memory: GripMemory) -> Self {
         Self {
             grip_memory,
@@ -42,7 +42,7 @@ impl Perched {
         })
     }
 
-    /// The rotors will carry some of the weight, and not more than the arms bear.
+    /// The throttle lets the rotors carry some of the weight, and not more than the arms bear.
     pub fn throttle_set(sticks: &Sticks, params: &Params) -> bool {
         (RELEASE_THROTTLE_MIN..=params.perch_thr_max).contains(&sticks.throttle)
     }
@@ -85,8 +85,8 @@ impl Perched {
         } else if asked {
             Some(Reason::ThrottleTooHigh)
         } else {
-            // The servos lose their power, and with it the grip or the way out of it. Rotors never start unasked: the pilot
-            // lets go.
+            // Without power the servos can neither hold the grip nor open the arms. The rotors never start without the
+            // pilot: he releases.
             i.servo_trouble().map(Reason::Check)
         }
     }

@@ -15,7 +15,7 @@ pub const FREE_TIME: f32 = 0.3;
 /// Time until arms that are not free are reported, s.
 const STUCK_TIME: f32 = 10.0;
 
-/// See [`crate::mode::Mode::Releasing`].
+/// State of the mode [`crate::mode::Mode::Releasing`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Releasing {
     pub hold: PipeAttitudeHold,
@@ -38,7 +38,7 @@ impl Releasing {
         self.opening && step.arms_free()
     }
 
-    /// The pilot turns the perch switch on again, or is lost.
+    /// The pilot turns the perch switch on again, or the radio is lost.
     pub fn called_back(step: &Step<'_>) -> bool {
         let seen_off = step.context.perch_switch.seen_off;
         step.inputs.sticks.is_none_or(|s| s.perch_switch && seen_off)
@@ -53,9 +53,9 @@ impl Releasing {
         !self.opening && self.spooled(step.dt) >= 1.0 && step.context.lean.too_far_to_release()
     }
 
-    /// Rotors are up, and friction would not hold the vehicle while the arms open.
+    /// The rotors are up, and friction would not hold the vehicle while the arms open.
     pub fn lifts_off(&self, step: &Step<'_>) -> bool {
-        // Arms that were tightened mean less friction than the parameter's.
+        // Tightened arms mean that friction is below its parameter.
         let slips = step.context.lean.lifts_off() || step.context.tightened > 0;
         !self.opening && self.spooled(step.dt) >= 1.0 && slips
     }

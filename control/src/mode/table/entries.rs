@@ -1,4 +1,4 @@
-//! How a state begins from the one before.
+//! Entry functions: each builds a state from the previous one.
 
 use crate::gripper::retained_grip::GripMemory;
 use crate::maths::scalar;
@@ -23,7 +23,7 @@ use crate::mode::states::releasing::Releasing;
 use crate::pilot::rc::ArmChoice;
 use crate::pilot::release_throttle::release_thrust;
 
-/// Calibration has ended; the grip stays as it is.
+/// Calibration has ended; the grip stays unchanged.
 pub fn calibrated(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Disarmed {
     let grip_memory = from.behaviour().grip_memory();
     Disarmed {
@@ -60,13 +60,13 @@ pub fn flight(_: &State, _: &mut Step<'_>, _: Option<Reason>) -> Flight {
     Flight
 }
 
-/// The position is held from here on; a later hold takes a new turn of the switch.
+/// Holds the present position; a later hold takes a new turn of the switch.
 pub fn holding(_: &State, step: &mut Step<'_>, _: Option<Reason>) -> hold::Hold {
     step.context.hold_seen_off = false;
     hold::Hold::here(step)
 }
 
-/// The same after it has flown by itself: perching again takes a new turn of its switch.
+/// Hold after autonomous flight: perching again takes a new turn of its switch.
 pub fn handed_back(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> hold::Hold {
     step.context.hold_seen_off = false;
     step.context.perch_switch.seen_off = false;
@@ -81,7 +81,7 @@ pub fn handed_back(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> hold
 pub fn approach(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Approach {
     step.context.perch_switch.seen_off = false;
     let nose = present_heading(step);
-    // The pipe's, where it is known; else the nose lies along it.
+    // Heading of the pipe if known; otherwise the pipe lies along the nose.
     let turn = step.inputs.position.map_or(0.0, |e| e.yaw_offset);
     let pipe = step
         .inputs
@@ -96,7 +96,7 @@ pub fn approach(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Approac
     Approach::search(law, step)
 }
 
-/// Clear of the pipe: up, and another try, or only up after a release.
+/// Clear of the pipe: climbs, then starts another try, except after a release.
 pub fn approach_again(_: &State, step: &mut Step<'_>, _: Option<Reason>) -> Approach {
     let auto_perch = &mut step.context.auto_perch;
     auto_perch.tries = auto_perch.tries.saturating_add(1);
@@ -117,7 +117,7 @@ pub fn contact(_: &State, step: &mut Step<'_>, _: Option<Reason>) -> Contact {
     }
 }
 
-/// The arms begin to close. A radio lost just now finishes the landing that the pilot began.
+/// The arms begin to close. If the radio has just been lost, the vehicle finishes the landing that the pilot began.
 pub fn closing(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Clamping {
     step.context.lean.capture_lean();
     step.context.tightened = 0;
@@ -128,7 +128,8 @@ pub fn closing(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Clamping
     }
 }
 
-/// The arms stay closed, or close again. Radio lost: hold on; a later release takes a new turn of the switch.
+/// The arms stay closed, or close again. If the radio is lost, they hold; a later release takes a new turn of the
+/// switch.
 pub fn closing_again(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Clamping {
     step.context.lean.capture_lean();
     step.context.perch_switch.seen_on = Releasing::called_back(step) && step.inputs.sticks.is_some();
@@ -142,18 +143,18 @@ pub fn closing_again(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Cl
     }
 }
 
-/// The arms hold and the rotors stand.
+/// The arms hold and the rotors have stopped.
 pub fn perched(from: &State, _: &mut Step<'_>, _: Option<Reason>) -> Perched {
     Perched::on(from.behaviour().grip_memory())
 }
 
-/// The same, for a danger: opening takes a new turn of the switch.
+/// Stops the rotors on the grip because of a danger: opening takes a new turn of the switch.
 pub fn stopped_on_grip(from: &State, step: &mut Step<'_>, why: Option<Reason>) -> Perched {
     step.context.perch_switch.seen_on = false;
     perched(from, step, why)
 }
 
-/// Armed on purpose with the switch where it is: from here on, off is a wish to go.
+/// Armed deliberately at this switch position: from then on, turning the switch off releases.
 pub fn armed_on_pipe(from: &State, step: &mut Step<'_>, why: Option<Reason>) -> Perched {
     let perch = &mut step.context.perch_switch;
     perch.seen_on = step.inputs.sticks.is_some_and(|s| s.perch_switch);
@@ -161,7 +162,7 @@ pub fn armed_on_pipe(from: &State, step: &mut Step<'_>, why: Option<Reason>) -> 
     perched(from, step, why)
 }
 
-/// The pilot wants to leave: rotors first.
+/// The pilot releases: the rotors spool up first.
 pub fn releasing(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Releasing {
     step.context.auto_perch = AutoPerch::default();
     step.context.lean.capture_lean();
@@ -175,14 +176,16 @@ pub fn releasing(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Releas
     }
 }
 
-/// The same after a slip: a slow spool-up would take the belly off the pipe while the arms still close, and it slides on.
+/// Leaves after a slip: a slow spool-up would lift the belly off the pipe while the arms still close, and the slide
+/// would continue.
 pub fn leaving(from: &State, step: &mut Step<'_>, why: Option<Reason>) -> Escaping {
     step.context.auto_perch = AutoPerch::default();
     step.context.lean.capture_lean();
     giving_up(from, step, why)
 }
 
-/// The closing ends where the arms carry and the rotors may stand: these spool up first, as on a release.
+/// Ends the closing when the arms carry the weight and the rotors may have stopped: these spool up first, as on a
+/// release.
 pub fn releasing_instead(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Releasing {
     step.context.perch_switch.seen_off = false;
     let share = match from {
@@ -198,7 +201,7 @@ pub fn releasing_instead(from: &State, step: &mut Step<'_>, _: Option<Reason>) -
     }
 }
 
-/// The same by itself, with the throttle centred.
+/// Autonomous release, with the throttle centred.
 pub fn releasing_autonomously(from: &State, step: &mut Step<'_>, why: Option<Reason>) -> Releasing {
     let releasing = releasing(from, step, why);
     let heading = present_heading(step);
@@ -206,12 +209,12 @@ pub fn releasing_autonomously(from: &State, step: &mut Step<'_>, why: Option<Rea
     releasing
 }
 
-/// Off the pipe by itself, with free arms.
+/// Leaves the pipe autonomously, with free arms.
 pub fn lifting_off(_: &State, step: &mut Step<'_>, _: Option<Reason>) -> Escaping {
     Escaping::leaving(step.inputs, GripMemory::Open, None)
 }
 
-/// Arms that do not come free while the rotors pull at them: less throttle, and the tendons stay slack.
+/// Arms do not come free while the rotors pull at them: reduces the throttle and keeps the tendons slack.
 pub fn releasing_stuck(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Releasing {
     let arms = from.behaviour().grip_memory().arms().unwrap_or_default();
     Releasing {
@@ -276,7 +279,7 @@ fn present(step: &Step<'_>, arms: ArmChoice) -> PipeAttitudeHold {
     PipeAttitudeHold { roll, pitch, arms }
 }
 
-/// What `from` holds on the pipe.
+/// Attitude and arms that `from` holds on the pipe.
 fn hold(from: &State) -> PipeAttitudeHold {
     match from {
         State::Contact(Contact { hold })

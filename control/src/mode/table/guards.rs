@@ -20,7 +20,7 @@ use crate::pilot::stick_positions::{self, centred};
 /// A condition of a transition.
 #[derive(Clone, Copy, Debug)]
 pub struct Guard {
-    /// For the table in the docs.
+    /// Printed in the table of the docs.
     #[cfg(test)]
     pub name: &'static str,
     /// True if it holds in this state and step.

@@ -7,20 +7,20 @@ use crate::mode::modes::Mode;
 use crate::mode::reason::Reason;
 use crate::mode::state::{Entry, State};
 
-/// What the pilot reads because of a transition.
+/// Reason that a transition displays to the pilot.
 #[derive(Clone, Copy, Debug)]
 pub enum Notice {
-    /// What was shown before.
+    /// Keeps the displayed reason.
     Keep,
-    /// Nothing.
+    /// Clears it.
     Clear,
-    /// This, for some seconds.
+    /// Displays this reason for some seconds.
     Show(Reason),
-    /// What the function gives, for some seconds: the cause that has ended a state.
+    /// Displays the reason that the function returns for some seconds: the cause that ended a state.
     ShowOf(fn(&State, &Step<'_>) -> Option<Reason>),
-    /// This, by the new state itself for as long as it lasts.
+    /// The new state displays this reason for as long as it lasts.
     Lasting(Reason),
-    /// The same of what the function gives.
+    /// The new state displays the reason that the function returns for as long as it lasts.
     LastingOf(fn(&Step<'_>) -> Option<Reason>),
 }
 
@@ -29,7 +29,7 @@ pub enum Notice {
 pub enum Origin {
     /// These.
     In(&'static [Mode]),
-    /// Every one in which rotors may turn: what stops a flight stops a new mode too.
+    /// Every mode in which rotors may turn: a row that stops a flight also applies to a new mode.
     RotorsTurning,
 }
 
@@ -47,11 +47,11 @@ impl Origin {
 pub struct Transition {
     /// The modes in which it applies.
     pub from: Origin,
-    /// What must hold, all of it.
+    /// Guards, all of which must hold.
     pub when: &'static [Guard],
     /// The state that begins.
     pub to: Entry,
-    /// What the pilot reads.
+    /// Displayed reason.
     pub notice: Notice,
 }
 
@@ -83,27 +83,27 @@ use Notice::{Clear, Keep, Lasting, LastingOf, Show, ShowOf};
 /// The modes in which an arm may hold while rotors turn.
 const CLOSED: &[Mode] = &[Clamping, Releasing];
 const IDLE: &[Mode] = &[Armed, Landed];
-/// Those in which the pilot flies, and all in free air.
+/// The modes in which the pilot flies, all in free air.
 const FLOWN: &[Mode] = &[Flight, Hold];
 const AIRBORNE: &[Mode] = &[Flight, Hold, Approach];
 
-/// Why a closing ends.
+/// Reason that ends a closing.
 const DOUBTED: Notice = ShowOf(|state, step| match state {
     State::Clamping(c) => c.doubt(step),
     _ => None,
 });
-/// Why the perching by itself ends.
+/// Reason that ends autonomous perching.
 const HANDED_BACK: Notice = ShowOf(|state, _| match state {
     State::Approach(a) => a.abort_reason,
     _ => None,
 });
-/// Why the failsafe has acted.
+/// Cause of the failsafe.
 const CAUSE: Notice = ShowOf(|state, _| match state {
     State::Failsafe(f) => Some(f.cause),
     _ => None,
 });
 
-/// What forces the landing.
+/// Reason of a forced landing.
 const LANDS: Notice = LastingOf(|step| step.context.dangers.landing());
 
 /// Every transition in the order of priority.
@@ -129,9 +129,9 @@ pub const TRANSITIONS: &[Transition] = &[
     // In the air.
     row(AIRBORNE, &[RADIO_LOST], To::Failsafe(entries::failsafe), Lasting(Reason::RADIO_LOST)),
     row(AIRBORNE, &[MUST_LAND], To::Failsafe(entries::failsafe), LANDS),
-    // The pilot's hands first.
+    // The pilot's sticks and switches first.
     row(&[Hold, Approach], &[HOLD_OFF], To::Flight(entries::flight), Clear),
-    // What it feels would slide from under a hold: up, as from the pipe.
+    // In contact, a hold would slide off the pipe: climbs away as from a perch.
     row(&[Approach], &[FEELS_PIPE, TAKEN_OVER], To::Escaping(entries::sliding), Show(Reason::TakenOver)),
     row(&[Approach], &[FEELS_PIPE, POSITION_ADRIFT], To::Escaping(entries::sliding), Show(Reason::PositionStale)),
     row(&[Approach], &[ABORTED_IN_CONTACT], To::Escaping(entries::sliding), HANDED_BACK),
@@ -191,8 +191,8 @@ pub const TRANSITIONS: &[Transition] = &[
     row(&[Escaping], &[CLEAR, AUTO_PERCH, HOLD_KEPT, POSITION_FRESH], To::Hold(entries::handed_back), Keep),
     row(&[Escaping], &[CLEAR, BY_HAND, TAKES_OVER], To::Flight(entries::flight), Keep),
     row(&[Escaping], &[CLEAR, NOT_TAKEN_OVER], To::Failsafe(entries::failsafe), Lasting(Reason::NotTakenOver)),
-    // Not by its support alone: a vehicle lighter or stronger than its parameters would seem carried in free air. On
-    // real ground the probe takes thrust away until most of the weight is carried.
+    // Support alone proves nothing: a vehicle lighter or stronger than its parameters would seem carried in free air. On
+    // real ground the probe reduces thrust until the ground carries most of the weight.
     row(&[Failsafe], &[GROUNDED], To::Disarmed(entries::stopped), CAUSE),
     row(&[Failsafe], &[LOST_RADIO, RADIO, MUST_LAND], To::Failsafe(entries::failsafe), LANDS),
     row(&[Failsafe], &[THROTTLE_NOT_TAKEN, RADIO, MUST_LAND], To::Failsafe(entries::failsafe), LANDS),
@@ -202,7 +202,7 @@ pub const TRANSITIONS: &[Transition] = &[
 ];
 
 impl Transition {
-    /// The first that applies to `state` in this step.
+    /// The first row that applies to `state` in this step.
     pub fn first(state: &State, step: &Step<'_>) -> Option<&'static Self> {
         let mode = state.mode();
         TRANSITIONS
@@ -210,7 +210,7 @@ impl Transition {
             .find(|row| row.from.contains(mode) && row.when.iter().all(|guard| (guard.holds)(state, step)))
     }
 
-    /// The state that begins, with what the pilot is to read noted.
+    /// Builds the state that begins, and notes its displayed reason.
     pub fn enter(&self, from: &State, step: &mut Step<'_>) -> State {
         let why = match self.notice {
             Keep | Clear => None,
