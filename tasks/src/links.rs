@@ -129,13 +129,13 @@ links! {
     imu: ImuSample, Imu to "estimator", stale after 5 ms;
     /// Attitude estimate.
     attitude: Attitude, Estimator to "control, commander, position, arms, telemetry, supervisor, console, mavlink", stale after 5 ms;
-    /// Setpoint of thrust and attitude or rate; without it the rotors stop.
+    /// Setpoint of the controllers; without it the rotors stop.
     setpoint: Setpoint, Commander to "control", stale after 50 ms;
     /// Thrust and torque demand of the controllers.
     demand: Demand, Control to "mixer", stale after 5 ms;
     /// Target direction of down in body axes, and heading error.
     target: Target, Control to "log", stale after 50 ms;
-    /// Rotor thrusts, and for `control` the demand left unmet by saturation; without it the motors stop.
+    /// Rotor thrusts and motor commands, and for `control` the share of the demand that was met; without it the motors stop.
     mix: MixOutput, Mixer to "motors, control, clamp, commander, position, supervisor, mavlink", stale after 10 ms;
     /// Contact pressures; without them closed arms keep their force and are faulty.
     contact: Contact, Analog to "clamp, commander, console", stale after 20 ms;
@@ -165,7 +165,7 @@ links! {
     status: Status, Commander to "telemetry, console, mavlink, log", stale after 200 ms;
     /// Bench test request, by console or MAVLink, renewed while it lasts; without it motors stop and servos go to release.
     bench: BenchRequest, Console to "commander", stale after 150 ms;
-    /// What has become of it.
+    /// Reply to the last bench request.
     bench_answer: BenchAnswer, Commander to "console, mavlink", stale after 200 ms;
     /// Vehicle pose measured externally, with each message.
     external_pose: ExternalPose, Mavlink to "position, console", stale after 200 ms;
@@ -183,7 +183,7 @@ links! {
     mavlink: LineState, Mavlink to "console", stale after 200 ms;
     /// Remote command of a ground station, renewed until it is answered; executed once.
     remote: RemoteRequest, Mavlink to "commander", stale after 100 ms;
-    /// What has become of it.
+    /// Reply to the last remote command.
     remote_answer: RemoteAnswer, Commander to "mavlink", stale after 200 ms;
 }
 

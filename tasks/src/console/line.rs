@@ -52,7 +52,7 @@ pub(super) struct Line {
 
 impl Line {
     /// Takes one byte; true if it ends the line (CR, LF, CR LF, or telnet's CR NUL). A tab is a blank. Cursor keys are
-    /// ignored on an empty line and invalidate any other, since there is no cursor movement.
+    /// ignored on an empty line and invalidate any other, since cursor movement is not supported.
     pub(super) fn push(&mut self, byte: u8, echo: &mut Echo) -> bool {
         let after_cr = core::mem::replace(&mut self.after_cr, byte == b'\r');
         match byte {

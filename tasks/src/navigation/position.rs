@@ -1,8 +1,8 @@
 //! Position estimator, 200 Hz: fuses inertial data with external poses or with flow and range; without these, the
 //! height uses barometric pressure.
 //!
-//! A missed deadline delays the estimate; its readers accept ten periods. While the attitude is stale, nothing is
-//! estimated or sent.
+//! A missed deadline delays the estimate; its readers accept an age of ten periods. Nothing is sent while the attitude
+//! is stale or the estimator has no valid estimate.
 
 use sophie_control::chain;
 use sophie_control::maths::vector::{Quat, Vec3};

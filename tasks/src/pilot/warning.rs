@@ -18,13 +18,13 @@ pub enum Warning {
     Stack,
     /// An arm's tilt is beyond its model's correction.
     ArmTilt,
-    /// The servo battery is low, empty or unreadable.
+    /// The servo battery is low, near its end or unreadable.
     Servos(ServoSupply),
     /// Cause of an unusual start of the board.
     Restarted(StartCause),
     /// Pose, flow, range or air pressure is rejected as faulty.
     Position(Fault),
-    /// Optical flow is unusable at the present height or motion.
+    /// Optical flow is unusable at the present height, range or light.
     Limit(FlowRangeLimit),
     /// The servo cannot reach the force limit of the parameters.
     ServoWeak,
