@@ -278,8 +278,8 @@ fn clocks() -> embassy_stm32::Config {
 /// power-up: 100 ms at the most).
 const SENSORS_START: Duration = Duration::from_millis(100);
 
-/// Switches the supplies on, keeps other chips on the sensors' buses from answering, and waits for the sensors. The radio at
-/// TELEM1 stays in its loader where it finds this chip's RTS low as it gets its supply.
+/// Switches the supplies on, deselects other chips on the sensors' buses, and waits for the sensors. A radio at TELEM1
+/// stays in its boot loader if this chip's RTS is low at the radio's power-up.
 async fn rails(p: RailParts) {
     hold(p.other_imu.into(), Level::High);
     hold(p.other_gyro.into(), Level::High);

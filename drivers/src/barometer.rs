@@ -1,7 +1,7 @@
-//! What every barometer's driver does beside its chip: find it, pause after failures, refuse what cannot be.
+//! Common part of the barometer drivers: detects the chip, pauses after failures, rejects implausible values.
 //!
-//! A call takes some tens of milliseconds, in which it waits and holds no bus. Failures cause a pause, doubling up to 1 s:
-//! a board without the part costs one refused address a second.
+//! A call waits some tens of milliseconds without holding the bus. Failures cause a pause, doubling up to 1 s: on a
+//! board without the part, one unacknowledged address a second.
 
 use embassy_time::{Duration, Instant};
 use sophie_control::navigation::air_pressure::AirPressure;
@@ -12,13 +12,13 @@ use crate::fault::{Fault, report};
 
 /// First and longest pause after a failure.
 const PAUSE: [Duration; 2] = [Duration::from_millis(20), Duration::from_secs(1)];
-/// Failed measurements in a row after which the chip is started afresh.
+/// Consecutive failed measurements before the chip is reset.
 const FAILURES_MAX: u8 = 3;
-/// Equal measurements in a row of a part that stands still, a second at 25 Hz: of two neighbours a fourth are equal where
-/// noise is one step of the result (MS5611: 1.2 Pa of noise, steps of 1 Pa).
+/// Consecutive equal measurements that mark a stuck part, 1 s at 25 Hz: with noise of one step (MS5611: 1.2 Pa of
+/// noise, steps of 1 Pa), a quarter of neighbouring values are equal.
 const STUCK: u8 = 25;
 
-/// One chip: each call is an access of its own, and leaves the bus to others in between.
+/// One chip. Each call is a separate bus access and releases the bus afterwards.
 pub trait Chip {
     /// In the log.
     const NAME: &'static str;
@@ -38,10 +38,10 @@ pub trait Chip {
     /// One that has not started, or keeps no settings.
     async fn set_up(&mut self) -> Result<(), Fault>;
 
-    /// One measurement: pressure, Pa, and temperature, °C, unchecked, and when it was in its middle.
+    /// One measurement: time of its middle, pressure, Pa, and temperature, °C, unchecked.
     ///
     /// # Errors
-    /// [`Fault::Bus`], [`Fault::Silent`] where it does not end, or a chip that has lost its settings.
+    /// [`Fault::Bus`], [`Fault::Silent`] if it does not end, or a chip that has lost its settings.
     async fn measure(&mut self) -> Result<(Instant, f32, f32), Fault>;
 }
 

@@ -307,7 +307,7 @@ impl Bno055 {
             Ok(None) => Err(PortError::Absent),
             Err(lost) => {
                 self.failures = self.failures.saturating_add(1);
-                // A chip does not return to its mode by itself.
+                // The chip does not return to its mode without a reset.
                 let left = matches!(lost, Lost::Fault(Fault::Configuration { .. } | Fault::Silent));
                 if left || self.failures >= FAILURES_MAX {
                     self.lose(lost);

@@ -47,7 +47,7 @@ impl Decoder {
         }
     }
 
-    /// What was decoded last, also where it was not given out.
+    /// Last decoded state, including frames that were not published.
     pub const fn state(&self) -> &RcState {
         &self.state
     }

@@ -53,7 +53,7 @@ const PRS_RDY: u8 = 0x10;
 const MEASURE_PRESSURE: u8 = 0x01;
 const MEASURE_TEMPERATURE: u8 = 0x02;
 const SOFT_RESET: u8 = 0x09;
-/// Oversampling, and the scale of what it gives (§4.9.3, table 9).
+/// Oversampling code, and scale factor of its results (§4.9.3, table 9).
 const OVER_8: u8 = 0x03;
 const SCALE_8: f32 = 7_864_320.0;
 const OVER_4: u8 = 0x02;

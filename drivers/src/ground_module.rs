@@ -1,5 +1,5 @@
-//! Modules of optical flow and range below the vehicle that speak [`msp`](crate::msp) by themselves, as the MTF-01, MTF-02
-//! and 3901-L0X do: counts into angles along the vehicle's axes, with the time of measurement.
+//! Downward modules of optical flow and range that send [`msp`](crate::msp) unrequested, as the MTF-01, MTF-02 and
+//! 3901-L0X do: converts counts to angles along the vehicle's axes, with the time of measurement.
 
 use embassy_time::{Duration, Instant};
 use sophie_control::navigation::flow_range_sample::{Flow, GroundView, Range};
@@ -28,7 +28,7 @@ pub struct GroundModule {
     /// rad a count.
     per_count: f32,
     mounting: FlowMounting,
-    /// Time over which a frame counts, s; `None` before the second one.
+    /// Integration time of a frame, s; `None` before the second one.
     period: Option<f32>,
     /// When the frame of flow before had come.
     before: Option<Instant>,
@@ -48,8 +48,8 @@ impl GroundModule {
         }
     }
 
-    /// Seconds over which the counts of the frame at `at` run. Frames are counted over their own period: after one that
-    /// was lost, the next has but its own counts.
+    /// Integration time of the frame at `at`, s. A frame integrates over its own period only: the counts of a lost
+    /// frame are missing in the next.
     fn interval(&mut self, at: Instant) -> Option<f32> {
         let before = self.before.replace(at)?;
         let since = at.saturating_duration_since(before).as_micros() as f32 * 1e-6;
@@ -67,7 +67,7 @@ impl GroundModule {
 
     fn flow(&mut self, quality: u8, [x, y]: [i32; 2], at: Instant) -> Option<Flow> {
         let seconds = self.interval(at)?;
-        // What is seen moves against the vehicle: such modules count it so (ArduPilot turns their sign as well).
+        // The modules count the image's motion, opposite to the vehicle's (ArduPilot inverts the sign as well).
         let [x, y] = [x, y].map(|count| -(count as f32) * self.per_count);
         let angle = match self.mounting {
             FlowMounting::Forward => [x, y],
@@ -96,8 +96,8 @@ impl GroundDecoder for GroundModule {
                         news = true;
                     }
                 }
-                // The distance alone says whether there is one, as for INAV and ArduPilot: modules are seen that send no
-                // quality of their ranges.
+                // Validity follows from the distance alone, as in INAV and ArduPilot: some modules send no range
+                // quality.
                 Some(Message::Range { distance, .. }) => {
                     let seen = distance > 0;
                     let range = Range {

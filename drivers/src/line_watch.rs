@@ -5,8 +5,8 @@
 
 use embassy_time::{Duration, Instant};
 
-/// Polling time until the line is reported as silent: one short silence, within the first `BACK_AFTER`, is no reason to
-/// land.
+/// Polling time until the line is reported as silent: one short silence, within the first `BACK_AFTER`, does not
+/// justify a landing.
 pub const REPORTED_AFTER: Duration = Duration::from_millis(200);
 /// First and longest agreement before the line is used again.
 const BACK_AFTER: [Duration; 2] = [Duration::from_millis(50), Duration::from_millis(3200)];

@@ -1,4 +1,4 @@
-//! MSP version 2, as far as sensors speak it by themselves.
+//! MSP version 2: the messages that sensors send unrequested.
 //!
 //! | byte | what |
 //! |---|---|
@@ -9,13 +9,13 @@
 //! | 8.. | payload |
 //! | last | CRC-8/DVB-S2 of all from the flags on |
 //!
-//! Range (0x1F01): quality of 8 bits, distance of 32 in mm, negative where nothing is within reach. Flow (0x1F02): quality
-//! of 8 bits, then the counts along x and y since the frame before, 32 each. As INAV has them (`msp_protocol_v2_sensor.h`),
-//! which such modules are made for.
+//! Range (0x1F01): 8-bit quality, 32-bit distance in mm, negative out of range. Flow (0x1F02): 8-bit quality, then the
+//! counts along x and y since the previous frame, 32 bits each. Definitions: INAV's `msp_protocol_v2_sensor.h`, for
+//! which such modules are made.
 
 use heapless::Vec;
 
-/// Longest payload of interest, bytes: a frame that says more is no frame.
+/// Longest accepted payload, bytes; a frame that declares more is treated as garbage.
 const PAYLOAD: usize = 32;
 const HEAD: usize = 8;
 /// Longest frame.
@@ -23,27 +23,27 @@ const FRAME: usize = HEAD + PAYLOAD + 1;
 const RANGE: u16 = 0x1F01;
 const FLOW: u16 = 0x1F02;
 
-/// What a sensor says.
+/// Message of a sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Message {
     /// Range.
     Range {
         /// 0 to 255, 255 the best.
         quality: u8,
-        /// mm, negative where nothing is within reach.
+        /// Distance, mm; negative out of range.
         distance: i32,
     },
     /// Optical flow.
     Flow {
         /// 0 to 255, 255 the best.
         quality: u8,
-        /// Counts along the module's x and y since the frame before.
+        /// Counts along the module's x and y since the previous frame.
         counts: [i32; 2],
     },
 }
 
 impl Message {
-    /// Of a payload; `None` where function or length is another.
+    /// Decodes a payload; `None` for another function or length.
     fn of(function: u16, payload: &[u8]) -> Option<Self> {
         match (function, payload) {
             (RANGE, &[quality, a, b, c, d]) => Some(Self::Range {
@@ -95,32 +95,32 @@ impl Message {
     }
 }
 
-/// What the bytes at the start of the held ones are.
+/// Classification of the bytes at the start of the buffer.
 enum Start {
-    /// The beginning of a frame, as far as it goes.
+    /// An incomplete frame.
     Open,
-    /// Nothing.
+    /// Not a frame.
     Garbage,
-    /// A frame of this length with a right sum; `None` for a function that is not used.
+    /// A frame of this length with a correct checksum; `None` for an unused function.
     Frame(usize, Option<Message>),
 }
 
-/// Frames out of bytes, however these are cut. After garbage it looks again at every byte that it holds, so that none of
-/// the next frame is lost: at most as many looks as a frame has bytes at each.
+/// Extracts frames from bytes in chunks of any size. After garbage it rescans every buffered byte, so that no byte of
+/// the next frame is lost; each received byte costs at most as many scans as a frame has bytes.
 #[derive(Clone, Debug, Default)]
 pub struct Parser {
     held: Vec<u8, FRAME>,
 }
 
 impl Parser {
-    /// Nothing is held.
+    /// Empty.
     pub const fn new() -> Self {
         Self { held: Vec::new() }
     }
 
-    /// Takes a byte; gives what a frame that it ends says.
+    /// Takes a byte; returns the message of a frame that it completes.
     pub fn take(&mut self, byte: u8) -> Option<Message> {
-        // Never full: the longest frame is judged with its last byte.
+        // Never full: the longest frame is evaluated with its last byte.
         let _ = self.held.push(byte);
         while !self.held.is_empty() {
             match start(&self.held) {
@@ -137,7 +137,7 @@ impl Parser {
         None
     }
 
-    /// Forgets what is held: bytes are missing.
+    /// Clears the buffer after a loss of bytes.
     pub fn reset(&mut self) {
         self.held.clear();
     }

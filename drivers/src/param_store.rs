@@ -7,7 +7,8 @@
 //! Saves are appended; a page is erased when the log reaches it again. Loading never writes or erases: an erase at
 //! start-up could outlast the watchdog.
 //!
-//! Memory: [`BUFFER`] bytes in the store, one for all who call: in their futures each would keep its own.
+//! Memory: one buffer of [`BUFFER`] bytes in the store, shared by all callers; otherwise each caller's future would
+//! hold its own.
 
 mod foreign;
 mod guard;
@@ -38,7 +39,7 @@ pub struct ParamStore<F> {
     buffer: [u8; BUFFER],
 }
 
-/// Where the sets are, and what they are over.
+/// Flash range of the sets, and the defaults that they overlay.
 struct Log<F> {
     flash: F,
     range: Range<u32>,
@@ -51,14 +52,14 @@ struct Found {
     damaged: bool,
 }
 
-/// What is to be stored.
+/// Content of a set.
 struct Content {
     params: Params,
     signing: Stored,
 }
 
 impl Found {
-    /// What is stored, over `defaults`.
+    /// Stored content, overlaid on `defaults`.
     fn content(&self, defaults: &Params) -> Content {
         Content {
             params: self.set.as_ref().map_or(*defaults, |set| set.over(defaults)),
@@ -164,13 +165,14 @@ impl<F: NorFlash> Log<F> {
         )
         .await
         .map_err(|e| match e {
-            // A full log makes room by itself; otherwise its flash does not hold the marks.
+            // `FullStorage` is reported as broken: a full map reclaims its oldest page, unless the flash does not keep
+            // the page marks.
             Error::ItemTooBig | Error::BufferTooSmall(_) => StorageError::Full,
             _ => StorageError::Broken,
         })
     }
 
-    /// Stores `content` in place of what was `found`.
+    /// Replaces the set `found` by `content`.
     async fn replace(
         &mut self,
         found: Found,
@@ -241,7 +243,7 @@ impl<F: NorFlash> Storage for ParamStore<F> {
             ..found.content(log.defaults)
         };
         if found.set.is_none() && found.damaged && log.foreign().await.is_none() {
-            // What could not be read is erased; a key in it must not be forgotten.
+            // Unreadable content is erased; record that it may have held a key.
             content.signing = Stored::Lost;
         }
         log.replace(found, &content, buffer).await

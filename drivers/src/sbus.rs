@@ -34,7 +34,7 @@ const FLAGS: u8 = 0x0F;
 const BYTE: Duration = Duration::from_micros(120);
 /// Pause between frames. Receivers leave 4 ms or more, and none within a frame.
 const SILENCE: Duration = Duration::from_millis(3);
-/// Bytes of the eight slots behind an SBUS2 frame: what may follow it that is no frame.
+/// Bytes of the eight telemetry slots that may follow an SBUS2 frame.
 const SLOTS: u8 = 24;
 /// Consecutive frames before sticks are accepted.
 const TRUSTED_FROM: u8 = 3;
@@ -287,7 +287,7 @@ impl Decoder {
         }
     }
 
-    /// What was decoded last, also where it was not given out.
+    /// Last decoded state, including frames that were not published.
     pub const fn state(&self) -> &RcState {
         &self.state
     }

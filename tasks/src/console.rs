@@ -1,8 +1,8 @@
-//! The console: a line for builders, over any terminal program at 115,200 baud.
+//! Command line for builders, over any terminal program at 115,200 baud.
 //!
-//! It has no deadline. Parameters in force are fixed; what is set here goes into a working copy, which `save`
-//! stores and a restart puts in force. A terminal that takes nothing loses its text and delays no other task; a line that
-//! carries noise is read as lines that mean nothing.
+//! It has no deadline. The parameters in force are fixed; `set` changes a working copy, which `save` stores and a
+//! restart puts in force. If the terminal does not read, its text is dropped and no other task is delayed. Noise on
+//! the serial line is parsed as unknown commands.
 
 mod bench;
 mod calibrate;
@@ -40,7 +40,7 @@ use sophie_ports::chip::Chip;
 use sophie_ports::serial::{SerialInput, SerialOutput};
 use sophie_ports::storage::Storage;
 
-/// What asks for a line.
+/// Prompt for a command.
 const PROMPT: &[u8] = b"> ";
 
 /// Serves the console; never returns.
@@ -74,7 +74,7 @@ pub async fn run(
                     }
                 }
                 console.out.bytes(&echo).await;
-                // A line that is never silent must not starve the others of this level.
+                // A serial line with continuous input must not starve the other tasks of this level.
                 yield_now().await;
             }
             Ok(false) => Timer::after(PAUSE).await,
@@ -94,7 +94,7 @@ struct Console<'a, I, O, S, C> {
     chip: C,
     /// The working copy.
     params: Params,
-    /// Number of the newest order of the bench that was given here.
+    /// Sequence number of the newest bench order of this console.
     order: u32,
 }
 
@@ -162,7 +162,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         }
     }
 
-    /// Motors stand still, as far as the commander says.
+    /// Checks that the commander reports stopped motors.
     fn stopped(&self) -> Result<(), NotNow> {
         storing::stopped(self.links)
     }

@@ -55,10 +55,10 @@ use self::timing_records::TimingRecords;
 use crate::schedule::TaskId;
 use crate::start::Start;
 
-/// What is declared of a link.
+/// Declaration of a link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Declared {
-    /// Its field of [`Links`].
+    /// Name of its field in [`Links`].
     pub name: &'static str,
     /// The message's type.
     pub message: &'static str,
@@ -68,7 +68,7 @@ pub struct Declared {
     pub to: &'static str,
     /// Age beyond which a reader must not use it.
     pub stale_after: Duration,
-    /// What it is, and what its readers do without a fresh one.
+    /// Description, and reaction of its readers to a stale message.
     pub meaning: &'static str,
 }
 
@@ -81,7 +81,8 @@ macro_rules! links {
         pub struct Links {
             /// Parameters, fixed while armed.
             pub params: Params,
-            /// Why the board started and what the run before left, fixed. start-up -> every task that resumes from it.
+            /// Cause of the start and retained state of the previous run, fixed. start-up -> every task that resumes
+            /// from it.
             pub start: Start,
             $(
                 $(#[doc = $meaning])+
@@ -126,15 +127,15 @@ macro_rules! links {
 links! {
     /// Filtered inertial samples.
     imu: ImuSample, Imu to "estimator", stale after 5 ms;
-    /// The estimate.
+    /// Attitude estimate.
     attitude: Attitude, Estimator to "control, commander, position, arms, telemetry, supervisor, console, mavlink", stale after 5 ms;
-    /// What the rotors are to do; without it they stop.
+    /// Setpoint of the controllers; without it the rotors stop.
     setpoint: Setpoint, Commander to "control", stale after 50 ms;
-    /// What the controllers ask of the mixer.
+    /// Thrust and torque demand of the controllers.
     demand: Demand, Control to "mixer", stale after 5 ms;
-    /// Where down is aimed at in body axes, and the wanted heading against the present one.
+    /// Target direction of down in body axes, and heading error.
     target: Target, Control to "log", stale after 50 ms;
-    /// What the mixer gave, and to `control` what it could not give; without it the motors stop.
+    /// Rotor thrusts and motor commands, and for `control` the share of the demand that was met; without it the motors stop.
     mix: MixOutput, Mixer to "motors, control, clamp, commander, position, supervisor, mavlink", stale after 10 ms;
     /// Contact pressures; without them closed arms keep their force and are faulty.
     contact: Contact, Analog to "clamp, commander, console", stale after 20 ms;
@@ -142,47 +143,47 @@ links! {
     battery: Battery, Analog to "mixer, commander, telemetry, console, mavlink", stale after 500 ms;
     /// The servo battery, if one is measured, with each fifth conversion; without it no perch begins.
     servo_battery: ServoBattery, Analog to "commander, console, mavlink", stale after 500 ms;
-    /// What the converter gave, with each fifth conversion.
+    /// Raw counts of the converter, with each fifth conversion.
     counts: AnalogFrame, Analog to "console", stale after 100 ms;
     /// Tilt of the arms, each with its own time; without one its servo stays.
     arms: ArmAngles, Arms to "mixer, clamp, servos, console, mavlink", stale after 100 ms;
-    /// What the tendons are to do; without it the clamp makes no step and sends nothing.
+    /// Command to the tendons; without it the clamp makes no step and sends nothing.
     clamp_command: ClampCommand, Commander to "clamp", stale after 200 ms;
-    /// Forces, with the time of what they follow from; without them the servos stay, before the first there are no pulses.
+    /// Demanded tendon forces, stamped with the time of their input; if stale, the servos hold; before the first there are no pulses.
     tendons: TendonOrder, Clamp to "servos, supervisor", stale after 200 ms;
-    /// Tension that the servos can be giving, N, as old as the oldest tilt in it; without it nothing is proven free.
+    /// Estimated tendon tension, N, stamped with the oldest tilt used; if stale, no arm is proven free.
     tension: PerArm<f32>, Servos to "clamp, console", stale after 200 ms;
-    /// Angle to which each servo is sent, rad from release.
+    /// Commanded angle of each servo, rad from release.
     reel_angle: PerArm<f32>, Servos to "supervisor, console, mavlink", stale after 200 ms;
     /// The grip that must outlive a reset.
     grip_memory: GripMemory, Commander to "supervisor", stale after 200 ms;
-    /// The judgement, of the time of its pressures, or of the command where none is fresh: closed arms are faulty then.
+    /// Assessment of the grip, stamped with its pressures; without fresh pressure with the command, and closed arms are faulty then.
     grip: GripState, Clamp to "commander, supervisor, mavlink", stale after 100 ms;
-    /// The pilot's wishes, as frames come; without them failsafe.
+    /// The pilot's sticks and switches, with each receiver frame; without them failsafe.
     rc: RcState, Rc to "commander, console, mavlink", stale after 500 ms;
-    /// The commander's view.
+    /// State reported by the commander.
     status: Status, Commander to "telemetry, console, mavlink, log", stale after 200 ms;
-    /// What a builder tries on the table, by console or MAVLink, renewed while it lasts; without it motors stop and servos go to release.
+    /// Bench test request, by console or MAVLink, renewed while it lasts; without it motors stop and servos go to release.
     bench: BenchRequest, Console to "commander", stale after 150 ms;
-    /// What has become of it.
+    /// Reply to the last bench request.
     bench_answer: BenchAnswer, Commander to "console, mavlink", stale after 200 ms;
-    /// Where others see the vehicle, as they send it.
+    /// Vehicle pose measured externally, with each message.
     external_pose: ExternalPose, Mavlink to "position, console", stale after 200 ms;
-    /// Flow and range below the vehicle, from the module's line or by MAVLink, of the newest one's arrival; each has its own time.
+    /// Flow and range below the vehicle, from the module's line or by MAVLink, stamped with the newest arrival; each has its own time.
     ground: GroundView, Ground to "position, console", stale after 200 ms;
-    /// Pressure of the air by the board's barometer; without it the height of last resort is the inertial sensor's.
+    /// Air pressure of the board's barometer; without it the fallback height is inertial.
     air_pressure: AirPressure, Barometer to "position, console", stale after 200 ms;
-    /// Where the vehicle is; the message says since when only the inertial sensor says it. Without it nothing is held.
+    /// Position estimate, with the start of dead reckoning if it has no other source; without it no position is held.
     position: Estimate, Position to "commander, console, log", stale after 50 ms;
-    /// Where another computer sees the pipe, as it sends it; without it, and without a range, there is no perching by itself.
+    /// Pipe position from a companion computer, with each message; autonomous perching needs it or a range.
     pipe_target: PipeTarget, Mavlink to "commander", stale after 1500 ms;
-    /// What of pose, flow, range and air pressure is wrong and left out, as long as it is.
+    /// Fault of pose, flow, range or air pressure, while that input is rejected.
     position_fault: Fault, Position to "commander, console", stale after 50 ms;
-    /// What the MAVLink line is like.
+    /// State of the MAVLink lines.
     mavlink: LineState, Mavlink to "console", stale after 200 ms;
-    /// What a ground station orders beside the pilot, renewed until it is answered; an order is obeyed once.
+    /// Remote command of a ground station, renewed until it is answered; executed once.
     remote: RemoteRequest, Mavlink to "commander", stale after 100 ms;
-    /// What has become of it.
+    /// Reply to the last remote command.
     remote_answer: RemoteAnswer, Commander to "mavlink", stale after 200 ms;
 }
 
@@ -192,12 +193,12 @@ impl Links {
         Self::starting(params, Start::COLD)
     }
 
-    /// What speaks against arming on the hardware's side. drivers' tasks, start-up, console -> commander.
+    /// Hardware reasons that inhibit arming. drivers' tasks, start-up, console -> commander.
     pub fn hardware(&self) -> ArmingInhibits {
         self.hardware.lock(Cell::get)
     }
 
-    /// Reports that `reason` holds, or holds no longer.
+    /// Sets or clears the arming inhibit `reason`.
     pub fn report(&self, reason: ArmingInhibit, holds: bool) {
         self.hardware.lock(|cell| {
             let all = cell.get();
@@ -209,17 +210,17 @@ impl Links {
         });
     }
 
-    /// Whether less than its reserve has stayed unused of the stack. log -> commander.
+    /// True if the unused part of the stack is below its reserve. log -> commander.
     pub fn stack_is_scarce(&self) -> bool {
         self.stack_scarce.load(Ordering::Relaxed)
     }
 
-    /// Reports it: until the restart, as the greatest depth stays.
+    /// Sets [`Self::stack_is_scarce`] until the restart, as the greatest depth does not decrease.
     pub fn report_scarce_stack(&self) {
         self.stack_scarce.store(true, Ordering::Relaxed);
     }
 
-    /// The bench as who wants to give an order sees it.
+    /// State of the bench for a sender of orders.
     pub fn bench_view(&self) -> BenchView {
         BenchView {
             newest: self.bench.look(|m| m.value.number).unwrap_or(0),
@@ -228,7 +229,7 @@ impl Links {
         }
     }
 
-    /// The servo battery as it is now.
+    /// Present state of the servo battery.
     pub fn servo_supply(&self) -> ServoSupply {
         if self.params.servo_batt_div > 0.0 {
             match self.servo_battery.fresh() {

@@ -1,21 +1,21 @@
-//! Every task once: its name, level, period, deadline, and whether the supervisor watches it.
+//! Task declarations: name, level, period, deadline, and supervision.
 //!
-//! This is data, below the links and the loops that use it: the enum, the records of timing, the supervisor's list and
-//! the table of docs/timing.md follow from it. Which port a task takes is said where it is spawned.
+//! The task enum, the timing records, the supervisor's list and the table of docs/timing.md are generated from this
+//! data, on which links and loops depend. A task's port is given at its spawn.
 
 pub mod histogram;
 pub mod timing;
 
 use embassy_time::Duration;
 
-/// How urgent a task is: each level preempts those below it, tasks of one level take turns.
+/// Priority of a task: each level preempts those below it; tasks of one level are cooperative.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
     /// From data-ready to the motor frame.
     Flight,
     /// Fixed rates of 50 to 500 Hz.
     Steady,
-    /// What may wait.
+    /// Without hard deadlines.
     Background,
 }
 
@@ -30,30 +30,30 @@ impl Level {
     }
 }
 
-/// Whether a task's standing still leaves the watchdog unfed.
+/// Supervision of a task.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Watch {
-    /// It does.
+    /// A stalled task causes a watchdog reset.
     Watched,
-    /// It does not: the vehicle flies without it.
+    /// Not supervised: the vehicle flies without it.
     Unwatched,
 }
 
-/// What is declared of a task.
+/// Declaration of a task.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Task {
     /// Name for logs.
     pub name: &'static str,
-    /// What it does.
+    /// Description.
     pub what: &'static str,
     /// The level that it runs on.
     pub level: Level,
-    /// Time between two runs; the longest where it varies.
+    /// Time between two runs; the longest if it varies.
     pub period: Duration,
-    /// When its periods begin by the board's clock, so that a task runs after the one that it reads; `None` for a task
-    /// that follows an input.
+    /// Offset of its periods on the board's clock, so that a task runs after its data source; `None` for a task
+    /// triggered by an input.
     pub phase: Option<Duration>,
-    /// Time from release by which a run must have ended. What it counts from: docs/timing.md.
+    /// Time limit from release to the end of a run. docs/timing.md defines the release.
     pub deadline: Duration,
     /// Whether the supervisor watches it.
     pub watch: Watch,
@@ -84,7 +84,7 @@ macro_rules! tasks {
             /// Every task, in the order of the declaration.
             pub const ALL: [Self; [$(Self::$id),*].len()] = [$(Self::$id),*];
 
-            /// What is declared of the task.
+            /// Declaration of the task.
             pub const fn task(self) -> Task {
                 match self {
                     $(Self::$id => Task {
@@ -119,25 +119,25 @@ tasks! {
     Clamp "clamp": Steady, each 10000 us at 600 us, within 10000 us, Watched;
     /// Servo output; a frame by `servo_frame_rate`, 20 ms at most.
     Servos "servos": Steady, each 20000 us at 900 us, within 20000 us, Watched;
-    /// Receiver, as frames come. A lost radio is the failsafe's business.
+    /// Receiver, with each frame. The failsafe handles a lost radio.
     Rc "rc": Steady, each 20000 us, within 2000 us, Unwatched;
-    /// Module of optical flow and range, as its frames come. Without it the pilot flies as ever.
+    /// Module of optical flow and range, with each frame. Manual flight does not need it.
     Ground "ground": Steady, each 20000 us, within 2000 us, Unwatched;
     /// Mode logic.
     Commander "commander": Steady, each 10000 us at 300 us, within 10000 us, Watched;
-    /// Position, velocity and wind, for the hold. Without poses or flow it does nothing, and the pilot flies as ever.
+    /// Position, velocity and wind, for position hold. Idle without poses or flow; manual flight does not need it.
     Position "position": Steady, each 5000 us at 150 us, within 5000 us, Unwatched;
-    /// Arm sensors. Their bus may stall; the mixer does without.
+    /// Arm sensors. Their bus may stall; the mixer works without them.
     Arms "arms": Background, each 10000 us at 0 us, within 10000 us, Unwatched;
-    /// Barometer, whose bus arm sensors share. Without it the height of last resort is the inertial sensor's.
+    /// Barometer, on a bus shared with arm sensors. Without it the fallback height is inertial.
     Barometer "barometer": Background, each 40000 us at 5000 us, within 40000 us, Unwatched;
     /// Telemetry to the pilot.
     Telemetry "telemetry": Background, each 50000 us at 0 us, within 50000 us, Unwatched;
-    /// MAVLink: what is due to ground stations.
+    /// MAVLink to ground stations.
     Mavlink "mavlink": Background, each 20000 us at 0 us, within 20000 us, Unwatched;
-    /// Bench commands, renewed while one lasts; what else the console does has no rate.
+    /// Renewal of a running bench command; other console work has no fixed rate.
     Console "console": Background, each 50000 us, within 50000 us, Unwatched;
-    /// Deadline supervision and watchdog, which bites when it stands still.
+    /// Deadline supervision; feeds the watchdog. A stalled supervisor causes a reset.
     Supervisor "supervisor": Steady, each 10000 us at 1200 us, within 10000 us, Unwatched;
 }
 
@@ -155,12 +155,12 @@ impl TaskId {
         self.task().level
     }
 
-    /// Time between two runs; the longest where it varies.
+    /// Time between two runs; the longest if it varies.
     pub const fn period(self) -> Duration {
         self.task().period
     }
 
-    /// When its periods begin by the board's clock; 0 for a task that follows an input.
+    /// Offset of its periods on the board's clock; 0 for a task triggered by an input.
     pub const fn phase(self) -> Duration {
         match self.task().phase {
             Some(phase) => phase,
@@ -168,7 +168,7 @@ impl TaskId {
         }
     }
 
-    /// Time from release by which a run must have ended.
+    /// Time limit from release to the end of a run.
     pub const fn deadline(self) -> Duration {
         self.task().deadline
     }

@@ -24,7 +24,7 @@ impl Start {
         sequence: 0,
     };
 
-    /// A start with these copies in memory.
+    /// A start with these copies in retained memory.
     pub fn new(cause: StartCause, copies: &[Words; 2]) -> Self {
         let kept = if cause.loses_memory() {
             None

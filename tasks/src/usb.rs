@@ -1,8 +1,8 @@
-//! USB: one serial port (CDC-ACM) that carries the console and MAVLink, whichever arrives.
+//! USB: one serial port (CDC-ACM) for the console and MAVLink, selected by the protocol received.
 //!
-//! Background, without a deadline: with no cable, a suspended bus or a host that does not read, what is written is
-//! dropped in time and nothing waits. It knows no chip: the board gives an `embassy_usb_driver::Driver`, the tests a bus
-//! of their own.
+//! Runs in the background without a deadline: without a cable, on a suspended bus, or with a host that does not read,
+//! output is dropped after a time-out and blocks no task. It is independent of the chip: the board provides an
+//! `embassy_usb_driver::Driver`, the tests a simulated bus.
 
 mod guard;
 pub mod port;
@@ -16,28 +16,30 @@ use embassy_usb::{Builder, Config, UsbVersion};
 use self::guard::Guarded;
 use self::port::{PACKET, Port};
 
-/// ST's own numbers of a virtual serial port, which its chips' other firmwares use and every system knows.
+/// ST's vendor and product IDs of a virtual serial port, used by other firmware of these chips and known to every
+/// operating system.
 const VENDOR: u16 = 0x0483;
 const PRODUCT: u16 = 0x5740;
-/// What is sent at once: a packet that is not full ends a transfer, so that nothing waits for one that does.
+/// Largest packet sent, bytes: one below the maximum, since a short packet ends a transfer and the host delivers it at
+/// once.
 const CHUNK: usize = PACKET as usize - 1;
-/// What the board may draw, mA: the most there is, since sensors and receiver hang on it.
+/// Declared supply current, mA: USB's maximum, since sensors and receiver are supplied too.
 const CURRENT: u16 = 500;
-/// Time that the host has to fetch what is sent; then all that waits is dropped.
+/// Time-out for the host to fetch a packet; then all pending output is dropped.
 const FETCH: Duration = Duration::from_millis(100);
 /// Pause after a packet that cannot be read.
 const PAUSE: Duration = Duration::from_millis(1);
 
-/// What the device says of itself.
+/// Identification in the device descriptor.
 #[derive(Clone, Copy, Debug)]
 pub struct Identity {
     /// The board, at most 30 ASCII characters.
     pub product: &'static str,
-    /// The chip's number, the same: by it systems tell one board from the next.
+    /// Serial number from the chip's unique ID, at most 30 ASCII characters; distinguishes boards on a host.
     pub serial: &'static str,
 }
 
-/// Memory of the device, for as long as it runs.
+/// Static memory of the device.
 pub struct Memory<'d> {
     configuration: [u8; 96],
     objects: [u8; 16],
@@ -52,7 +54,7 @@ impl Default for Memory<'_> {
 }
 
 impl Memory<'_> {
-    /// Before the start.
+    /// Unused memory.
     pub const fn new() -> Self {
         Self {
             configuration: [0; 96],
@@ -89,7 +91,7 @@ pub async fn run<'d, D: Driver<'d> + 'd>(
     let mut device = builder.build();
     join4(
         device.run(),
-        // Before what arrives through the port that it opens.
+        // Polled before the receiver: a change of DTR precedes data through the port that it opens.
         follow(control, port),
         receive(receiver, port),
         send(sender, port),
@@ -98,7 +100,7 @@ pub async fn run<'d, D: Driver<'d> + 'd>(
     .0
 }
 
-/// Takes what arrives. A port that is full holds the host back.
+/// Receives packets. A full port makes the host wait.
 async fn receive<'d, D: Driver<'d>>(mut receiver: Receiver<'d, D>, port: &Port) -> ! {
     let mut packet = [0; PACKET as usize];
     loop {
@@ -113,7 +115,7 @@ async fn receive<'d, D: Driver<'d>>(mut receiver: Receiver<'d, D>, port: &Port) 
     }
 }
 
-/// Sends what the port has, as long as the host fetches it.
+/// Sends the port's output while the host fetches it.
 async fn send<'d, D: Driver<'d>>(mut sender: Sender<'d, D>, port: &Port) -> ! {
     let mut chunk = [0; CHUNK];
     loop {
@@ -130,7 +132,8 @@ async fn send<'d, D: Driver<'d>>(mut sender: Sender<'d, D>, port: &Port) -> ! {
     }
 }
 
-/// Follows the line that says whether a program has the port open: each change begins anew.
+/// Follows DTR, which a program sets while it has the port open; each change returns the port to the console and drops
+/// pending output.
 async fn follow(control: ControlChanged<'_>, port: &Port) -> ! {
     let mut open = false;
     loop {

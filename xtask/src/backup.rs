@@ -20,7 +20,7 @@ impl<'a> Backup<'a> {
     /// Parses `words` behind `verb`.
     ///
     /// # Errors
-    /// One line: what is wrong and what is allowed.
+    /// One line: the fault and the allowed form.
     pub fn parse(verb: &str, words: &[&'a str]) -> Result<Self, String> {
         let [name, rest @ ..] = words else {
             return Err(format!("{verb}: name the board first: {}", boards::names()));
@@ -132,7 +132,7 @@ pub fn usual(board: &Board) -> PathBuf {
 /// Checks that [`Backup::restore`] accepts the file.
 ///
 /// # Errors
-/// What is wrong with it, and what is required.
+/// The file's fault, and the requirement.
 pub fn sound(board: &Board, path: &Path) -> Result<(), String> {
     let wanted = format!(
         "wanted are the {} bytes that `cargo xtask backup {}` writes",

@@ -35,7 +35,7 @@ impl<'a> Bench<'a> {
     /// Parses `words` behind the verb, before the minutes of building; the emulator checks values.
     ///
     /// # Errors
-    /// One line: what is wrong and what is allowed.
+    /// One line: the fault and the allowed form.
     pub fn parse(words: &[&'a str]) -> Result<Self, String> {
         let (board, rest) = emulated("bench", words)?;
         let mut rest = passed_on("bench", rest, &WITH_VALUE, &ALONE)?;
@@ -63,7 +63,7 @@ impl<'a> Bench<'a> {
     }
 }
 
-/// Words of `verb` that the emulator's binary takes: one scenario, options of `with_value` and those that stand `alone`.
+/// Words of `verb` passed to the emulator: one scenario, options `with_value` and options without (`alone`).
 fn passed_on<'a>(
     verb: &str,
     words: &[&'a str],
@@ -105,7 +105,7 @@ impl<'a> Sample<'a> {
     /// Parses `words` behind the verb; the emulator checks values.
     ///
     /// # Errors
-    /// One line: what is wrong and what is allowed.
+    /// One line: the fault and the allowed form.
     pub fn parse(words: &[&'a str]) -> Result<Self, String> {
         let (board, rest) = emulated("sample", words)?;
         let options = [("--seeds", "FIRST-LAST"), ("--speed", "SHARE")];
@@ -150,7 +150,7 @@ impl<'a> Chain<'a> {
     /// Parses `words` behind the verb.
     ///
     /// # Errors
-    /// One line: what is wrong and what is allowed.
+    /// One line: the fault and the allowed form.
     pub fn parse(words: &[&'a str]) -> Result<Self, String> {
         let (board, rest) = emulated("chain", words)?;
         let steps = match rest {

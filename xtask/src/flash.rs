@@ -37,7 +37,7 @@ impl<'a> Flash<'a> {
     /// Parses `words` behind the verb.
     ///
     /// # Errors
-    /// One line: what is wrong and what is allowed.
+    /// One line: the fault and the allowed form.
     pub fn parse(words: &[&'a str]) -> Result<Self, String> {
         let mut names = Vec::new();
         let (mut by, mut variant, mut elf) = (By::Probe, Variant::Plain, None);

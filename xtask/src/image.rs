@@ -164,7 +164,7 @@ impl Image {
         })
     }
 
-    /// The halfword that flashing writes to `address`; erased flash where nothing is written.
+    /// The halfword that flashing writes to `address`; erased flash outside the image.
     pub fn halfword(&self, address: u64) -> u16 {
         let word = self.word(address & !3).unwrap_or(u32::MAX);
         (if address & 2 == 0 { word } else { word >> 16 }) as u16
@@ -178,14 +178,14 @@ impl Image {
             .is_none_or(|(_, code)| *code)
     }
 
-    /// What tells this image from every other, as the firmware has it of itself.
+    /// Build identifier of the image, as the firmware reports it.
     ///
     /// # Errors
-    /// There is no such symbol.
+    /// The symbol is missing.
     pub fn build(&self) -> Result<u32, Error> {
         let values = self.symbol("__edata")? - self.symbol("__sdata")?;
         let (start, end) = (self.symbol("__stext")?, self.symbol("__sidata")? + values);
-        // Flash that nothing has written.
+        // Erased flash.
         let word = |at| self.word(at).unwrap_or(u32::MAX);
         Ok(sophie_image_id::of((start..end).step_by(4).map(word)))
     }
@@ -193,7 +193,7 @@ impl Image {
     /// Address of the symbol `name`.
     ///
     /// # Errors
-    /// There is none.
+    /// The image does not define it.
     pub fn symbol(&self, name: &str) -> Result<u64, Error> {
         self.symbols
             .get(name)

@@ -31,7 +31,7 @@ use build::Variant;
 /// Anything that ends a verb, as a sentence.
 type Error = Box<dyn std::error::Error>;
 
-/// What is refused for what the user asks or brings: exit status 2.
+/// Usage or input error: exit status 2.
 #[derive(Debug)]
 struct Refused(String);
 
@@ -86,7 +86,7 @@ boards: matek-h743 (reference), cuav-v5, f405
 variables: PROBE_RS_* as probe-rs knows them; RUSTFLAGS is kept and added to
 exit status: 0 done, 1 failed, 2 not understood";
 
-/// What is to be done.
+/// A parsed verb.
 enum Verb<'a> {
     Firmware(&'static Board, Variant),
     Flash(flash::Flash<'a>),
@@ -120,7 +120,7 @@ const VERBS: [&str; 12] = [
 ];
 
 impl<'a> Verb<'a> {
-    /// What `words` ask for; else why they are not understood.
+    /// Parses `words`; the error explains why they are invalid.
     fn parse(words: &[&'a str]) -> Result<Self, String> {
         let (verb, rest) = match words {
             [] | ["help" | "-h" | "--help"] => return Ok(Self::Help),
@@ -262,7 +262,7 @@ fn firmware(board: &Board, variant: Variant) -> Result<(PathBuf, image::Image), 
     Ok((elf, image))
 }
 
-/// Checks an image for a board: its vectors, what DMA reaches, what is loaded where.
+/// Checks an image for a board: vector table, DMA reach of buffers, load addresses.
 fn check(board: &Board, elf: &Path) -> Result<image::Image, Error> {
     let image = image::Image::read(elf)?;
     let vectors = vectors::check(board, &image)?;

@@ -9,7 +9,7 @@ const SECTION: &str = ".retained";
 /// Checks the place of retained data; returns their bytes.
 ///
 /// # Errors
-/// There are none, or they are misplaced or written by flashing.
+/// The data are missing, misplaced or written by flashing.
 pub fn check(board: &Board, image: &Image) -> Result<u64, Error> {
     let section = image.sections.iter().find(|section| section.name == SECTION);
     let section = section.ok_or("the image has nothing that outlives a reset")?;

@@ -30,7 +30,7 @@ impl<'a> Rig<'a> {
     /// Parses `words` behind the verb.
     ///
     /// # Errors
-    /// One line: what is wrong and what is allowed.
+    /// One line: the fault and the allowed form.
     pub fn parse(words: &[&'a str]) -> Result<Self, String> {
         let [name, rest @ ..] = words else {
             return Err(format!("rig: name the board first: {}", boards::names()));
@@ -69,7 +69,7 @@ impl<'a> Rig<'a> {
     /// Builds and runs the tests; returns the runner's exit status.
     ///
     /// # Errors
-    /// The tests do not build, their image is wrong, or there is no probe.
+    /// The tests do not build, their image fails its checks, or no probe is connected.
     pub fn run(&self) -> Result<ExitCode, Error> {
         let wired = self.wired || self.on == Where::Emulated;
         let cached = self.variant == Variant::DataCache;

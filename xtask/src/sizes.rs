@@ -27,7 +27,7 @@ pub struct Sizes {
     pub flash: u64,
     /// Statics, including the tasks' futures.
     pub ram: u64,
-    /// What the memory of the statics has for them.
+    /// Memory available to the statics.
     pub ram_limit: u64,
     pub stack: u64,
     /// Depth of the USB handlers, which the bench's flights do not reach.
@@ -62,7 +62,7 @@ pub fn stack(image: &Image) -> Result<u64, Error> {
     Ok(image.symbol("_stack_start")? - image.symbol("_stack_end")?)
 }
 
-/// Size of the memory in which the statics lie, less the stack where that lies there too.
+/// Size of the memory of the statics, less the stack if both share it.
 fn ram_limit(board: &Board, image: &Image) -> Result<u64, Error> {
     let (statics, end, start) = (
         image.symbol("__sbss")?,
@@ -113,7 +113,7 @@ pub fn print(rows: &[(&Board, Sizes)]) {
 /// the ceilings and writes the table.
 ///
 /// # Errors
-/// What is too large or out of date, one per line.
+/// Each size above its limit and each outdated entry, one per line.
 pub fn compare(rows: &[(&Board, Sizes)], tighten: bool) -> Result<(), Error> {
     let path = build::root().join("xtask/ceilings.toml");
     let text = fs::read_to_string(&path)?;
@@ -208,7 +208,7 @@ fn with_table(
     Ok(format!("{head}{BEGIN}{table}{END}{tail}"))
 }
 
-/// Without what only an image knows.
+/// Table row, without the columns that need an image.
 fn row(name: &str, ceiling: &Ceiling) -> String {
     let &Ceiling {
         flash,

@@ -15,7 +15,7 @@ const AT_ONCE: u64 = 16;
 /// Returns how many interrupts have their own handler.
 ///
 /// # Errors
-/// What is wrong with the table.
+/// The table's fault.
 pub fn check(board: &Board, image: &Image) -> Result<usize, Error> {
     let table = &image.vectors;
     if table.len() != EXCEPTIONS + board.interrupts {

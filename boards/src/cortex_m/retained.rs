@@ -111,8 +111,8 @@ impl Block {
 #[repr(transparent)]
 struct Cell(UnsafeCell<Block>);
 
-// SAFETY: accessed only by `load` and `store`, which are called only where nothing else runs: at start-up before any
-// task, and in a fault handler with interrupts off.
+// SAFETY: accessed only by `load` and `store`, which are called only without concurrency: at start-up before any task,
+// and in a fault handler with interrupts off.
 unsafe impl Sync for Cell {}
 
 // SAFETY: the linker script gives the section its own memory.
@@ -129,7 +129,7 @@ unsafe impl Sync for Copies {}
 #[unsafe(link_section = ".retained")]
 static COPIES: Copies = Copies(UnsafeCell::new([[0; STATE_WORDS]; 2]));
 
-/// What a run asks of the next start. Kept as a word and its complement.
+/// Request of a run to the next start. Stored as a word and its complement.
 #[derive(Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]
 pub enum Request {
@@ -149,14 +149,14 @@ unsafe impl Sync for Requested {}
 #[unsafe(link_section = ".retained")]
 static REQUEST: Requested = Requested(UnsafeCell::new([0; 2]));
 
-/// Has the next start do as asked. Called just before a reset.
+/// Stores a request to the next start. Called just before a reset.
 pub fn request(what: Request) {
     let word = what as u32;
     // SAFETY: valid and aligned, and nothing else accesses it (see `Requested`).
     unsafe { REQUEST.0.get().write_volatile([word, !word]) }
 }
 
-/// What the run before has asked for. Called once, before [`start`]; the request is withdrawn.
+/// Takes the request of the previous run. Called once, before [`start`].
 pub fn requested(cause: ResetCause) -> Option<Request> {
     // As in `start`: noise is not read.
     let words = if cause == ResetCause::Software {

@@ -1,5 +1,5 @@
-//! Greatest stack depth, from the start-up's paint. All levels share the stack: background + steady + flight + a
-//! driver's interrupt.
+//! Greatest stack depth, measured by the pattern that start-up paints. All levels share the stack: background + steady
+//! + flight + a driver's interrupt.
 
 use core::arch::asm;
 use core::sync::atomic::{AtomicU32, Ordering};
@@ -46,8 +46,9 @@ pub fn stack_use() -> StackUse {
 pub fn start_has_ended() {
     START.store(stack_use().flight, Ordering::Relaxed);
     let (first, _) = bounds();
-    // SAFETY: writes from the stack's first address to the stack pointer, below which thread mode has nothing; an
-    // interrupt between two stores has left what it put there. No frame of this function lies below the pointer meanwhile.
+    // SAFETY: writes from the stack's first address to the stack pointer, below which thread mode keeps no data; an
+    // interrupt between two stores has already left its frame. No frame of this function lies below the pointer
+    // meanwhile.
     unsafe {
         asm!(
             "2:",

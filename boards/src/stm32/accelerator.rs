@@ -11,7 +11,8 @@ pub fn has_prefetch() -> bool {
     DBGMCU.idcode().read().rev_id() != REVISION_A
 }
 
-/// Enables both caches, emptied, and the prefetch where it works. Called once, after the clocks.
+/// Invalidates and enables both caches; enables the prefetch on revisions that support it. Called once, after the
+/// clocks.
 pub fn enable() {
     let caches = |on| {
         FLASH.acr().modify(|w| {

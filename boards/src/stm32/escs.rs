@@ -1,7 +1,7 @@
 //! The motors' speed controllers, by DShot frames or pulses, on any channels of one or two timers.
 //!
-//! Each command starts one frame or pulse, which ends with the pins low: in zeros, or by the timer's stop. Without
-//! software there is none, and the controllers stop the motors.
+//! Each command starts one frame or pulse, which ends with the pins low: in zeros, or by the timer's stop. If the
+//! software hangs, frames and pulses cease and the controllers stop the motors.
 
 use embassy_futures::join::join;
 use embassy_stm32::dma::InterruptHandler;
@@ -169,7 +169,7 @@ where
     /// lengthens the pulse; the next is newer.
     fn shoot(&mut self, pulse: EscPulse, t: PwmTiming, commands: PerArm<f32>) {
         let registers = self.timer.regs_core();
-        // In one-pulse mode the counter stops by itself.
+        // In one-pulse mode the hardware stops the counter.
         if registers.cr1().read().cen() {
             return;
         }

@@ -1,4 +1,4 @@
-//! The arm sensors' I2C buses, freed at start-up and after failures from chips that hold them.
+//! I2C buses of the arm sensors, with bus recovery at start-up and after failures if a chip holds a line low.
 
 #[cfg(any(family = "f7", family = "h7"))]
 use core::marker::PhantomData;
@@ -258,7 +258,7 @@ impl<P: BusParts> ArmBus<P> {
             }
             self.lines = lines;
         }
-        // SAFETY: called only while there is no bus, and the lines are dropped.
+        // SAFETY: called only before a bus exists, and the lines are dropped.
         (lines != Lines::Held).then(|| unsafe { self.parts.build(self.speed) })
     }
 }

@@ -1,6 +1,6 @@
-//! The chip's own loader, which takes a firmware over USB (ST's AN2606): entered by a request that outlives a reset, before
-//! clocks, caches or watchdog are on, as it expects its chip; and left by a reset, since it starts a firmware with its
-//! clocks running. An H7 takes no dividers for a PLL that runs: all rates would be wrong.
+//! The chip's boot loader, which receives firmware over USB (ST's AN2606). It is entered by a request that outlives a
+//! reset, before clocks, caches and watchdog are on, as it requires. It is left by a reset, since it starts the
+//! firmware with its own clocks running: an H7 ignores new dividers of a running PLL, so all rates would be wrong.
 
 use cortex_m::peripheral::SCB;
 use embassy_stm32::pac::RCC;
@@ -25,8 +25,8 @@ pub fn leave_for_loader() -> ! {
     reset()
 }
 
-/// Enters the loader where the run before has asked for it, and resets the chip where it comes from there. Called first of
-/// all, once.
+/// Enters the loader if the previous run requested it; resets the chip if it was started by the loader. Called once,
+/// before everything else.
 pub fn enter_or_leave_loader(cause: ResetCause) {
     let requested = retained::requested(cause);
     if requested == Some(Request::EnterLoader) {

@@ -1,4 +1,4 @@
-//! What is the same for every board: the types of its ports, and the order in which they are built.
+//! Common part of the board files: the types of the ports, and their order of construction.
 
 /// Makes the board of a file: its `NAME`, the types of its ports, and `take`, which starts the chip and builds them.
 ///

@@ -45,7 +45,7 @@ const AS_DRIVERS: Priority = Priority::P0;
 /// Rate of the MAVLink line, baud: what SiK radios, PX4's TELEM1 and ArduPilot's serial ports start with. A byte takes
 /// 174 us, longer than the flight level holds the core at a stretch: with its interrupts below that level none is lost.
 const MAVLINK_BAUD: u32 = 57_600;
-/// What may be sent on it, bytes each second: four fifths of what it carries, so that a frame finds it free.
+/// Send budget of the MAVLink line, bytes/s: four fifths of its capacity, so that the line is free for each frame.
 pub const MAVLINK_BYTES_PER_SECOND: u32 = MAVLINK_BAUD / 10 * 4 / 5;
 
 fn receiver_config(protocol: RcProtocol) -> Config {

@@ -13,8 +13,8 @@ use static_cell::ConstStaticCell;
 
 use crate::cortex_m::BELOW_FLIGHT;
 
-/// What may be sent of MAVLink over USB, bytes each second. The bus carries fifty times as much: what it takes of the
-/// background counts, which makes a frame in some 60 us.
+/// Send budget of MAVLink over USB, bytes/s. The bus carries fifty times as much; the limit is the background level's
+/// time, some 60 us a frame.
 pub const USB_BYTES_PER_SECOND: u32 = 20_000;
 /// Cores that `embassy-stm32` knows: at another it panics.
 const CORES: [u32; 8] = [0x1000, 0x1100, 0x1200, 0x2000, 0x2100, 0x2300, 0x3000, 0x3100];
@@ -27,15 +27,15 @@ pub type UsbDriver = Driver<'static, USB_OTG_FS>;
 
 /// The device port of a board.
 pub struct UsbPort {
-    /// Driver of the core; `None` where it does not answer as one that is known, or has no supply.
+    /// Driver of the core; `None` if the core is unknown, does not answer or has no supply.
     pub driver: Option<UsbDriver>,
-    /// What it says of itself.
+    /// Identification sent to the host.
     pub identity: Identity,
 }
 
 impl UsbPort {
-    /// The port at `dp` and `dm`, which calls itself `product`. Its interrupt lies below the flight level: whatever a host
-    /// sends delays nothing that flies. Called once.
+    /// The port at `dp` and `dm`, named `product`. Its interrupt priority is below the flight level, so no host
+    /// traffic delays that level. Called once.
     pub fn new(
         core: Peri<'static, USB_OTG_FS>,
         dp: Peri<'static, impl DpPin<USB_OTG_FS>>,
@@ -57,8 +57,8 @@ impl UsbPort {
     }
 }
 
-/// The core has its supply, answers as one that is known, is idle, and its flags can be cleared: what the driver waits for,
-/// or would serve, without end.
+/// Checks that the core has its supply, has a known ID, is idle, and its flags can be cleared; otherwise the driver
+/// would wait or serve interrupts without end.
 fn answers() -> bool {
     if !has_supply() {
         return false;

@@ -1,5 +1,5 @@
-//! MAVLink's key in a set: ten values under names that no parameter has, written and read with the parameters as one. The
-//! first of them alone says that a key was lost.
+//! MAVLink's key in a set: ten values under names that no parameter has, stored atomically with the parameters. The
+//! first value without the others marks a lost key.
 
 use sophie_ports::signing::{Key, Record, Stored};
 
@@ -32,7 +32,7 @@ impl Words {
         true
     }
 
-    /// What is stored of the key: part of one is a lost one.
+    /// State of the stored key; an incomplete key is reported as lost.
     pub(super) fn stored(&self) -> Stored {
         match self.record() {
             Some(record) => Stored::Key(record),

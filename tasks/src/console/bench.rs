@@ -1,7 +1,7 @@
-//! The bench on the table: one motor or one servo at a time, as the commander permits it.
+//! Bench tests: drives one motor or one servo at a time, within the limits of the commander.
 //!
-//! An order is renewed while it lasts. Its end does not hang on the console: the commander ends it in time, on its own
-//! conditions, and when it is not renewed.
+//! The console renews an order periodically. The commander ends it independently of the console: at its time limit, on
+//! its own conditions, or when renewals stop.
 
 use core::fmt;
 
@@ -28,13 +28,13 @@ const COMMANDER: Duration = Duration::from_millis(500);
 /// How an order has ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum End {
-    /// As it should.
+    /// Ran to its end.
     Done,
-    /// By a key.
+    /// Aborted by a key.
     Key,
-    /// Before it began.
+    /// Refused before its start.
     Refused(BenchRefusal),
-    /// By the commander, before its time.
+    /// Ended early by the commander.
     Ended(BenchRefusal),
     /// The commander does not answer.
     Silent,
@@ -126,7 +126,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
             .await;
     }
 
-    /// What `servo` does behind an order.
+    /// State of `servo` after an order, as text.
     pub(super) fn goes(&self, servo: usize) -> &'static str {
         if self.links.params.servo_marks.has(servo) {
             "back to its release mark"
@@ -135,7 +135,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         }
     }
 
-    /// The index of motor or servo `number`, 1 to 4, or a line that there is none.
+    /// Index of motor or servo `number`, 1 to 4; any other number is refused with a line.
     pub(super) async fn one_of_four(&mut self, what: &str, number: &str) -> Option<usize> {
         let index = ["1", "2", "3", "4"].iter().position(|name| *name == number);
         if index.is_none() {
@@ -170,7 +170,8 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         }
     }
 
-    /// Gives `order` and renews it until it has ended or a key ends it; says `begun` as soon as it lasts.
+    /// Sends `order` and renews it until it ends or a key aborts it; prints `begun` once the commander has accepted
+    /// it.
     pub(super) async fn order(&mut self, order: BenchOrder, begun: fmt::Arguments<'_>) -> End {
         match self.order_until_key(order, begun).await {
             Err(end) => end,
@@ -181,14 +182,14 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
                         .bench
                         .send(Instant::now(), BenchRequest { number, order });
                 }
-                // What else the key has sent.
+                // Discards the other bytes of the same key.
                 self.keys.pressed();
                 End::Key
             }
         }
     }
 
-    /// The same until the next key, under which the order lasts until it is not renewed.
+    /// As [`Self::order`], until the next key; the order then still runs until its renewal expires.
     pub(super) async fn order_until_key(
         &mut self,
         order: BenchOrder,
@@ -197,7 +198,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         let number = self.next_order().map_err(End::Refused)?;
         let asked = Instant::now();
         let request = BenchRequest { number, order };
-        // At once: while another line waits for its next run it must not take the same number.
+        // Sent immediately: another console waiting for its next run must not use the same number.
         self.links.bench.send(asked, request);
         let mut rate = FixedRate::of(self.links, TaskId::Console);
         let mut said = false;

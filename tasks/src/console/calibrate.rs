@@ -1,4 +1,4 @@
-//! Calibration, step by step: what to do, a key when it is done, the numbers, and what would change.
+//! Guided calibration: instruction, key when done, measured values, resulting parameter changes.
 //!
 //! Results go into the working copy, as `set` does; `save` stores them.
 
@@ -27,17 +27,17 @@ use sophie_ports::storage::Storage;
 /// Samples of one rest, and the time between two: 2 s, in which a breath of wind is over.
 const SAMPLES: u16 = 200;
 const SAMPLING: Duration = Duration::from_millis(10);
-/// Samples of one round of turning, 8 s, and between two lines that say how it goes.
+/// Samples of one rotation measurement, 8 s, and between two progress lines.
 const TURNS: u16 = 800;
 const TURNS_SHOWN: u16 = 200;
 /// Step of a servo under the keys, µs: 1.4 degrees; and of a motor's pulse.
 const STEP_US: f32 = 10.0;
 /// First pulse of a motor above its stop, µs: less than any dead zone, and the bench's least drive of every range.
 const FIRST_US: f32 = 30.0;
-/// Where a servo without marks begins, µs: the middle of every servo, far from its stops.
+/// Initial pulse of a servo without calibrated marks, µs: mid-travel of every servo, far from its end stops.
 const MIDDLE_US: f32 = 1500.0;
 
-/// What can be calibrated, and what that buys.
+/// Calibrations and their benefit.
 const WHAT: [(&str, &str); 10] = [
     (
         "gyro",
@@ -89,7 +89,7 @@ const ARM: [[&str; 2]; 4] = [
     ["arm_sign_4", "arm_zero_4"],
 ];
 
-/// One sample of what is calibrated; `None` where it is not fresh.
+/// Reads one sample of the calibrated sensor; `None` if stale.
 type Read<'a> = &'a dyn Fn(&Links) -> Option<Vec3>;
 
 impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, C> {
@@ -292,7 +292,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         }
     }
 
-    /// The module turned near a floor, and far from it.
+    /// Calibrates the flow module by rotating it near a floor and far from it.
     async fn calibrate_flow(&mut self) {
         let near = "Hold it 0.5 m over a floor with a pattern. From Enter on, for 8 s: roll it to both sides, then pitch it.";
         let far = "Now 1.5 m over it, and the same again.";
@@ -320,7 +320,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         }
     }
 
-    /// A round of turning; `None` when it was ended or is not fit.
+    /// Measures one rotation; `None` if aborted or unusable.
     async fn turned(&mut self, text: &str, far: bool) -> Option<Round> {
         if !self.confirmed(text).await {
             return None;
@@ -351,7 +351,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         }
     }
 
-    /// Says what to do; true with Enter.
+    /// Prints the instruction; true if Enter confirms it.
     async fn confirmed(&mut self, text: &str) -> bool {
         self.out.line(format_args!("{text}")).await;
         let key = self.ask("Enter when it is so, any other key ends: ").await;
@@ -391,7 +391,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         let mut from = None;
         for (mark, name) in marks.iter_mut().zip(["release", "full"]) {
             if !marked {
-                // On from where it stands.
+                // Starts at the pulse accepted last.
                 *mark = from.unwrap_or(*mark);
             }
             self.out
@@ -423,7 +423,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
             .await;
     }
 
-    /// Moves `servo` from `pulse` µs by the keys; the pulse that the builder takes.
+    /// Moves `servo` from `pulse_us` by keys; returns the pulse that the builder accepts, µs.
     async fn move_servo(&mut self, servo: usize, mut pulse_us: f32, allowed: [f32; 2]) -> Option<f32> {
         let [least, most] = allowed;
         loop {
@@ -447,7 +447,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         }
     }
 
-    /// Each controller in turn; what the builder sees says whether it understands.
+    /// Tests each speed controller in turn; the builder confirms that the motor responds to the protocol.
     async fn calibrate_esc(&mut self) {
         let name = self.motor_protocol();
         let pulses = by_pulses(&self.links.params);
@@ -484,8 +484,8 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
             .await;
     }
 
-    /// Raises each motor's pulse until the builder sees it turn: at rest friction is largest, so what turns it keeps it
-    /// turning. The last one to begin counts.
+    /// Raises each motor's pulse until the builder sees it turn. Friction is largest at rest, so that pulse also keeps
+    /// the motor turning. The largest of the four pulses is used.
     async fn calibrate_esc_idle(&mut self) {
         if !by_pulses(&self.links.params) {
             let name = self.motor_protocol();
@@ -494,7 +494,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
                 .line(format_args!("{name} has no idle pulse; nothing to store"))
                 .await;
         }
-        // Out of order, the first order is refused.
+        // With invalid pulse parameters the commander refuses the first order.
         let pulses = MotorPulses::from_params(&self.links.params).unwrap_or(MotorPulses::DIGITAL);
         let mut pulse_us = pulses.pulse_us(0.0) + FIRST_US;
         for rotor in 0..4 {
@@ -526,7 +526,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         self.put_all(&["motor_pulse_idle"], [pulse_us]).await;
     }
 
-    /// The name of the protocol in force.
+    /// Name of the protocol in force.
     fn motor_protocol(&self) -> &'static str {
         let value = self.in_force("motor_protocol");
         let row = Params::row("motor_protocol");
@@ -534,7 +534,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
             .map_or("", |choice| choice.name)
     }
 
-    /// Spins a motor and asks; `None` when it was ended.
+    /// Spins a motor and asks whether it turns; `None` if aborted.
     async fn turns(&mut self, spin: Spin, begun: fmt::Arguments<'_>) -> Option<bool> {
         let number = spin.rotor + 1;
         match self.order(BenchOrder::Spin(spin), begun).await {
@@ -554,7 +554,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         }
     }
 
-    /// Says what to do, waits for a key, and samples a rest of two seconds; `None` when it was ended.
+    /// Prints the instruction, waits for a key, and samples two seconds at rest; `None` if aborted.
     async fn rest(&mut self, text: &str, read: Read<'_>) -> Option<Samples> {
         if !self.confirmed(text).await {
             return None;

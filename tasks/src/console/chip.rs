@@ -1,4 +1,4 @@
-//! The chip itself: what the start-up looked at, and the one thing of it that is set here.
+//! The microcontroller: checks of the start-up, its boot loader, and its brown-out level.
 
 use sophie_control::arming::ArmingInhibit;
 
@@ -10,7 +10,7 @@ use sophie_ports::serial::{SerialInput, SerialOutput};
 use sophie_ports::storage::Storage;
 
 impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, C> {
-    /// What the start-up looked at, and how deep the stack has been: name, what was read, what is expected.
+    /// Lists the start-up's checks (name, value read, value expected) and the greatest stack depth.
     pub(super) async fn silicon(&mut self) {
         let stack = self.chip.stack().map(|used| [used.at_start(), used.in_flight()]);
         for ChipCheck {
@@ -28,7 +28,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         }
     }
 
-    /// Leaves for the chip's own loader. Arming is refused meanwhile.
+    /// Restarts into the chip's boot loader; arming is refused until then.
     pub(super) async fn enter_loader(&mut self) {
         if let Err(status) = crate::storage::storing::hold_arming(self.links).await {
             return self.refuse("not left", status).await;
@@ -41,13 +41,13 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         self.chip.enter_loader();
     }
 
-    /// The level, as the start-up read it.
+    /// Brown-out level read at start-up.
     fn brown_out_level(&self) -> Option<&ChipCheck> {
         let mut checks = self.chip.checks().iter();
         checks.find(|look| look.inhibits == Some(ArmingInhibit::BrownOutLevel))
     }
 
-    /// What the level is and what setting it does, before anyone sets it.
+    /// Explains the present level and the effect of setting it.
     pub(super) async fn brown_out(&mut self) {
         let volts = Decimal(self.chip.brown_out_volts());
         let Some(ChipCheck {

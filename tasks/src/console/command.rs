@@ -1,10 +1,10 @@
-//! What can be typed.
+//! Console commands: syntax and parser.
 
 use core::fmt;
 
 use super::nearest::nearest;
 
-/// A line understood.
+/// A parsed command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Command<'a> {
     Help,
@@ -38,7 +38,7 @@ pub(super) enum Command<'a> {
     },
 }
 
-/// Name and arguments, and what it does.
+/// Name with arguments, and description.
 pub(super) const HELP: [(&str, &str); 23] = [
     ("help", "this list"),
     ("status", "mode, what forbids arming, battery, receiver"),
@@ -83,11 +83,11 @@ pub(super) const HELP: [(&str, &str); 23] = [
     ),
 ];
 
-/// A line not understood.
+/// Parse error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Misunderstood<'a> {
     Unknown(&'a str),
-    /// With the arguments that the command takes.
+    /// Wrong arguments; carries those that the command takes.
     Arguments(&'static str),
 }
 
@@ -110,7 +110,7 @@ fn name(usage: &'static str) -> &'static str {
     usage.split_once(' ').map_or(usage, |(name, _)| name)
 }
 
-/// Understands a line; `None` when it is empty.
+/// Parses a line; `None` if empty.
 pub(super) fn parse(line: &str) -> Option<Result<Command<'_>, Misunderstood<'_>>> {
     let mut words = line.split_ascii_whitespace();
     let word = words.next()?;

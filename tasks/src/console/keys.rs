@@ -1,4 +1,4 @@
-//! What is typed, byte by byte: lines for commands, and keys for those that last.
+//! Terminal input byte by byte: lines for commands, single keys for running commands.
 
 use core::task::Poll;
 
@@ -8,20 +8,20 @@ use embassy_time::{Duration, Instant, Timer, with_deadline};
 use sophie_ports::error::PortError;
 use sophie_ports::serial::SerialInput;
 
-/// Most keys that one look at them takes: a line that is full of noise must not hold its reader.
+/// Most keys consumed per poll: continuous noise on the line must not block the reader.
 const KEYS: usize = 256;
-/// Bytes taken at once.
+/// Bytes per read.
 pub(super) const CHUNK: usize = 32;
 /// Pause after a line error or an empty read, so that a dead line cannot take the processor.
 pub(super) const PAUSE: Duration = Duration::from_millis(1);
-/// Ctrl-C: every command ends with it, and a line that was begun is dropped. Stands for a broken line as well.
+/// Ctrl-C: aborts a running command and drops an unfinished line. A receive error is reported as the same byte.
 pub const CANCEL: u8 = 0x03;
 
-/// A terminal's keyboard.
+/// Input of a terminal.
 pub(super) struct Keys<I> {
     port: I,
     chunk: [u8; CHUNK],
-    /// Bytes of the chunk that are taken, and that it has.
+    /// Bytes consumed of the chunk, and its length.
     taken: usize,
     filled: usize,
     after_cr: bool,
@@ -38,12 +38,12 @@ impl<I: SerialInput> Keys<I> {
         }
     }
 
-    /// What is typed stays between both ends.
+    /// True if no third party can read the input on its way.
     pub(super) fn private(&self) -> bool {
         self.port.private()
     }
 
-    /// Waits for bytes; `Ok(false)` where a read gives none.
+    /// Waits for bytes; `Ok(false)` after an empty read.
     pub(super) async fn wait(&mut self) -> Result<bool, PortError> {
         if self.taken >= self.filled {
             (self.taken, self.filled) = (0, 0);
@@ -52,7 +52,7 @@ impl<I: SerialInput> Keys<I> {
         Ok(self.taken < self.filled)
     }
 
-    /// The next byte of those that are there. CR LF is one end of a line, and so is telnet's CR NUL.
+    /// Next byte of the chunk. CR LF is one line end, as is telnet's CR NUL.
     pub(super) fn next(&mut self) -> Option<u8> {
         while self.taken < self.filled {
             let byte = self.chunk.get(self.taken).copied()?;
@@ -65,7 +65,7 @@ impl<I: SerialInput> Keys<I> {
         None
     }
 
-    /// The key that has been pressed, if any; [`CANCEL`] where the line is broken.
+    /// Key pressed since the last call, if any; [`CANCEL`] after a receive error.
     pub(super) fn poll(&mut self) -> Option<u8> {
         if let Some(byte) = self.next() {
             return Some(byte);
@@ -77,7 +77,7 @@ impl<I: SerialInput> Keys<I> {
         }
     }
 
-    /// A key was pressed, or the line is broken; what was typed until now is gone then.
+    /// True if a key was pressed or the line failed; pending input is discarded.
     pub(super) fn pressed(&mut self) -> bool {
         let mut pressed = false;
         for _ in 0..KEYS {
@@ -89,7 +89,7 @@ impl<I: SerialInput> Keys<I> {
         }
         pressed
     }
-    /// The next key, of those that come within `time`; `None` where none does or the line breaks.
+    /// Next key within `time`; `None` on time-out or receive error.
     pub(super) async fn key(&mut self, time: Duration) -> Option<u8> {
         let until = Instant::now() + time;
         loop {

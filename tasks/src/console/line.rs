@@ -1,4 +1,4 @@
-//! Bytes from a terminal to lines, with echo.
+//! Line editor: assembles terminal bytes into lines, with echo.
 
 use heapless::{String, Vec};
 
@@ -17,8 +17,7 @@ pub const NOT_TEXT: &str = "only printable ASCII characters are understood";
 pub(super) enum LineError {
     /// More than [`LENGTH`] characters.
     TooLong,
-    /// A byte that no key of a text types: above 127, or a control character. Left out, it would make another line of what was
-    /// pasted.
+    /// A byte above 127, or a control character. Dropping it silently would alter pasted text.
     NotText,
     /// Bytes were lost on the way.
     Damaged,
@@ -52,8 +51,8 @@ pub(super) struct Line {
 }
 
 impl Line {
-    /// Takes one byte; true if it ends the line (CR, LF, CR LF, or CR NUL as telnet has it). A tab is a blank. Cursor keys leave
-    /// an empty line as it is and spoil one that is begun: nothing there moves.
+    /// Takes one byte; true if it ends the line (CR, LF, CR LF, or telnet's CR NUL). A tab is a blank. Cursor keys are
+    /// ignored on an empty line and invalidate any other, since cursor movement is not supported.
     pub(super) fn push(&mut self, byte: u8, echo: &mut Echo) -> bool {
         let after_cr = core::mem::replace(&mut self.after_cr, byte == b'\r');
         match byte {
@@ -98,12 +97,12 @@ impl Line {
         false
     }
 
-    /// Rejects the line; the first reason stays.
+    /// Rejects the line; keeps the first reason.
     pub(super) fn spoil(&mut self, error: LineError) {
         self.error.get_or_insert(error);
     }
 
-    /// The finished line; begins a new one.
+    /// Returns the finished line and starts a new one.
     pub(super) fn take(&mut self) -> Result<String<LENGTH>, LineError> {
         let text = core::mem::take(&mut self.text);
         match self.error.take() {

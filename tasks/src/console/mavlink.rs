@@ -1,4 +1,4 @@
-//! The MAVLink line: how it is, and its key, which is set nowhere else.
+//! State of MAVLink, and its signing key, which only this command sets.
 
 use sophie_control::arming::ArmingInhibit;
 use sophie_mavlink::inputs::Counts;
@@ -13,7 +13,7 @@ use sophie_ports::serial::{SerialInput, SerialOutput};
 use sophie_ports::storage::Storage;
 
 impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, C> {
-    /// Whether it is signed, and what was refused for that.
+    /// Prints the signing state and the count of refused frames.
     pub(super) async fn mavlink(&mut self) {
         let Some(LineState {
             signing,
@@ -55,7 +55,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
             .await;
     }
 
-    /// Stores the key that `text` is and restarts. It is not shown here and never again.
+    /// Stores the key `text` and restarts. The key is never displayed.
     pub(super) async fn mavlink_key(&mut self, text: &str) {
         if !self.keys.private() {
             return self
@@ -79,7 +79,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
             }
         };
         if self.changed() > 0 {
-            // The restart would lose them.
+            // The restart would discard unsaved parameters.
             return self
                 .out
                 .line(format_args!(
@@ -98,7 +98,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
             Ok(()) => {
                 let what = if key.is_some() { "on" } else { "off" };
                 self.out.last(format_args!("signing {what}; restarting")).await;
-                // Arming stays refused: the key in force is no longer the one that is stored.
+                // Arming stays refused: the stored key differs from the one in force.
                 self.chip.restart();
             }
             Err(error) => {
@@ -108,7 +108,8 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         }
     }
 
-    /// What is to be stored of `key`: the same again keeps its bound, so that nothing it has signed is taken twice.
+    /// Record of `key` to store. A key that equals the stored one keeps its timestamp bound, against replay of frames
+    /// signed earlier.
     async fn record(&mut self, key: Key) -> Record {
         let mut params = *self.storage.defaults();
         match self.storage.load(&mut params).await.signing {

@@ -1,13 +1,13 @@
-//! A port that is one of two kinds, so that what is generic over ports is compiled once for both.
+//! A port of either of two types, so that code generic over ports is compiled once for both.
 
 use sophie_ports::error::PortError;
 use sophie_ports::serial::{SerialInput, SerialOutput};
 
-/// One of two.
+/// Either of two types.
 pub enum OneOf<A, B> {
-    /// Of the first kind.
+    /// The first type.
     First(A),
-    /// Of the second.
+    /// The second type.
     Second(B),
 }
 

@@ -1,4 +1,4 @@
-//! Text to a terminal that may not be there.
+//! Text output to a terminal, which may be absent.
 
 use core::fmt::{self, Write};
 
@@ -10,19 +10,19 @@ use sophie_ports::serial::SerialOutput;
 
 /// Longest line written, bytes; more is cut off. 160 take 14 ms at 115,200 baud.
 const LENGTH: usize = 160;
-/// Time after which a line that was not taken is given up.
+/// Write time-out of a line, after which it is dropped.
 const PATIENCE: Duration = Duration::from_millis(200);
-/// Time that the last line takes to get out: 23 ms in the boards' buffers at 115,200 baud; over MAVLink a run of its task,
-/// and at a tenth of its budget twice 70 bytes.
+/// Time to transmit the last line before a restart: 23 ms in the boards' buffers at 115,200 baud; over MAVLink one run
+/// of its task, plus twice 70 bytes at a tenth of its budget.
 const FAREWELL: Duration = Duration::from_millis(400);
 
-/// A terminal's screen.
+/// Output of a terminal.
 pub(super) struct Output<O> {
     port: O,
-    /// The line takes nothing: what belongs to the same command is dropped.
+    /// A write timed out: further output of the same command is dropped.
     stalled: bool,
-    /// The line on its way. Formatted in one place and sent from here: a hundred commands that each did so themselves
-    /// would take 12 KB of flash.
+    /// The line to send. Lines are formatted and sent in this one place: a hundred separate format calls would cost 12
+    /// KB of flash.
     text: Cut,
 }
 
@@ -35,7 +35,7 @@ impl<O: SerialOutput> Output<O> {
         }
     }
 
-    /// Tries again after a line that did not drain.
+    /// Enables output again after a write time-out.
     pub(super) const fn resume(&mut self) {
         self.stalled = false;
     }
@@ -45,7 +45,7 @@ impl<O: SerialOutput> Output<O> {
         self.flush()
     }
 
-    /// A line before a restart: waits until it has left the buffer that the port took it into.
+    /// Writes a line before a restart and waits until the port's buffer has drained.
     pub(super) async fn last(&mut self, text: fmt::Arguments<'_>) {
         self.line(text).await;
         Timer::after(FAREWELL).await;

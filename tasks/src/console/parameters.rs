@@ -28,7 +28,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         }
     }
 
-    /// One parameter: mark, name, value, what is allowed.
+    /// Prints one parameter: change mark, name, value, allowed range.
     async fn row(&mut self, row: &ParamInfo) {
         let value = self.value(row);
         let mark = if same(value, self.default(row)) { ' ' } else { '*' };
@@ -96,7 +96,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         }
     }
 
-    /// Says what `save` would change.
+    /// Lists the changes that `save` would store.
     pub(super) async fn changes(&mut self) {
         let mut count = 0;
         for row in Params::TABLE {
@@ -128,7 +128,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         Params::TABLE.iter().filter(differs).count()
     }
 
-    /// What it is on this board when nothing is stored.
+    /// Default of the parameter on this board.
     fn default(&self, row: &ParamInfo) -> f32 {
         self.storage.defaults().get(row.name).unwrap_or(row.default)
     }
@@ -137,8 +137,8 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         self.params.get(row.name).unwrap_or(row.default)
     }
 
-    /// The parameter called `name`, or a line that there is none. Under its old name it is found with a line that has
-    /// the new one.
+    /// Finds the parameter `name`, or prints that it is unknown. A former name is accepted, with a line that gives the
+    /// new one.
     async fn find(&mut self, name: &str) -> Option<Found> {
         let renamed = Renamed::find(name);
         let row = Params::row(renamed.map_or(name, |renamed| renamed.new));
@@ -171,14 +171,14 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
     }
 }
 
-/// A parameter that was named.
+/// Result of a look-up by name.
 struct Found {
     row: &'static ParamInfo,
-    /// Where it was named by its old name.
+    /// Entry of the former name, if that was used.
     renamed: Option<&'static Renamed>,
 }
 
-/// The very same value.
+/// Bitwise equality.
 fn same(a: f32, b: f32) -> bool {
     a.to_bits() == b.to_bits()
 }

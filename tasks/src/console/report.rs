@@ -1,4 +1,4 @@
-//! How the vehicle is.
+//! Status report of the vehicle.
 
 use embassy_time::Instant;
 use sophie_control::mode::{Mode, Reason};
@@ -33,7 +33,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         }
         match self.links.battery.fresh() {
             Some(b) => {
-                // What is not known is shown as -1. A·s to mAh.
+                // Unknown values are shown as -1. Converts A·s to mAh.
                 let known =
                     [b.current, b.used.map(|used| used / 3.6)].map(|value| Decimal(value.unwrap_or(-1.0)));
                 let (volts, [amps, used]) = (Decimal(b.voltage), known);
@@ -85,7 +85,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
                 "            runs/s  worst us: late  response execution  overruns"
             ))
             .await;
-        // In milliseconds, so that a young start does not divide by zero.
+        // In milliseconds and at least 1, to avoid a division by zero just after the start.
         let up = Instant::now().as_millis().max(1);
         // After the tasks the chain from contact pressure to servo pulse: late at the command, response at the pulse.
         let chain = [("contact", self.links.timing.contact())];

@@ -1,5 +1,5 @@
-//! Which rotor is which, and which way it turns: each output in turn, and what the builder says of it. The order of the
-//! wires goes into `motor_map`.
+//! Identifies the rotor and its direction of rotation at each output: spins the outputs in turn and asks the builder.
+//! The resulting order goes into `motor_map`.
 
 use embassy_time::Duration;
 use sophie_control::allocation::wrench::PerArm;
@@ -13,10 +13,10 @@ use sophie_ports::chip::Chip;
 use sophie_ports::serial::{SerialInput, SerialOutput};
 use sophie_ports::storage::Storage;
 
-/// Time that the builder has for an answer.
+/// Time-out of the builder's answer.
 pub(super) const ANSWER: Duration = Duration::from_secs(60);
 
-/// Where each rotor is, and whether it turns clockwise seen from above.
+/// Position of each rotor, and whether it turns clockwise seen from above.
 const ROTORS: [(&str, bool); 4] = [
     ("front-left", false),
     ("rear-left", true),
@@ -24,7 +24,7 @@ const ROTORS: [(&str, bool); 4] = [
     ("rear-right", false),
 ];
 
-/// What the builder has seen of one output.
+/// The builder's answer about one output.
 #[derive(Clone, Copy)]
 struct Seen {
     /// Rotor that turned, 0 to 3; `None` for none.
@@ -33,8 +33,8 @@ struct Seen {
 }
 
 impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, C> {
-    /// Spins each motor in turn, asks what turned and which way, puts the order into the working copy, and says of which
-    /// motor wires are to be swapped.
+    /// Spins each motor in turn, asks for rotor and direction, puts the order into the working copy, and lists the
+    /// motors whose wires must be swapped.
     pub(super) async fn rotors(&mut self) {
         self.out
             .line(format_args!(
@@ -55,8 +55,8 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         self.judge(&seen).await;
     }
 
-    /// Spins the motor at `output`, by the map in force that of `rotor`, until the builder has said what turned; `None`
-    /// ends it all.
+    /// Spins the motor at `output` (`rotor` in the map in force) until the builder answers; `None` aborts the
+    /// procedure.
     async fn look_at(&mut self, output: usize, rotor: usize) -> Option<Seen> {
         let (number, seconds) = (output + 1, Decimal(SPIN_TIME));
         loop {
@@ -97,7 +97,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         for (output, (answer, wanted)) in seen.iter().zip(in_force.rotors()).enumerate() {
             wrong += u8::from(!self.judge_one(output + 1, answer, wanted, seen).await);
         }
-        // Where one is missing there is no order; no place is beyond it.
+        // An output without a rotor gets an index out of range, which makes the order invalid.
         let found = seen.map(|answer| answer.rotor.unwrap_or(seen.len()));
         let map = MotorMap::of(found).filter(|map| *map != in_force || *map != self.params.motor_map);
         if let Some((map, row)) = map.zip(Params::row("motor_map")) {
@@ -111,7 +111,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         self.out.line(format_args!("{last}")).await;
     }
 
-    /// Says what was seen of output `number`; true for the rotor `wanted` that turns its way.
+    /// Prints the answer about output `number`; true if it is the rotor `wanted` with the correct direction.
     async fn judge_one(&mut self, number: usize, answer: &Seen, wanted: usize, seen: &PerArm<Seen>) -> bool {
         let Seen {
             rotor: Some(rotor),
@@ -156,7 +156,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         right
     }
 
-    /// The key that answers `question`; `None` where none comes in time.
+    /// Asks `question` and returns the key; `None` on time-out.
     pub(super) async fn ask(&mut self, question: &str) -> Option<u8> {
         self.out.resume();
         self.out.bytes(question.as_bytes()).await;

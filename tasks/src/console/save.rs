@@ -1,4 +1,4 @@
-//! From the working copy to storage, and into force.
+//! Stores the working copy and restarts to apply it.
 
 use sophie_control::arming::ArmingInhibit;
 
@@ -27,7 +27,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
             Ok(()) => {
                 let signing = self.links.mavlink.fresh().map(|line| line.signing);
                 if signing == Some(SigningState::Unknown) {
-                    // What could not be read is gone; the storage keeps that there may have been a key.
+                    // Unreadable content is lost; the storage records that a key may have existed.
                     self.out
                         .line(format_args!(
                             "MAVLink's key, if there was one, is lost: set it again, or 'mavlink key off'"
@@ -35,7 +35,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
                         .await;
                 }
                 self.out.last(format_args!("saved; restarting")).await;
-                // Arming stays refused: the parameters in force are no longer those that are stored.
+                // Arming stays refused: the stored parameters differ from those in force.
                 self.chip.restart();
             }
             Err(error) => {

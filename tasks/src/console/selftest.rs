@@ -1,4 +1,4 @@
-//! Everything once: a table of what passes and what fails, with what was found and what is allowed.
+//! Self-test of all parts without motion: a table of result, measured value and allowed range.
 
 use core::fmt;
 
@@ -16,7 +16,7 @@ use sophie_ports::storage::Storage;
 
 /// Time over which rates are counted.
 const TIME: Duration = Duration::from_secs(1);
-/// What an accelerometer at rest may read, m/s²: gravity and a part's bias of some 40 mg.
+/// Allowed accelerometer norm at rest, m/s²: gravity and a bias of about 40 mg.
 const GRAVITY: [f32; 2] = [9.4, 10.2];
 /// Fastest turn that counts as rest, deg/s.
 const RATE_MAX: f32 = 3.0;
@@ -24,7 +24,7 @@ const RATE_MAX: f32 = 3.0;
 const TILT_MAX: f32 = 60.0;
 /// Share of the declared rate that must be reached, %.
 const RATE_SHARE: u32 = 95;
-/// Deadlines that the flight level may miss in that time.
+/// Allowed deadline misses of the flight level in that time.
 const MISSED_MAX: u32 = 10;
 
 const STORAGE: &[ArmingInhibit] = &[
@@ -53,14 +53,14 @@ const PRESSURE_SENSORS: [&str; 4] = [
 ];
 const ARM_SENSORS: [&str; 4] = ["arm sensor 1", "arm sensor 2", "arm sensor 3", "arm sensor 4"];
 
-/// Tests so far, and those that failed.
+/// Count of tests, and of failures.
 #[derive(Default)]
 struct Tally {
     all: u8,
     failed: u8,
 }
 
-/// Runs and misses that the rates follow from.
+/// Counters of runs and misses for the rate test.
 struct Counted {
     motors: u32,
     servos: u32,
@@ -68,7 +68,7 @@ struct Counted {
 }
 
 impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, C> {
-    /// Tests all that can be tested without moving anything.
+    /// Runs all tests that need no motion.
     pub(super) async fn selftest(&mut self) {
         if let Err(why) = self.stopped() {
             return self.refuse("not tested", why).await;
@@ -120,14 +120,14 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         self.out.line(format_args!("{verdict}  {name:18} {found}")).await;
     }
 
-    /// The first of `reasons` that is reported.
+    /// First reported reason among `reasons`.
     fn first_of(&self, reasons: &[ArmingInhibit]) -> Option<&'static str> {
         let hardware = self.links.hardware();
         let mut held = reasons.iter().filter(|reason| hardware.contains(**reason));
         held.next().map(|reason| reason.text())
     }
 
-    /// A part of which all is known by what is reported.
+    /// Tests a part by its reported arming inhibits alone.
     async fn reported(&mut self, tally: &mut Tally, name: &str, reasons: &[ArmingInhibit]) {
         let found = self.first_of(reasons);
         let text = found.unwrap_or("nothing reported");
@@ -192,7 +192,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         }
     }
 
-    /// An open arm presses nothing.
+    /// Tests the pressure sensors: an open arm must read no contact.
     async fn pressure(
         &mut self,
         tally: &mut Tally,

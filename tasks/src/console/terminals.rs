@@ -1,6 +1,7 @@
-//! Terminals at one console: what is typed at any is obeyed, and answered where something was typed last.
+//! Several terminals at one console: commands are accepted from all, output goes to the terminal with the latest
+//! input.
 //!
-//! There is one console for all, so that there is one working copy of the parameters and one who gives orders.
+//! A single console serves them all, so that there is one working copy of the parameters and one source of orders.
 
 use core::array;
 use core::cell::Cell;
@@ -11,27 +12,27 @@ use crate::console::CANCEL;
 use sophie_ports::error::PortError;
 use sophie_ports::serial::{SerialInput, SerialOutput};
 
-/// Which terminal the console serves: where something was typed last.
+/// Index of the active terminal: the one with the latest input.
 #[derive(Debug, Default)]
 pub struct Served(Cell<usize>);
 
-/// What is typed at the terminals. One that had been idle takes the console over: what was begun at another ends, as by
-/// its Ctrl-C.
+/// Input of all terminals. Input at an inactive terminal takes the console over and aborts the other's command or
+/// line, as Ctrl-C does.
 pub struct Keyboards<'a, I, const N: usize> {
     served: &'a Served,
     ports: [I; N],
-    /// Looked at first where several have something: each has its turn.
+    /// Terminal polled first if several have input (round robin).
     turn: usize,
 }
 
-/// What is shown at the terminal that is served.
+/// Output to the active terminal.
 pub struct Screens<'a, O, const N: usize> {
     served: &'a Served,
     ports: [O; N],
 }
 
 impl Served {
-    /// The keyboards.
+    /// Combined input of `ports`.
     pub const fn keyboards<I, const N: usize>(&self, ports: [I; N]) -> Keyboards<'_, I, N> {
         Keyboards {
             served: self,
@@ -40,7 +41,7 @@ impl Served {
         }
     }
 
-    /// Their screens, in the same order.
+    /// Combined output of `ports`, in the same order.
     pub const fn screens<O, const N: usize>(&self, ports: [O; N]) -> Screens<'_, O, N> {
         Screens { served: self, ports }
     }
@@ -49,7 +50,7 @@ impl Served {
 impl<I: SerialInput, const N: usize> SerialInput for Keyboards<'_, I, N> {
     async fn read(&mut self, buffer: &mut [u8]) -> Result<usize, PortError> {
         let share = buffer.len().checked_div(N).unwrap_or(0);
-        // The first byte of each share is kept for the end of what was begun elsewhere.
+        // The first byte of each share is reserved for the CANCEL of a takeover.
         let (Some((before, after)), 2..) = (self.ports.split_at_mut_checked(self.turn), share) else {
             return Err(PortError::Absent);
         };
@@ -79,7 +80,7 @@ impl<I: SerialInput, const N: usize> SerialInput for Keyboards<'_, I, N> {
             buffer.copy_within(typed, 0);
             return Ok(count);
         }
-        // The end of what was never begun takes nothing over.
+        // A lone CANCEL does not take the console over.
         let idle = buffer.get(typed.clone()).unwrap_or_default();
         if idle.iter().all(|&byte| byte == CANCEL) {
             return Ok(0);
@@ -98,7 +99,7 @@ impl<I: SerialInput, const N: usize> SerialInput for Keyboards<'_, I, N> {
     }
 }
 
-/// `place` in a ring of `count`, which it passes by less than once.
+/// `place` modulo `count`, for `place` below twice `count`.
 const fn following(place: usize, count: usize) -> usize {
     if place >= count { place - count } else { place }
 }

@@ -1,4 +1,4 @@
-//! Live numbers, a line each fifth of a second, until a key is pressed.
+//! Live values, one line each 0.2 s, until a key is pressed.
 
 use core::fmt::Write;
 
@@ -26,10 +26,10 @@ const WIDTH: usize = 8;
 /// The numbers of a line; `None` where a message is stale or a sensor silent.
 type Row = Vec<Option<f32>, COLUMNS>;
 
-/// What can be watched.
+/// A group of values that `watch` shows.
 struct Group {
     name: &'static str,
-    /// What the numbers are.
+    /// Description of the values.
     what: &'static str,
     /// Names of the columns, each [`WIDTH`] wide.
     columns: &'static str,

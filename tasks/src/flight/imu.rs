@@ -1,4 +1,4 @@
-//! Inertial sensor: waits for data-ready, filters at the sensor's own rate, hands on at 1 kHz.
+//! Inertial sensor: waits for data-ready, filters at the sensor's output rate, publishes at 1 kHz.
 //!
 //! The [`DEADLINE`] of the filtered sample counts from the data-ready of its last reading. The transfer
 //! from the part counts as lateness, the filter as execution.
@@ -19,14 +19,13 @@ pub const DEADLINE: Duration = TaskId::Imu.deadline();
 /// Pause after a failed read.
 pub const RETRY: Duration = Duration::from_millis(1);
 
-/// Errors, with never [`CLEAN`] between two, from which on the fault is reported: one glitch is none.
+/// Errors, less than [`CLEAN`] apart, before the fault is reported: a single glitch is ignored.
 const ERRORS: u8 = 3;
-/// Time without an error after which good samples take the report back.
+/// Time without an error after which valid samples clear the report.
 const CLEAN: Duration = Duration::from_millis(100);
 
-/// Serves the inertial sensor; never returns. A failed or silent read sends nothing: readers see the age. What the part
-/// answers in place of samples is reported against arming, and a data-ready line that its port does without; that it
-/// says nothing at all shows as age.
+/// Serves the inertial sensor; never returns. After a failed or timed-out read nothing is sent, and the link's age
+/// shows it. Invalid answers of the part and a data-ready line that its port bypasses inhibit arming.
 pub async fn run(links: &Links, mut port: impl Imu) -> ! {
     let mut sensing = Sensing::new(&links.params, port.rate_hz());
     let mut sample = ImuSample::default();
@@ -34,7 +33,7 @@ pub async fn run(links: &Links, mut port: impl Imu) -> ! {
     loop {
         let batch = match with_timeout(IMU_SILENCE, port.read()).await {
             Ok(Ok(batch)) if !batch.as_ref().is_empty() => batch,
-            // A port that fails at once must not keep the flight level from everything below it.
+            // A port that fails immediately must not starve the levels below.
             Ok(failed) => {
                 if let Err(error) = failed {
                     faults.failed(links, error);
@@ -55,7 +54,7 @@ pub async fn run(links: &Links, mut port: impl Imu) -> ! {
     }
 }
 
-/// The port's errors, and what has been made of them.
+/// The port's errors and their reports.
 #[derive(Default)]
 struct Faults {
     /// When the last error came, and how many have been counted.
@@ -71,7 +70,7 @@ impl Faults {
             PortError::Absent => ArmingInhibit::ImuAbsent,
             PortError::WrongPart => ArmingInhibit::ImuWrongPart,
             PortError::Corrupt => ArmingInhibit::ImuCorrupt,
-            // Silence shows as age.
+            // Silence shows as the link's age.
             PortError::Timeout => return,
         };
         let count = self.errors.map_or(0, |(_, count)| count).saturating_add(1);
@@ -83,7 +82,7 @@ impl Faults {
         }
     }
 
-    /// Every sound batch comes here, and mostly there is nothing to do.
+    /// Called for every valid batch; usually a no-op.
     #[inline]
     fn good(&mut self, links: &Links, at: Instant, line_silent: bool) {
         if line_silent != self.line_silent {

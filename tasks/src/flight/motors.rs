@@ -1,4 +1,4 @@
-//! Motor output, one frame for each mix (1 kHz); stops the motors when mixes stop coming. Here rotors become outputs.
+//! Motor output, one frame for each mix (1 kHz); stops the motors when mixes cease. Maps rotors to outputs.
 //!
 //! The [`DEADLINE`] of the frame counts from data-ready: the response is that of the whole chain.
 

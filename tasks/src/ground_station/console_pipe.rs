@@ -1,4 +1,4 @@
-//! A console's line that MAVLink carries: the console types and reads at one end, the server at the other.
+//! Byte pipe between the console and the MAVLink server, which carries it in `SERIAL_CONTROL`.
 
 use embassy_sync::pipe::Pipe;
 use heapless::Vec;
@@ -8,11 +8,11 @@ use crate::links::last_value::Raw;
 use sophie_ports::error::PortError;
 use sophie_ports::serial::{SerialInput, SerialOutput};
 
-/// Bytes each way that wait: two commands, and one line of the console and its end.
+/// Buffered bytes in each direction: two commands; one console line and its end.
 const TYPED: usize = 256;
 const SAID: usize = 256;
 
-/// Both ways of the line.
+/// Both directions of the pipe.
 pub struct Shell {
     typed: Pipe<Raw, TYPED>,
     said: Pipe<Raw, SAID>,
@@ -25,7 +25,7 @@ impl Default for Shell {
 }
 
 impl Shell {
-    /// A line with nothing on it.
+    /// An empty pipe.
     pub const fn new() -> Self {
         Self {
             typed: Pipe::new(),
@@ -38,7 +38,7 @@ impl Shell {
         ShellPort(self)
     }
 
-    /// Types `bytes` at the console. What finds no room is lost, as on a cable.
+    /// Passes `bytes` to the console; bytes beyond the buffer are lost, as on a cable.
     pub(crate) fn type_in(&self, bytes: &[u8]) {
         let mut rest = bytes;
         while let Ok(taken) = self.typed.try_write(rest)
@@ -48,12 +48,12 @@ impl Shell {
         }
     }
 
-    /// Drops what the console has said: it was for another, or no one reads it.
+    /// Drops pending console output: its reader has changed or gone.
     pub(crate) fn drop_said(&self) {
         self.said.clear();
     }
 
-    /// What the console has said, as much as one message carries.
+    /// Next console output, at most one message's payload.
     pub(crate) fn said(&self) -> Vec<u8, CHUNK> {
         let mut bytes = [0; CHUNK];
         let count = self.said.try_read(&mut bytes).unwrap_or(0);

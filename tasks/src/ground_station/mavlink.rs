@@ -1,6 +1,6 @@
 //! MAVLink to ground stations and companion computers, over any byte stream (docs/mavlink.md).
 //!
-//! Background: whatever arrives, or stays away, delays nothing that flies. A miss costs a late picture.
+//! Runs in the background: its traffic never delays the flight level. A missed deadline delays telemetry.
 
 use core::cell::{Cell, RefCell};
 use core::future::poll_fn;
@@ -34,59 +34,60 @@ use crate::storage::storing::{self, NotNow};
 use sophie_ports::serial::{SerialInput, SerialOutput};
 use sophie_ports::storage::Storage;
 
-/// Bytes taken at once.
+/// Bytes per read.
 const CHUNK: usize = 64;
-/// Reads with something in them between two looks at the period, at most: a line that is never silent must not hold it up.
-/// A serial line's ring is empty after four.
+/// Most non-empty reads between two checks of the period, so that continuous input cannot delay it. Four reads empty a
+/// serial line's ring buffer.
 const BURST: u32 = 8;
 /// Pause after a line error or an empty read, so that a dead line cannot take the processor.
 const PAUSE: Duration = Duration::from_millis(1);
 
-/// The lines that MAVLink is spoken on.
+/// The serial lines that carry MAVLink.
 pub struct Lines<I, O, const N: usize> {
-    /// What arrives on each.
+    /// Input of each line.
     pub inputs: [I; N],
-    /// What is sent on each.
+    /// Output of each line.
     pub outputs: [O; N],
-    /// What each server may send, bytes each second: less than its line carries.
+    /// Send budget of each server, bytes/s: less than its line's capacity.
     pub bytes_per_second: [u32; N],
 }
 
-/// An input and what it gave last.
+/// An input and its last chunk.
 struct Reader<I> {
     input: I,
     bytes: [u8; CHUNK],
 }
 
-/// The server of each line, and what is one for all lines.
+/// The server of each line, and the state common to all lines.
 struct Shared<const N: usize> {
     servers: [Server; N],
     common: Common,
 }
 
-/// What all lines have in common.
+/// State common to all lines.
 struct Common {
-    /// The picture that they speak of.
+    /// Snapshot of the vehicle for outgoing messages.
     vehicle: Vehicle,
-    /// The key: what was said on one line is not taken on another.
+    /// Signing state, common to all lines: a frame accepted on one is refused as a replay on another.
     signing: Signing,
-    /// What others measure and wish, each input from one source, whatever its line.
+    /// External measurements and commands; each input has one source, on any line.
     inputs: Inputs,
 }
 
-/// What takes and what sends share, in one task and never over an await.
+/// State shared by receiver and sender within one task; never borrowed across an await.
 struct Link<'a, const N: usize> {
     shared: RefCell<Shared<N>>,
-    /// The console that is reached over these lines, from one at a time.
+    /// Console reached over these lines, by one at a time.
     shell: &'a Shell,
-    /// The line that typed there last.
+    /// Line with the latest console input.
     at_the_shell: Cell<usize>,
-    /// There may be something to send, on each line.
+    /// Wakes the sender of each line.
     due: [Signal<NoopRawMutex, ()>; N],
 }
 
 impl<'a, const N: usize> Link<'a, N> {
-    /// Out of line: what the servers are built from on the stack, twice their 3 KiB each, would be part of every poll.
+    /// Not inlined: the temporaries of the servers' construction, twice 3 KiB each, would enlarge the stack frame of
+    /// every poll.
     #[inline(never)]
     fn new(params: &Params, bytes_per_second: [u32; N], shell: &'a Shell, signing: Stored) -> Self {
         let mut numbers = 0..;
@@ -109,7 +110,7 @@ impl<'a, const N: usize> Link<'a, N> {
         }
     }
 
-    /// What `work` gives; `None` never comes, since no one else has it then.
+    /// Result of `work`; never `None`, since the state is not borrowed elsewhere.
     fn with<R>(&self, work: impl FnOnce(&mut Shared<N>) -> R) -> Option<R> {
         Some(work(&mut *self.shared.try_borrow_mut().ok()?))
     }
@@ -123,8 +124,8 @@ impl<'a, const N: usize> Link<'a, N> {
         .flatten()
     }
 
-    /// Types at the console what came for it on line `at`. A line that types takes the console from the other, whose
-    /// command ends.
+    /// Passes console input of line `at` to the console. Input on another line takes the console over and aborts the
+    /// running command.
     fn type_in(&self, at: usize) {
         let typed = self.with_server(at, |server, _| server.shell().typed());
         let typed = typed.unwrap_or_default();
@@ -143,7 +144,7 @@ impl<'a, const N: usize> Link<'a, N> {
         self.shell.type_in(&typed);
     }
 
-    /// Drops what the console says to no one.
+    /// Drops console output without a reader.
     fn forget_unheard(&self) {
         let used = self.with(|shared| shared.servers.iter_mut().any(|server| server.shell().used()));
         if used == Some(false) {
@@ -151,7 +152,7 @@ impl<'a, const N: usize> Link<'a, N> {
         }
     }
 
-    /// Gives every other line the parameters of line `at`: there is one copy of what is to be stored.
+    /// Copies the parameters of line `at` to every other line, so that all hold the same working copy.
     fn share_parameters(&self, at: usize) {
         self.with(|shared| {
             let params = *shared.servers.get(at)?.params();
@@ -202,14 +203,14 @@ pub async fn run<I: SerialInput, O: SerialOutput, const N: usize>(
             });
             for at in 0..N {
                 let order = link.with_server(at, |server, Common { vehicle, .. }| {
-                    // Of this moment: the line before may have given an order.
+                    // Read again for each line: the line before may have sent an order.
                     vehicle.answers = answers(links);
                     give(links, started, server.requests(now, vehicle));
                     server.order(now, vehicle)
                 });
-                // A calibration may have set some.
+                // A calibration may have set parameters.
                 link.share_parameters(at);
-                // A station that has gone is noticed here.
+                // Detects a ground station that has disconnected.
                 link.type_in(at);
                 obey(links, &link, at, &mut storage, &mut restart, order.flatten()).await;
             }
@@ -223,7 +224,7 @@ pub async fn run<I: SerialInput, O: SerialOutput, const N: usize>(
     join(serve, join_array(senders)).await.0
 }
 
-/// Does what the server of line `at` wants done.
+/// Executes the pending orders of the server of line `at`.
 async fn obey<const N: usize>(
     links: &Links,
     link: &Link<'_, N>,
@@ -245,13 +246,13 @@ async fn obey<const N: usize>(
     }
 }
 
-/// Sends on line `at` as fast as it takes it: a frame is made when there is room for it, of what is known then. The wait
-/// for the line is no part of the task's run.
+/// Sends on line `at` at the line's own pace: a frame is built when there is room for it, from the newest data.
+/// Waiting for the line is excluded from the task's measured run.
 async fn send<const N: usize>(link: &Link<'_, N>, at: usize, mut output: impl SerialOutput) {
     let mut frame = Vec::<u8, LONGEST>::new();
     while let Some(due) = link.due.get(at) {
         due.wait().await;
-        // Where no one listens nothing is made.
+        // No frames are built for a line without a listener.
         while output.listens() {
             let now = Instant::now().as_micros();
             frame.clear();
@@ -270,13 +271,13 @@ async fn send<const N: usize>(link: &Link<'_, N>, at: usize, mut output: impl Se
             if !matches!(copied, Some(Ok(()))) || frame.is_empty() {
                 break;
             }
-            // A frame that the line does not take is lost; the next one follows.
+            // A frame refused by the line is lost; the next one follows.
             let _ = output.write(&frame).await;
         }
     }
 }
 
-/// Hands what arrives to the servers until the next run is due.
+/// Passes received bytes to the servers until the next run is due.
 async fn listen<I: SerialInput, const N: usize>(
     links: &Links,
     rate: &mut FixedRate<'_>,
@@ -292,7 +293,7 @@ async fn listen<I: SerialInput, const N: usize>(
                 .map(|Reader { input, bytes }| input.read(bytes));
             let mut reads = pin!(select_array(reads));
             poll_fn(|cx| {
-                // Each poll of the period has embassy search its timers with interrupts masked: once for all that arrived.
+                // Polling the period makes embassy search its timers with interrupts masked: once per batch of input.
                 if taken >= BURST
                     && let Poll::Ready(tick) = next.as_mut().poll(cx)
                 {
@@ -322,7 +323,7 @@ async fn listen<I: SerialInput, const N: usize>(
                 });
                 link.type_in(at);
                 link.share_parameters(at);
-                // A line that is never silent must not starve the others of this level.
+                // A line with continuous input must not starve the other tasks of this level.
                 embassy_futures::yield_now().await;
             }
             Either::Second(_) => Timer::after(PAUSE).await,
@@ -330,7 +331,7 @@ async fn listen<I: SerialInput, const N: usize>(
     }
 }
 
-/// Publishes what others have measured and wished, at the time of its measurement.
+/// Publishes external measurements and commands, stamped with their measurement time.
 fn publish(links: &Links, inputs: &mut Inputs, now: u64) {
     if let Some(pose) = inputs.take_pose() {
         links
@@ -345,9 +346,9 @@ fn publish(links: &Links, inputs: &mut Inputs, now: u64) {
     }
 }
 
-/// Stores the bound of signing's times again where little is left of it; arming is refused meanwhile.
+/// Stores a new bound of the signing timestamps before the present one is reached; arming is refused meanwhile.
 async fn renew<const N: usize>(links: &Links, link: &Link<'_, N>, storage: &mut impl Storage, now: u64) {
-    // Another is storing, or what it has stored waits for a restart: nothing comes after that.
+    // Another line is storing, or its saved data await a restart: do nothing.
     if storing::stopped(links).is_err() || links.hardware().contains(ArmingInhibit::Storing) {
         return;
     }
@@ -364,7 +365,7 @@ async fn renew<const N: usize>(links: &Links, link: &Link<'_, N>, storage: &mut 
     }
 }
 
-/// Sends what the commander is to do.
+/// Sends `requests` to the commander.
 fn give(links: &Links, at: Instant, requests: CommanderRequests) {
     if let Some(request) = requests.remote {
         links.remote.send(at, request);
@@ -374,8 +375,8 @@ fn give(links: &Links, at: Instant, requests: CommanderRequests) {
     }
 }
 
-/// Stores the server's parameters. Arming is refused meanwhile, and from then on as long as others are in force: what
-/// flies must be what a ground station reads.
+/// Stores the server's parameters. Arming is refused meanwhile, and afterwards while they differ from those in force:
+/// the vehicle must fly with the values that a ground station reads.
 async fn store(links: &Links, storage: &mut impl Storage, params: &Params) -> Result<(), &'static str> {
     storing::hold_arming(links).await.map_err(|why| match why {
         NotNow::While(_) => "disarm first",
@@ -390,7 +391,7 @@ async fn store(links: &Links, storage: &mut impl Storage, params: &Params) -> Re
     Ok(())
 }
 
-/// What the links say now; a stale message counts as none.
+/// Snapshot of the links; a stale message is treated as missing.
 fn picture(links: &Links, reels: &PerArm<Reel>) -> Vehicle {
     let angles = links.reel_angle.fresh();
     let pulses = MotorPulses::shown(&links.params);
@@ -429,7 +430,7 @@ fn picture(links: &Links, reels: &PerArm<Reel>) -> Vehicle {
     }
 }
 
-/// What has become of orders, of whichever line.
+/// Replies to the latest orders, of any line.
 fn answers(links: &Links) -> Answers {
     Answers {
         bench: links.bench_view(),

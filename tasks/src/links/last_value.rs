@@ -1,5 +1,5 @@
-//! Newest value for readers at every level, looked at in place: only what they need is copied under the lock, which
-//! masks interrupts.
+//! Newest value for readers at every level, read in place: the lock masks interrupts, so readers copy only the fields
+//! that they need.
 
 use core::cell::RefCell;
 use core::future::poll_fn;
@@ -15,8 +15,8 @@ pub type Raw = CriticalSectionRawMutex;
 /// Most receivers of one link.
 pub const RECEIVERS: usize = 8;
 
-/// A value and the wakers of its receivers. Within a function on the value in place, the same `LastValue` is locked and
-/// looks empty.
+/// A value and the wakers of its receivers. A closure that runs on the value in place holds the lock; a nested access
+/// to the same `LastValue` finds it empty.
 pub struct LastValue<T> {
     state: Mutex<Raw, RefCell<State<T>>>,
 }

@@ -4,12 +4,12 @@ use embassy_time::{Duration, Instant};
 
 use super::last_value::{LastValue, Receiver};
 
-/// A value and the time at which what it describes was measured.
+/// A value with its time of measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stamped<T> {
-    /// When it was measured.
+    /// Time of measurement.
     pub at: Instant,
-    /// What was measured.
+    /// The measured value.
     pub value: T,
 }
 
@@ -32,12 +32,12 @@ impl<T> Stamped<T> {
     }
 }
 
-/// The newest message of a link as a reader that has a use for old ones sees it.
+/// The newest message of a link, for readers that also use stale ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Newest<T> {
     /// Measured within the link's limit.
     Fresh(Stamped<T>),
-    /// Measured longer ago: the last that is known, not what is.
+    /// Older than the link's limit: last known value.
     Held(Stamped<T>),
 }
 
@@ -66,7 +66,7 @@ impl<T: Clone> Link<T> {
         self.newest.look(Clone::clone)
     }
 
-    /// What `f` makes of the newest message, however old.
+    /// Applies `f` to the newest message, however old.
     #[inline]
     pub fn look<R>(&self, f: impl FnOnce(&Stamped<T>) -> R) -> Option<R> {
         self.newest.look(f)
@@ -77,7 +77,7 @@ impl<T: Clone> Link<T> {
         self.fresh_to(Instant::now(), T::clone)
     }
 
-    /// What `f` makes of the newest message, unless it is stale at `now`.
+    /// Applies `f` to the newest message, unless it is stale at `now`.
     #[inline]
     pub fn fresh_to<R>(&self, now: Instant, f: impl FnOnce(&T) -> R) -> Option<R> {
         self.look(|m| m.is_fresh(now, self.stale_after).then(|| f(&m.value)))

@@ -12,13 +12,13 @@ pub enum SigningState {
     Off,
     /// A key is in force.
     On,
-    /// The storage cannot be read: nothing is obeyed.
+    /// The storage cannot be read: all commands are refused.
     Unknown,
-    /// It could not be read and was erased: nothing is obeyed until a key is set, or none.
+    /// The storage could not be read and was erased: all commands are refused until a key is set or removed.
     Lost,
 }
 
-/// What the MAVLink line is like.
+/// State of the MAVLink lines.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LineState {
     /// Whether frames are signed.
@@ -30,7 +30,7 @@ pub struct LineState {
 }
 
 impl LineState {
-    /// As `signing` has it, with what came in.
+    /// State of `signing` and of the external inputs.
     pub const fn of(signing: &Signing, inputs: Counts) -> Self {
         Self {
             signing: match signing.stored() {

@@ -1,4 +1,4 @@
-//! Messages of the tasks' own: contact, arm angles, status.
+//! Messages defined by the tasks: contact, arm angles, status.
 
 use embassy_time::{Duration, Instant};
 use sophie_control::allocation::wrench::PerArm;
@@ -11,26 +11,26 @@ use super::link::Stamped;
 /// Contact pressures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
-    /// Pressure at each arm's sensor, Pa, or what is wrong with the sensor.
+    /// Pressure at each arm's sensor, Pa, or the sensor's fault.
     pub arms: PerArm<Result<f32, FsrFault>>,
 }
 
 impl Default for Contact {
-    /// Sound sensors that feel nothing.
+    /// Healthy sensors without contact.
     fn default() -> Self {
         Self { arms: [Ok(0.0); 4] }
     }
 }
 
-/// Tilt of the arms as their own sensors see it; the message's time is that of the oldest.
+/// Tilt of the arms measured by their own sensors; the message is stamped with the oldest.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ArmAngles {
-    /// Tilt of each arm, rad, tip up positive, with the time at which its sensor was asked; `None` when it gave nothing.
+    /// Tilt of each arm, rad, tip up positive, with the time of the request to its sensor; `None` without a reading.
     pub tilt: PerArm<Option<Stamped<f32>>>,
 }
 
 impl ArmAngles {
-    /// Angles that were all measured at `at`, rad.
+    /// Angles measured together at `at`, rad.
     pub fn at(at: Instant, tilt: PerArm<Option<f32>>) -> Self {
         Self {
             tilt: tilt.map(|tilt| tilt.map(|value| Stamped { at, value })),
@@ -55,14 +55,14 @@ impl ArmAngles {
     }
 }
 
-/// The commander's view, for telemetry, log and lights.
+/// State reported by the commander, for telemetry, log and lights.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Status {
     /// State of the vehicle.
     pub mode: Mode,
-    /// Why arming is refused or the failsafe acts; `None` when nothing does.
+    /// Reason for refused arming or an active failsafe, if any.
     pub reason: Option<Reason>,
-    /// What does not stop the flight but must be known; empty when there is nothing.
+    /// Warning that does not affect the modes; empty if there is nothing to report.
     pub warning: &'static str,
     /// Everything that forbids arming now.
     pub inhibits: ArmingInhibits,

@@ -1,29 +1,28 @@
-//! Forces that the clamp asks of the tendons, and what they follow from.
+//! Tendon forces demanded by the clamp, and the input that they are based on.
 
 use sophie_control::allocation::wrench::PerArm;
 use sophie_control::pilot::bench_orders::Place;
 
-/// Forces asked of the tendons, by what they follow from. The message's time is that of it.
+/// Demanded tendon forces, by the input that they are based on; the message is stamped with that input's time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TendonOrder {
-    /// From the pressures that were converted at the message's time.
+    /// Based on pressures converted at the message's time.
     Measured(TendonForces),
-    /// From the command of the message's time alone, since no pressure is fresh: closed arms keep their force, those
-    /// that are to be released lose it.
+    /// Based on the command alone, since no pressure is fresh: closed arms keep their force, released arms lose it.
     Blind(TendonForces),
-    /// From before a restart, sent once at the start: the servos stay where they are until a command comes.
+    /// Retained from before a restart, sent once at the start: the servos hold their position until a command arrives.
     Resumed(TendonForces),
-    /// On the bench: one servo at a pulse, the others by their forces, which are none.
+    /// Bench test: one servo at a given pulse; the forces of the others are zero.
     Placed {
-        /// Of each one.
+        /// Per arm.
         forces: TendonForces,
-        /// The one servo.
+        /// The servo under test and its pulse.
         place: Place,
     },
 }
 
 impl TendonOrder {
-    /// The forces, whatever they follow from.
+    /// The forces, whatever their input.
     pub const fn forces(&self) -> &TendonForces {
         match self {
             Self::Measured(forces)
@@ -34,20 +33,20 @@ impl TendonOrder {
     }
 }
 
-/// What is asked of the tendons.
+/// Demand on all tendons.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TendonForces {
-    /// Of each one.
+    /// Per arm.
     pub arms: PerArm<TendonForce>,
-    /// The tendons were found wound when the power came on: where their servos stand is to be taken from the tilt.
+    /// The tendons were found wound at power-on: the servo angles must be derived from the tilt.
     pub found: bool,
 }
 
-/// What is asked of one tendon.
+/// Demand on one tendon.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TendonForce {
     /// Tension, N; 0 is slack.
     pub force: f32,
-    /// The servo is to stay where it is, whatever the force.
+    /// Hold the servo's position and ignore the force.
     pub stay: bool,
 }

@@ -27,8 +27,8 @@ impl TimingRecords {
         }
     }
 
-    /// Records one answer to pressures: released when they were converted, started when the compare values were written,
-    /// ended when the pulse of these begins.
+    /// Records one pass of the chain: released at the conversion of the pressures, started when the compare values
+    /// were written, ended when their pulse begins.
     pub fn record_contact(&self, run: &Run) {
         with(&self.contact, |record| record.add(run));
     }
@@ -38,7 +38,7 @@ impl TimingRecords {
         with(&self.contact, |record| record.totals()).unwrap_or_default()
     }
 
-    /// Histogram of the same since it was taken last.
+    /// Histogram of the chain's times since it was last taken.
     pub fn take_contact_histogram(&self, quantity: Quantity) -> Histogram {
         with(&self.contact, |record| record.take(quantity)).unwrap_or(Histogram::EMPTY)
     }
@@ -49,7 +49,7 @@ impl TimingRecords {
             .unwrap_or_default()
     }
 
-    /// Longest response of a task that was added, µs, without adding the one that was noted last.
+    /// Longest settled response of a task, µs; does not settle the last run.
     pub fn worst_response(&self, task: TaskId) -> u32 {
         self.with_record(task, |record| record.worst_response())
             .unwrap_or(0)
@@ -67,15 +67,15 @@ impl TimingRecords {
         self.signal_missed(task, missed);
     }
 
-    /// Records one run of a task on the way to the motor frame: noted here, added by [`Self::settle`].
+    /// Notes one run of a task of the flight level; [`Self::settle`] adds it later.
     #[inline]
     pub fn note(&self, task: TaskId, run: &Run) {
         let missed = self.with_record(task, |record| record.note(run));
         self.signal_missed(task, missed);
     }
 
-    /// Adds what the flight level has noted. Called when the motor frame is out; each task has its own lock, so that
-    /// interrupts are masked for no longer than one run takes.
+    /// Adds the noted runs of the flight level. Called after the motor frame; each task has its own lock, so that
+    /// interrupts are masked only while one run is added.
     pub fn settle(&self) {
         for task in TaskId::ALL
             .into_iter()
@@ -98,6 +98,6 @@ impl TimingRecords {
 }
 
 fn with<T>(slot: &Mutex<Raw, RefCell<Record>>, f: impl FnOnce(&mut Record) -> T) -> Option<T> {
-    // Borrowed nowhere else: the lock is held for as long.
+    // The borrow succeeds: it happens only under this lock.
     slot.lock(|cell| cell.try_borrow_mut().ok().map(|mut record| f(&mut record)))
 }

@@ -1,7 +1,7 @@
 //! Reads the board's barometer at 25 Hz.
 //!
-//! Runs in the background: a measurement takes some tens of milliseconds, in which the task waits, and its bus may stall.
-//! Without one the link turns stale, and the height is held as on a board without the part.
+//! Runs in the background: the task waits some tens of milliseconds for a measurement, and its bus may stall. After a
+//! failure the link turns stale, and the height is estimated as on a board without a barometer.
 
 use embassy_time::{Instant, with_timeout};
 use sophie_ports::sensors::BAROMETER_READING;
@@ -12,7 +12,7 @@ use crate::schedule::TaskId;
 use sophie_control::navigation::air_pressure::AirPressure;
 use sophie_ports::sensors::Barometer;
 
-/// Reads the barometer; never returns. A failing one sends nothing.
+/// Reads the barometer; never returns. A failed reading sends nothing.
 pub async fn run(links: &Links, mut port: impl Barometer) -> ! {
     let mut rate = FixedRate::of(links, TaskId::Barometer);
     loop {

@@ -1,4 +1,4 @@
-//! What limits the flow of a vehicle in the air that has no fresher position, for the pilot's display.
+//! Reason why optical flow is unusable in flight while no other position is fresh, for the pilot's display.
 
 use embassy_time::{Duration, Instant};
 use sophie_control::mode::Mode;
@@ -6,12 +6,12 @@ use sophie_control::navigation::flow_range::FlowRangeLimit;
 
 use crate::links::Links;
 
-/// Age of a position, s, beyond which the pilot reads what limits the flow: with it a hold may not begin.
+/// Age of the position, s, beyond which the reason is displayed; a hold may not begin with an older one.
 const PLACED_AGE: f32 = 0.2;
-/// Time that a limit, or none, must last before it is shown: at its edge the range's noise crosses it with each frame.
+/// Debounce time before a limit, or its end, is shown: near the threshold range noise crosses it with each frame.
 const LAST: Duration = Duration::from_millis(500);
 
-/// The limit that has lasted.
+/// The debounced limit.
 #[derive(Default)]
 pub struct FlowLimit {
     newest: Option<FlowRangeLimit>,
@@ -20,7 +20,7 @@ pub struct FlowLimit {
 }
 
 impl FlowLimit {
-    /// One step in `mode`: what is shown.
+    /// Makes one step in `mode` and returns the limit to show.
     pub fn step(&mut self, links: &Links, mode: Mode, now: Instant) -> Option<FlowRangeLimit> {
         let flies = matches!(mode, Mode::Flight | Mode::Hold);
         let placed = links.position.fresh_to(now, |e| e.age <= PLACED_AGE);

@@ -1,6 +1,6 @@
-//! Module of optical flow and range: decodes the bytes of its line to what it sees.
+//! Decodes optical flow and range from the bytes of the sensor module's line.
 //!
-//! Bytes that are no frame are dropped; the link turns stale then, as with a silent module.
+//! Bytes outside valid frames are dropped; without valid frames the link turns stale.
 
 use embassy_time::{Duration, Instant, Timer};
 

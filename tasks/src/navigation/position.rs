@@ -1,8 +1,8 @@
-//! The position estimate, 200 Hz: the inertial sensor, and the poses that others send, or flow and range; for the height the
-//! pressure of the air, where there is neither.
+//! Position estimator, 200 Hz: fuses inertial data with external poses or with flow and range; without these, the
+//! height uses barometric pressure.
 //!
-//! A miss makes the estimate later: its readers have a limit of ten periods. A stale attitude ends it for as long; without
-//! either there is none, and nothing is sent.
+//! A missed deadline delays the estimate; its readers accept an age of ten periods. Nothing is sent while the attitude
+//! is stale or the estimator has no valid estimate.
 
 use sophie_control::chain;
 use sophie_control::maths::vector::{Quat, Vec3};
@@ -21,7 +21,7 @@ pub async fn run(links: &Links) -> ! {
     let mut estimator = PositionEstimator::new(&links.params);
     loop {
         let now = rate.next().await.started;
-        // Under a link's lock, which masks interrupts, only what the step takes is copied; sums are made after it.
+        // The link's lock masks interrupts: copies the needed fields only and computes after it.
         let attitude = &links.attitude;
         let felt = attitude.look(|m| {
             let fresh = m.is_fresh(now, attitude.stale_after);
@@ -31,7 +31,7 @@ pub async fn run(links: &Links) -> ! {
             continue;
         };
         let seen = links.external_pose.look(|m| Seen::of(&m.value));
-        // Of a heading that is not sent the position cannot be held.
+        // Without a heading the pose cannot be used for position.
         let fix = seen.and_then(Seen::fix);
         let view = links.ground.look(|m| m.value);
         let pushed = links
@@ -55,7 +55,7 @@ pub async fn run(links: &Links) -> ! {
     }
 }
 
-/// What the estimator wants of a pose.
+/// Fields of a pose that the estimator uses.
 struct Seen {
     at_us: u64,
     position: Vec3,
@@ -75,7 +75,7 @@ impl Seen {
         }
     }
 
-    /// As the estimator takes it; `None` without a heading.
+    /// Input of the estimator; `None` without a heading.
     fn fix(self) -> Option<Fix> {
         Some(Fix {
             at_us: self.at_us,

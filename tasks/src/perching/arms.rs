@@ -1,9 +1,9 @@
 //! Reads the arms' inertial sensors at 100 Hz: tilt of each arm against the body.
 //!
-//! Runs in the background: the sensors stretch the I2C clock and nothing in flight waits for them. A round of four that
-//! does not end within its period skips the next ones: 1.7 ms at 400 kHz and 7.0 ms at 100 kHz fit; sensors that hold the
-//! clock for 180 us after each byte are read at 64 Hz (15.5 ms) and 48 Hz (20.7 ms). A sensor silent for a second is reported against arming, and costs only its own reading. Each
-//! tilt carries the time of its own request.
+//! Runs in the background: the sensors stretch the I2C clock, and no flight task waits for them. A round of four that
+//! overruns its period skips the next ones: 1.7 ms at 400 kHz and 7.0 ms at 100 kHz fit; sensors that hold the clock
+//! for 180 us after each byte are read at 64 Hz (15.5 ms) and 48 Hz (20.7 ms). A sensor silent for a second inhibits
+//! arming; the others are still read. Each tilt is stamped with its own request.
 
 use embassy_time::{Duration, Instant, with_timeout};
 use sophie_control::allocation::wrench::{PerArm, SIDE};
@@ -23,8 +23,8 @@ use sophie_ports::sensors::ArmImus;
 
 /// Time without a reading before a report.
 pub const SILENCE: Duration = Duration::from_secs(1);
-/// Time from power-up before silence counts. A BNO055 answers after 650 ms; its driver finds it by 1.3 s, then resets
-/// and configures it in 0.77 s.
+/// Time from power-up before silence is reported. A BNO055 answers after 650 ms; its driver finds it by 1.3 s, then
+/// resets and configures it in 0.77 s.
 pub const START: Duration = Duration::from_millis(2500);
 /// Limit of one reading, a transfer of at most 6 ms, or of a step of its set-up, 34 bytes.
 const READING: Duration = Duration::from_millis(20);

@@ -1,16 +1,16 @@
-//! The gripper's task, 100 Hz: closes the arms on the pipe and lets them go.
+//! Gripper control, 100 Hz: closes the arms on the pipe and releases them.
 //!
-//! A step ends before the next. Forces and judgement carry the time at which the pressures were converted, or of the
-//! command without fresh pressure. When an input is stale by its link's limit:
+//! A step ends before the next begins. Forces and grip state are stamped with the conversion of the pressures, or
+//! without fresh pressure with the command. Reaction to an input that is stale by its link's limit:
 //!
-//! - command: no step is made and nothing is sent, so that forces and judgement age: the servos stay, the grip is
-//!   unknown. Loops and forces are held for the next command; before the first, those of the run before the restart;
-//! - pressure: that arm's force is held, and it is faulty until there is a pressure again;
+//! - command: no step is made and nothing is sent, so forces and grip state turn stale: the servos hold, the grip is
+//!   unknown. Loops and forces are kept for the next command; before the first, those of the previous run;
+//! - pressure: that arm's force is held, and the arm is faulty until its pressure returns;
 //! - an arm's tilt: its force is held, and after 0.5 s it is faulty;
-//! - thrusts: the motors have stopped by then, so the feed-forward is zero;
-//! - tension: the demanded force counts as given, and nothing is proven free.
+//! - thrusts: the motors have stopped, so the feed-forward is zero;
+//! - tension: the demanded force is assumed to act, and no arm is proven free.
 //!
-//! No force is sent before one is known: at power-up closed arms are held by the servos' gears until a pulse opens
+//! Nothing is sent before the first known force: at power-up the servos' gears hold closed arms until a pulse opens
 //! them.
 
 use crate::start::retained_state::RetainedState;
@@ -83,7 +83,8 @@ pub async fn run(links: &Links) -> ! {
     }
 }
 
-/// Initial loops. Those of closed arms continue, their servos pulsed where they stand; all others wait for a command.
+/// Initial loops. Those of closed arms resume with their servos at the retained position; all others wait for a
+/// command.
 fn begin(links: &Links) -> Gripper {
     match links.start.retained {
         Some(RetainedState {

@@ -1,11 +1,11 @@
 //! Drives the tendon servos: converts forces to pulses and publishes the estimated tension.
 //!
-//! Runs at the servos' frame rate (`servo_frame_rate`, 50 to 333 Hz), without pulses until the first force: on the pipe
-//! at power-up the gears hold. After a restart the drives continue from the retained angles. Stale forces hold the
-//! servos; so does a missing tilt, unless its arm is to be released.
+//! Runs at the servos' frame rate (`servo_frame_rate`, 50 to 333 Hz), without pulses until the first force: if the
+//! vehicle is on the pipe at power-up, the gears hold. After a restart the drives resume from the retained angles.
+//! With stale forces the servos hold; also with a missing tilt, unless the arm is to be released.
 //!
-//! A servo whose marks have not been measured gets a pulse on the bench alone: what its parameters say of them may lie beyond
-//! an end stop, where it draws its stall current until it burns.
+//! A servo with uncalibrated marks gets pulses only in bench tests: the default marks may lie beyond an end stop,
+//! where the stall current would burn the servo.
 //!
 //! The task ends the chain from contact pressure to pulse and measures it (`ChainWatch`).
 
@@ -100,12 +100,12 @@ impl Tendon {
 
 struct Tendons {
     arms: PerArm<Tendon>,
-    /// An order has come: arms found wound have their angle.
+    /// An order has arrived: the angles of arms found wound are set.
     begun: bool,
 }
 
 impl Tendons {
-    // Not inlined: it runs once, and would be part of every poll.
+    // Not inlined: it runs once and would enlarge the frame of every poll.
     #[inline(never)]
     fn new(links: &Links) -> Self {
         let marks = links.params.servo_marks;
@@ -159,7 +159,7 @@ impl Tendons {
                     };
                 }
             }
-            // Held forces are no order to wind.
+            // Held forces must not start winding.
             Newest::Fresh(Stamped {
                 value: TendonOrder::Resumed(_),
                 ..
@@ -172,7 +172,7 @@ impl Tendons {
         }
         for (arm, (tendon, out)) in self.arms.iter().zip(&mut output).enumerate() {
             if !tendon.marked {
-                // At once: where it stands, from where it could be led there, is not known.
+                // Without a rate limit: the servo's present angle is unknown.
                 let place = placed.filter(|place| place.servo == arm);
                 out.pulse_us = place.map_or(0.0, |place| place.pulse_us);
             }

@@ -18,7 +18,7 @@ use crate::schedule::{Level, TaskId};
 /// Smallest infill flown in the paper, %.
 const INFILL_FLOWN: f32 = 6.0;
 const LATE_WINDOW: Duration = Duration::from_secs(1);
-/// Allowed misses of the flight level in that window: 1 % of one task's runs.
+/// Allowed deadline misses of the flight level per window: 1 % of one task's runs.
 const LATE_MAX: u32 = 10;
 
 /// Steps the mode logic; never returns.
@@ -102,7 +102,7 @@ fn collect(links: &Links, late: bool) -> Inputs {
             accel: a.accel,
             calibrated: a.calibrated,
         }),
-        // Zero is the truth then: the motors stop at the same age of the mix.
+        // Zero is correct: the motors stop at the same age of the mix.
         lift: links.mix.fresh().map_or(0.0, |mix| mix.lift()),
         roll_moment: links.mix.fresh().map_or(0.0, |mix| mix.roll(links.params.arm_d)),
         grip: links.grip.fresh(),

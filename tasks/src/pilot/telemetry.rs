@@ -1,5 +1,5 @@
-//! Telemetry to the pilot's transmitter over the receiver's line. One frame a run, so that the slow downlink never
-//! queues; SBUS has none.
+//! Telemetry to the pilot's transmitter over the receiver's line. Sends one frame a run, so that the slow downlink
+//! never queues; SBUS has no telemetry.
 //!
 //! | frame | type | rate |
 //! |---|---|---|
@@ -39,7 +39,7 @@ pub async fn run(links: &Links, mut port: impl SerialOutput) -> ! {
     let mut shown = None;
     loop {
         rate.next().await;
-        // A silent commander freezes the display.
+        // While the commander is silent the display keeps its last text.
         let Some(status) = links.status.fresh() else {
             continue;
         };
@@ -52,7 +52,7 @@ pub async fn run(links: &Links, mut port: impl SerialOutput) -> ! {
             encode(packets::FlightMode::new(&mode_text(status)).ok())
         };
         if let Some(frame) = frame {
-            // A frame that the line does not take is lost.
+            // A frame refused by the line is lost.
             let _ = port.write(&frame).await;
         }
     }
@@ -82,7 +82,7 @@ fn mode_text(status: Status) -> String<TEXT> {
         warning,
         ..
     } = status;
-    // Why there is no position says more than that there is none.
+    // The warning gives the cause of a missing position, so it replaces the reason.
     let said = reason.filter(|reason| *reason != Reason::NoPosition || warning.is_empty());
     let reason = said.map_or(warning, Reason::text);
     let mut text = String::new();
@@ -110,7 +110,7 @@ fn tenths_of_mrad(angle: f32) -> i16 {
     (angle * 1e4) as i16
 }
 
-/// What is not known is -1, which transmitters show as such: EdgeTX reads the fields with their sign.
+/// Unknown values are -1 and shown as such: EdgeTX reads the fields as signed.
 fn battery(b: Battery, capacity: f32) -> packets::Battery {
     packets::Battery {
         voltage: (b.voltage * 10.0 + 0.5) as i16,

@@ -9,26 +9,26 @@ use sophie_control::navigation::position_estimator::Fault;
 
 use sophie_ports::retained::StartCause;
 
-/// A warning, shown beside the mode when there is no reason.
+/// A warning, shown beside the mode if no reason is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Warning {
     /// The accelerometer is at its full scale.
     AccelClips,
-    /// Less than a quarter of the processor's stack has stayed unused; an overflow stops the motors.
+    /// Less than a quarter of the stack is unused; an overflow stops the motors.
     Stack,
     /// An arm's tilt is beyond its model's correction.
     ArmTilt,
-    /// The servo battery nears its end, is there or cannot be read.
+    /// The servo battery is low, near its end or unreadable.
     Servos(ServoSupply),
     /// Cause of an unusual start of the board.
     Restarted(StartCause),
-    /// Pose, flow, range or air pressure is left out as faulty.
+    /// Pose, flow, range or air pressure is rejected as faulty.
     Position(Fault),
-    /// Flow cannot be used where the vehicle is.
+    /// Optical flow is unusable at the present height, range or light.
     Limit(FlowRangeLimit),
-    /// The servo cannot give the force limit of the parameters.
+    /// The servo cannot reach the force limit of the parameters.
     ServoWeak,
-    /// The arms are softer than any flown.
+    /// The infill is below the lowest one flown: softer arms.
     InfillLow,
 }
 

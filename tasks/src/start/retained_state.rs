@@ -1,8 +1,9 @@
-//! State retained over a reset: the grip on the pipe, and what else would need calibration at rest.
+//! State retained over a reset: the grip on the pipe, and the gyro bias, which could otherwise only be measured at
+//! rest.
 //!
-//! A reset (watchdog, fault, command, pin) keeps memory that start-up does not touch. Two copies there are written by
-//! turns, with sequence number and checksum: a reset during a write leaves the other whole. After power-on the noise
-//! fails the checksum.
+//! A reset (watchdog, fault, command, pin) preserves memory that start-up does not initialise. Two copies are written
+//! alternately, with sequence number and checksum: a reset during a write leaves the other copy valid. After power-on
+//! the memory's random content fails the checksum.
 
 use sophie_control::allocation::wrench::PerArm;
 use sophie_control::gripper::RESPONSE_RANGE;
@@ -20,7 +21,7 @@ const FAULT_BITS: u32 = 4;
 const ANGLE_MAX: f32 = 6.5;
 /// Beyond any parameters' limit, N.
 const FORCE_MAX: f32 = 2000.0;
-/// A learnt response is kept as a byte, in hundredths; 0: none.
+/// An identified response is stored as a byte, in hundredths; 0: none.
 const RESPONSE_UNIT: f32 = 100.0;
 /// The estimator's own bound, rad/s.
 const BIAS_MAX: f32 = 0.1;
@@ -36,7 +37,7 @@ pub struct RetainedState {
     pub force: PerArm<f32>,
     /// Latched fault of each closed arm.
     pub fault: PerArm<Option<GripFault>>,
-    /// Bending of each closed arm over the parameters', as the closing learnt it, 0.4 to 2.5 in hundredths.
+    /// Ratio of each closed arm's bending to the parameters', identified while closing, 0.4 to 2.5 in hundredths.
     pub response: PerArm<Option<f32>>,
     /// Gyro bias, rad/s, within ±0.1; `None` before calibration.
     pub gyro_bias: Option<Vec3>,
@@ -190,7 +191,7 @@ fn arm_choice(code: u32) -> Option<ArmChoice> {
         .find(|&arms| arm_code(arms) == code)
 }
 
-/// A response that is no number or out of range is none.
+/// Code of a response; NaN and values out of range are stored as 0, none.
 fn response_code(response: Option<f32>) -> u32 {
     let (least, most) = RESPONSE_RANGE;
     response
@@ -208,7 +209,7 @@ fn response_of(code: u8) -> Option<Option<f32>> {
     (least..=most).contains(&response).then_some(Some(response))
 }
 
-/// Only latched faults: others recur by themselves.
+/// Code of a latched fault; other faults are detected again after the restart.
 fn fault_code(fault: Option<GripFault>) -> u32 {
     match fault {
         Some(GripFault::Sensor) => 1,

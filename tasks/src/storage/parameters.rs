@@ -16,14 +16,14 @@ pub async fn load(storage: &mut impl Storage) -> (Params, Loaded) {
     (params, loaded)
 }
 
-/// Refuses arming if the storage is unreadable. Refused values have sound defaults.
+/// Refuses arming if the storage is unreadable. Rejected values are replaced by their defaults.
 pub fn report(links: &Links, loaded: Loaded) {
     let foreign = loaded.foreign.is_some();
     links.report(ArmingInhibit::StorageUnreadable, loaded.unreadable && !foreign);
     links.report(ArmingInhibit::StorageForeign, foreign);
 }
 
-/// What tells one table of parameters from another: names, units, ranges and defaults of all rows.
+/// Identifier of the parameter table: a hash of names, units, ranges and defaults of all rows.
 pub fn table_id() -> u32 {
     let words = Params::TABLE.iter().flat_map(|row| {
         let text = row.name.bytes().chain(row.unit.bytes()).map(u32::from);
@@ -33,11 +33,11 @@ pub fn table_id() -> u32 {
     sophie_image_id::of(words)
 }
 
-/// Most choices that are all named where a parameter is shown: a line has 80 characters.
+/// Most choices that are listed by name: a line has 80 characters.
 const MOST_NAMED: usize = 8;
 
-/// What a parameter takes: "4 to 10 %", "one of 0 crsf, 1 sbus", or short (`{:#}`) "crsf, sbus"; of many
-/// choices the first and the last, and how many they are where only numbers say which.
+/// Allowed values of a parameter: "4 to 10 %", "one of 0 crsf, 1 sbus", or short (`{:#}`) "crsf, sbus"; of many
+/// choices the first, the last, and the count if they only have numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct Allowed<'a>(pub &'a ParamInfo);
 

@@ -1,4 +1,4 @@
-//! Storing parameters: only while the motors stand, with arming refused from before to after.
+//! Stores parameters, only while the motors stand still; arming is refused from before the write until after it.
 
 use embassy_time::{Duration, Instant, Timer, with_timeout};
 use sophie_control::arming::ArmingInhibit;
@@ -11,26 +11,26 @@ use sophie_ports::storage::{Storage, StorageError};
 
 /// Time that the commander has to answer: fifty of its periods.
 const COMMANDER: Duration = Duration::from_millis(500);
-/// Time between two looks at its answer.
+/// Poll period of its answer.
 const LOOK: Duration = Duration::from_millis(5);
 /// Longest save: an erase takes 4 s at worst (STM32F7 datasheet, 256 KiB), and two of them may be needed.
 const LONGEST: Duration = Duration::from_secs(10);
 
-/// Why nothing is stored or tried now.
+/// Reason against storing or testing now.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NotNow {
     /// Motors may turn.
     While(Mode),
-    /// The commander is silent: they may as well.
+    /// The commander is silent, so motors may turn.
     Silent,
-    /// Another line stores.
+    /// Another line is storing.
     Storing,
 }
 
-/// Motors stand still, as far as the commander says.
+/// Checks that the commander reports stopped motors.
 ///
 /// # Errors
-/// What it says instead.
+/// The reason against it.
 pub fn stopped(links: &Links) -> Result<(), NotNow> {
     match links.status.fresh().map(|status| status.mode) {
         Some(Mode::Disarmed | Mode::Calibrating) => Ok(()),
@@ -39,18 +39,18 @@ pub fn stopped(links: &Links) -> Result<(), NotNow> {
     }
 }
 
-/// Refuses arming from here on, unless the motors may turn or another line has it refused for the same.
+/// Inhibits arming for a save, unless the motors may turn or another line already holds the inhibit.
 ///
 /// # Errors
-/// What is in the way.
+/// The reason against storing.
 pub async fn hold_arming(links: &Links) -> Result<(), NotNow> {
     stopped(links)?;
-    // Who stores lifts it at the end, and would lift it for the other as well.
+    // The inhibit has no owner: the line that finishes first would clear it for both.
     if links.hardware().contains(ArmingInhibit::Storing) {
         return Err(NotNow::Storing);
     }
     links.report(ArmingInhibit::Storing, true);
-    // The pilot may have armed just before: what counts is what the commander says after it has seen the report.
+    // The pilot may have armed just before: waits for a status that the commander has decided after the report.
     let seen = with_timeout(COMMANDER, next_status(links)).await;
     let held = seen.map_err(|_| NotNow::Silent).and_then(|()| stopped(links));
     if held.is_err() {
@@ -59,7 +59,7 @@ pub async fn hold_arming(links: &Links) -> Result<(), NotNow> {
     held
 }
 
-/// Waits for a status that was decided from now on.
+/// Waits for a status decided after this call.
 async fn next_status(links: &Links) {
     let asked = Instant::now();
     while links.status.latest().is_none_or(|status| status.at <= asked) {
@@ -67,10 +67,10 @@ async fn next_status(links: &Links) {
     }
 }
 
-/// Stores `params` while arming is held, and reports what the storage is like. Arming stays refused after a success.
+/// Stores `params` while arming is inhibited, and reports the storage's state. After a success arming stays refused.
 ///
 /// # Errors
-/// Storage that is full or broken; arming is held no longer then.
+/// The storage is full or broken; the inhibit is cleared.
 pub async fn save(links: &Links, storage: &mut impl Storage, params: &Params) -> Result<(), StorageError> {
     let saved = with_timeout(LONGEST, storage.save(params))
         .await
@@ -79,7 +79,7 @@ pub async fn save(links: &Links, storage: &mut impl Storage, params: &Params) ->
     saved
 }
 
-/// Stores MAVLink's key, or that there is none, as [`save`] does the parameters.
+/// Stores or removes MAVLink's key, as [`save`] stores the parameters.
 ///
 /// # Errors
 /// As [`save`].
@@ -95,7 +95,7 @@ pub async fn save_signing(
     saved
 }
 
-/// Reports what the storage is like after a save.
+/// Reports the storage's state after a save.
 fn report(links: &Links, saved: Result<(), StorageError>) {
     match saved {
         Ok(()) => {
@@ -114,7 +114,7 @@ fn report(links: &Links, saved: Result<(), StorageError>) {
     }
 }
 
-/// True where `params` are not those in force.
+/// True if `params` differ from those in force.
 pub fn differ(links: &Links, params: &Params) -> bool {
     let bits = |params: &Params, name| params.get(name).map(f32::to_bits);
     Params::TABLE

@@ -1,7 +1,7 @@
 //! Writes the retained state for the supervisor, 100 Hz.
 //!
-//! It is at most 30 ms old (a servo's frame and a run), in which a winding servo turns 0.2 rad. A stale or missing
-//! message changes nothing.
+//! The stored state is at most 30 ms old (a servo frame and a run), in which a winding servo turns 0.2 rad. A stale or
+//! missing message leaves it unchanged.
 
 use crate::start::retained_state::RetainedState;
 use sophie_control::allocation::wrench::PerArm;
@@ -59,7 +59,7 @@ impl<R: Retain> RetainedStore<R> {
             self.retained.response = grip.arms.map(|arm| arm.response);
         }
         if let Some(attitude) = links.attitude.fresh().filter(|a| a.calibrated) {
-            // In the part's own axes: the next start may have another mounting.
+            // In sensor axes: the next start may use another mounting.
             let mounting = Mounting::from(links.params.imu_mounting);
             self.retained.gyro_bias = Some(mounting.to_board(attitude.gyro_bias));
         }
@@ -67,7 +67,7 @@ impl<R: Retain> RetainedStore<R> {
         let sequence = self.sequence.wrapping_add(1);
         if let Some(words) = self.retained.to_words(sequence) {
             self.sequence = sequence;
-            // By turns: a reset during the write leaves the other copy whole.
+            // Alternates the copies: a reset during the write leaves the other one valid.
             self.port.keep(sequence & 1 == 1, &words);
         }
     }

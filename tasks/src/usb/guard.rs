@@ -1,14 +1,13 @@
-//! A driver between the USB stack and the chip's, for what a host may do to both.
+//! Wrapper of the chip's USB driver that protects the stack and the driver against misbehaving hosts.
 //!
-//! - The stack looks at nothing else while it waits for a host in a control transfer: one that is never finished ends in
-//!   time here.
-//! - The chip's driver panics at an endpoint that it does not have, which any host may ask for: others than those of this
-//!   device do not get to it.
-//! - The chip keeps an IN endpoint's enable bit over a reset of the bus, while the driver empties its packet memory: a
-//!   packet that the host did not fetch before its cable was pulled would be waited for until a restart. Each of this
-//!   device's is disabled at a reset.
-//! - A suspension that was noticed late would keep a stack that waits for the bus to resume from being enumerated: it is
-//!   told to the port alone. The board has other supplies and does not save power for the host.
+//! - The stack blocks while it waits for the host within a control transfer: each stage has a time-out here.
+//! - The chip's driver panics on an endpoint number that it lacks, which any host may request: only this device's
+//!   endpoints are passed on.
+//! - The chip keeps an IN endpoint's enable bit over a bus reset, while the driver clears its packet memory: a packet
+//!   that was pending when the cable was pulled would block the endpoint until a restart. A reset therefore disables
+//!   each IN endpoint of this device.
+//! - A suspension reported late would leave the stack waiting for resume and prevent enumeration: only the port
+//!   receives it. The board has other supplies and does not save power for the host.
 
 use embassy_time::{Duration, with_timeout};
 use embassy_usb::driver::{
@@ -18,18 +17,18 @@ use embassy_usb::driver::{
 
 use super::port::Port;
 
-/// Time that a host has for a stage of a control transfer: it sends a device all of them at once (USB 2.0 §9.2.6.4 gives
-/// the device as long for each).
+/// Time-out of a stage of a control transfer: hosts send the stages back to back (USB 2.0 §9.2.6.4 allows the device
+/// the same time for each).
 const STAGE: Duration = Duration::from_millis(500);
 
-/// The chip's driver, with what it must not see kept away.
+/// The chip's driver behind these protections.
 pub(super) struct Guarded<'d, D> {
     driver: D,
     port: &'d Port,
     endpoints: Endpoints,
 }
 
-/// The device's endpoints beside the control endpoint, a bit each: IN above OUT.
+/// Bit mask of the device's endpoints without the control endpoint: IN above OUT.
 #[derive(Clone, Copy, Default)]
 struct Endpoints(u32);
 
@@ -46,7 +45,7 @@ impl Endpoints {
         self.0 & Self::bit(at) != 0
     }
 
-    /// Those towards the host, with the control endpoint, which a chip has always.
+    /// The IN endpoints, with the control endpoint, which every chip has.
     fn inward(self) -> impl Iterator<Item = EndpointAddress> {
         (0..16)
             .map(|index| EndpointAddress::from_parts(index, Direction::In))
@@ -111,7 +110,7 @@ impl<'d, D: Driver<'d> + 'd> Driver<'d> for Guarded<'d, D> {
     }
 }
 
-/// The bus, as the stack may see it.
+/// The bus as presented to the stack.
 pub(super) struct Watched<'d, B> {
     bus: B,
     port: &'d Port,
@@ -119,11 +118,12 @@ pub(super) struct Watched<'d, B> {
 }
 
 impl<B: Bus> Watched<'_, B> {
-    /// Ends what was being sent before a reset of the bus.
+    /// Aborts pending IN transfers after a bus reset.
     ///
-    /// The driver orders NAK and the end at once, but the core only ends what has sent NAK before (RM0090 §34.17.6, "IN
-    /// endpoint disable"), and at a reset the driver does not order it for the control endpoint: the second round ends
-    /// what the first has made ready. The host asks for nothing within 10 ms of a reset (USB 2.0 §7.1.7.5).
+    /// The driver sets NAK and disable together, but the core disables only an endpoint that is already in NAK state
+    /// (RM0090 §34.17.6, "IN endpoint disable"), and at a reset the driver omits the control endpoint. Two rounds are
+    /// therefore needed: the first sets NAK, the second disables. The host sends no request within 10 ms of a reset
+    /// (USB 2.0 §7.1.7.5).
     fn end_transfers(&mut self) {
         for _ in 0..2 {
             for at in self.endpoints.inward() {
@@ -144,15 +144,15 @@ impl<B: Bus> Bus for Watched<'_, B> {
 
     async fn poll(&mut self) -> Event {
         loop {
-            // A core that reports without end must not take the background. Before the event: the stack drops this call for
-            // a request of the host, and an event with it.
+            // A core with endless events must not occupy the background level. The yield precedes the event: the stack
+            // cancels this call for a host request, which would lose an event already taken.
             embassy_futures::yield_now().await;
             let event = self.bus.poll().await;
             if event == Event::Reset {
                 self.end_transfers();
             }
             match event {
-                // A cable without a host looks the same.
+                // A cable without a host is indistinguishable from suspension.
                 Event::Suspend | Event::PowerRemoved => self.port.suspend(true),
                 Event::Reset | Event::Resume => self.port.suspend(false),
                 Event::PowerDetected => (),
@@ -191,7 +191,7 @@ impl<B: Bus> Bus for Watched<'_, B> {
     }
 }
 
-/// The control pipe, whose waits end.
+/// The control pipe with time-outs.
 pub(super) struct Bounded<P>(P);
 
 impl<P: ControlPipe> ControlPipe for Bounded<P> {

@@ -1,4 +1,4 @@
-//! The port between the USB device and its two users, console and MAVLink, of which one has it at a time.
+//! Port between the USB device and its two users, console and MAVLink; one of them owns it at a time.
 
 use core::cell::RefCell;
 
@@ -13,18 +13,18 @@ use crate::links::last_value::Raw;
 use sophie_ports::error::PortError;
 use sophie_ports::serial::{SerialInput, SerialOutput};
 
-/// Bytes that wait for a user: of a paste, or of some frames.
+/// Input buffer of each user, bytes: a pasted text, or several frames.
 const INPUT: usize = 256;
-/// Bytes that wait for the host: the longest frame and the longest line.
+/// Output buffer, bytes: the longest frame and the longest line.
 const OUTPUT: usize = 512;
-/// Longest wait of a write for room. The host is given half of it to fetch a packet.
+/// Time-out of a write. The host has half of it to fetch a packet.
 const LONGEST_WRITE: Duration = Duration::from_millis(200);
-/// Stands for what cannot be read, so that the console refuses the line.
+/// Replaces unreadable input, so that the console rejects the line.
 const UNREADABLE: u8 = 0x80;
 
 /// Bytes of a packet at full speed.
 pub const PACKET: u16 = 64;
-/// Bytes of a packet for one user: each may stand for two.
+/// Bytes of a packet for one user: a received byte may expand to two.
 type Sorted = Vec<u8, { 2 * PACKET as usize }>;
 
 /// The port.
@@ -37,7 +37,7 @@ pub struct Port {
 
 struct State {
     detector: ProtocolDetector,
-    /// The bus is silent: there is no cable, no host, or it sleeps.
+    /// The bus is suspended or without cable or host.
     suspended: bool,
 }
 
@@ -48,7 +48,7 @@ impl Default for Port {
 }
 
 impl Port {
-    /// Nothing has arrived, and no host is there.
+    /// An empty port without a host.
     pub const fn new() -> Self {
         Self {
             state: Mutex::new(RefCell::new(State {
@@ -80,20 +80,20 @@ impl Port {
             .lock(|state| Some(work(&mut *state.try_borrow_mut().ok()?)))
     }
 
-    /// The bus is silent, or not.
+    /// Notes that the bus was suspended or resumed.
     pub(super) fn suspend(&self, suspended: bool) {
         self.with(|state| state.suspended = suspended);
     }
 
-    /// Gives the port back to the console and drops what waits for the host.
+    /// Returns the port to the console and drops pending output.
     pub(super) fn close(&self) {
         self.with(|state| state.detector.reset());
         self.drop_output();
-        // What was begun there ends; where it is full, something ends it anyway.
+        // Aborts the console's command. If the buffer is full, its content aborts it.
         let _ = self.console.try_write(&[CANCEL]);
     }
 
-    /// Drops what waits for the host.
+    /// Drops pending output.
     pub(super) fn drop_output(&self) {
         self.output.clear();
     }
@@ -103,7 +103,7 @@ impl Port {
         self.output.read(chunk).await
     }
 
-    /// Takes a packet; waits until its users have room for it.
+    /// Distributes a packet to its users; waits until they have room.
     pub(super) async fn take(&self, packet: &[u8]) {
         let (mut text, mut frames) = (Sorted::new(), Sorted::new());
         let now = Instant::now().as_micros();
@@ -122,11 +122,11 @@ impl Port {
 }
 
 impl State {
-    /// Sorts a packet; true where the port is another's now.
+    /// Splits a packet by protocol; true if the port has changed its owner.
     fn sort(&mut self, packet: &[u8], now: u64, text: &mut Sorted, frames: &mut Sorted) -> bool {
         self.suspended = false;
         let first = self.detector.protocol();
-        // There is room for all.
+        // Never full: `Sorted` holds twice a packet.
         if self.detector.expires(now) {
             let _ = text.push(UNREADABLE);
         }
@@ -147,7 +147,7 @@ impl State {
     }
 }
 
-/// What arrives over USB for one of its users.
+/// USB input of one user.
 #[derive(Clone, Copy)]
 pub struct UsbInput<'a> {
     port: &'a Port,
@@ -163,7 +163,7 @@ impl SerialInput for UsbInput<'_> {
     }
 }
 
-/// What one of its users sends over USB.
+/// USB output of one user.
 #[derive(Clone, Copy)]
 pub struct UsbOutput<'a> {
     port: &'a Port,

@@ -1,4 +1,4 @@
-//! The stack that each function of an image takes, and what it calls from which depth, read from its instructions.
+//! Stack frame of each function of an image, and the stack depth at each of its calls, read from its instructions.
 
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
@@ -15,7 +15,7 @@ pub struct Frame {
     pub own: i64,
     /// Functions that it calls or jumps to, and its greatest depth there, bytes.
     pub calls: BTreeMap<u64, i64>,
-    /// The same of calls by an address in a register.
+    /// Greatest depth at a call through a register, bytes.
     pub unknown: Option<i64>,
 }
 
@@ -54,7 +54,7 @@ fn frame(image: &Image, name: &str, begin: u64, ends: &BTreeMap<u64, u64>) -> Re
     let mut open = vec![(begin, 0, 0)];
     let mut seen = BTreeMap::<u64, i64>::new();
     while let Some((at, depth, conditional)) = open.pop() {
-        // Behind a call that never comes back constants or the next function may follow.
+        // Constants or the next function may follow a call that never returns.
         if !(begin..end).contains(&at) || !image.is_code(at) {
             continue;
         }
@@ -68,7 +68,7 @@ fn frame(image: &Image, name: &str, begin: u64, ends: &BTreeMap<u64, u64>) -> Re
         let (after, next) = (depth + effect.grows, at + effect.bytes);
         frame.own = frame.own.max(after);
         let under = effect.conditional.max(u8::saturating_sub(conditional, 1));
-        // Where a condition does not hold the instruction does nothing.
+        // A conditional instruction may not be executed.
         let mut go_on = conditional > 0;
         match effect.flow {
             Flow::Next => go_on = true,

@@ -1,4 +1,4 @@
-//! The stack of an image: where it lies, and how deep it is below the handlers that no flight on the bench reaches.
+//! Stack of an image: its placement, and the depth of the USB handlers, which the bench's flights do not reach.
 
 mod frames;
 mod thumb;
@@ -16,13 +16,13 @@ const EXCEPTION: u64 = 26 * 4 + 4;
 /// The interrupt of the USB core, and the task.
 const HANDLER: &str = "OTG_FS";
 const TASK: &str = "__usb_task_inner_function";
-/// Ends the run: what it takes is taken from a stack that is given up.
+/// Excluded: it ends the run, so its own stack use does not matter.
 const END: &str = "core::panicking::panic_fmt";
 /// Functions that calls by an address in a register reach from there: the wakers of the executor, and the USB class's
 /// handlers of the device's events.
 const REACHED: [&str; 2] = ["embassy_executor::raw::waker::", "as embassy_usb::Handler>::"];
 
-/// Checks that the stack of `image` lies at the very bottom of a memory, where one that overflows faults.
+/// Checks that the stack of `image` lies at the bottom of a memory, so that an overflow faults.
 ///
 /// # Errors
 /// It lies elsewhere, or reaches beyond.
@@ -43,7 +43,7 @@ pub fn check(board: &Board, image: &Image) -> Result<(), Error> {
 /// Depth of the USB handlers of `image`, bytes: the interrupt with its exception frame, and the task's deepest poll.
 ///
 /// # Errors
-/// They, or what they reach, are not found; or it is not bounded.
+/// The handlers or the functions that they reach are not found, or their depth is unbounded.
 pub fn usb(image: &Image) -> Result<u64, Error> {
     let frames = frames::read(image)?;
     let chains = Chains::new(&frames)?;

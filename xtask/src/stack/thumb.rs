@@ -1,6 +1,6 @@
-//! What an instruction does to the stack pointer and where it leads, by its encoding (ARMv7-M, DDI 0403E, A5 to A7).
+//! Effect of an instruction on stack pointer and control flow, by its encoding (ARMv7-M, DDI 0403E, A5 to A7).
 
-/// Where an instruction leads besides the next one.
+/// Control flow of an instruction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Flow {
     /// To the next alone.
@@ -17,11 +17,11 @@ pub enum Flow {
     JumpRegister,
     /// By a table behind it, of entries of this many bytes.
     Table(u64),
-    /// Back to the caller, or nowhere.
+    /// Return to the caller, or end of execution.
     End,
 }
 
-/// What an instruction does.
+/// Effect of an instruction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Effect {
     /// Length, 2 or 4 bytes.
