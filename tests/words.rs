@@ -2,7 +2,7 @@
 //!
 //! The phrases hide who acts and on what ("what is felt", "where nothing tells"). Each folder has a ceiling in
 //! `tests/word_ceilings.toml`, phrases per 1,000 words of comment; `WRITE_DOCS=1 cargo test --test words` lowers those
-//! that have become too high and never raises one.
+//! that have become too high, never below 2, and raises none.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -36,6 +36,8 @@ const PHRASES: [&[&[&str]]; 19] = [
 ];
 /// Phrases per 1,000 words that no folder may exceed, whatever its ceiling.
 const MOST: f64 = 6.0;
+/// No ceiling falls below this: the plainest code bases of the field stand at 2 to 4, and each phrase has its honest use.
+const LEAST: f64 = 2.0;
 /// Folders whose first level is counted apart.
 const BY_ROOM: [&str; 3] = ["control/src", "tasks/src", "tools"];
 const CEILINGS: &str = "tests/word_ceilings.toml";
@@ -194,7 +196,7 @@ fn comments_stay_below_their_folders_ceilings() {
              # `WRITE_DOCS=1 cargo test --test words`, never raised.\n",
         );
         for (name, count) in &counts {
-            let now = tenth(count.per_thousand());
+            let now = tenth(count.per_thousand()).max(LEAST);
             let ceiling = ceilings.get(name).map_or(now, |ceiling| ceiling.min(now));
             text.push_str(&format!("\"{name}\" = {ceiling:.1}\n"));
         }
