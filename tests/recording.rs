@@ -366,6 +366,10 @@ fn bad_input_is_refused_in_a_line_with_its_place_and_what_is_allowed() {
             "none.csv:1: no truth, allowed is",
         ),
         (&["nowhere.csv"], "nowhere.csv: cannot be read"),
+        (
+            &["ok.csv", "ok.csv"],
+            "unexpected argument 'ok.csv': allowed is one recording",
+        ),
         (&["."], "allowed is a file"),
         (
             &["bytes.txt", "--as", "sbus"],

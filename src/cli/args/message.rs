@@ -58,6 +58,8 @@ impl Message {
                 Some("paper" | "capture") => "no file",
                 Some("study") => "vehicles and no file",
                 Some("fit-arm") => "one CSV file",
+                Some("recording") => "one recording",
+                Some("timing") => "one log file",
                 Some("params") => "one parameter file",
                 Some("bringup") => "no file",
                 _ => "one scenario file",
