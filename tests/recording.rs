@@ -356,7 +356,7 @@ fn bad_input_is_refused_in_a_line_with_its_place_and_what_is_allowed() {
     temp.write("none.csv", "t_us,x\n");
     temp.write("bytes.txt", "5 256\n");
     temp.write("back.txt", "5 1\n4 1\n");
-    let calls: [(&[&str], &str); 11] = [
+    let calls: [(&[&str], &str); 12] = [
         (
             &["ok.csv", "--truth", "truth.csv"],
             "truth.csv:3: t_us 5, allowed is after 5",

@@ -16,7 +16,8 @@ use sophie_control::params::Params;
 use sophie_ports::storage::Loaded;
 
 use crate::stm32::{
-    BufferedInput, BufferedOutput, Dog, GroundLine, ReceiverLine, TelemetryLine, ThisChip, UsbPort, drive,
+    BufferedInput, BufferedOutput, GroundLine, ReceiverLine, TelemetryLine, ThisChip, UsbPort, WatchdogPort,
+    drive,
 };
 
 /// The motors' pins low, whatever drives them: the last resort of a fault handler.
@@ -55,7 +56,7 @@ pub struct Board {
     /// USB, for console and MAVLink.
     pub usb: UsbPort,
     /// The running watchdog.
-    pub watchdog: Dog,
+    pub watchdog: WatchdogPort,
     /// Lights and buzzer.
     pub lights: LightsPort,
     /// Parameter storage.

@@ -33,7 +33,7 @@ pub use cortex_m::{end::stop_and_restart, retained, retained::ResetCause, stack}
 pub use sophie_fault::ends_with;
 #[cfg(target_os = "none")]
 pub use stm32::{
-    BufferedInput, BufferedOutput, Dog, GroundLine, MAVLINK_BYTES_PER_SECOND, Pad, Pupdr, ReceiverLine,
-    Taken, TelemetryLine, ThisChip, USB_BYTES_PER_SECOND, UsbDriver, UsbPort, Wiring, enter_or_leave_loader,
-    restart, stop_with_core, take_reset_cause,
+    BufferedInput, BufferedOutput, GroundLine, MAVLINK_BYTES_PER_SECOND, Pad, Pupdr, ReceiverLine, Taken,
+    TelemetryLine, ThisChip, USB_BYTES_PER_SECOND, UsbDriver, UsbPort, WatchdogPort, Wiring,
+    enter_or_leave_loader, restart, stop_with_core, take_reset_cause,
 };

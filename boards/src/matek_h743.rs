@@ -23,7 +23,7 @@ use assign_resources::assign_resources;
 use embassy_embedded_hal::shared_bus::asynch::i2c::I2cDevice;
 use embassy_stm32::gpio::Level;
 use embassy_stm32::time::mhz;
-use embassy_stm32::{Peri, bind_interrupts, dma, i2c, interrupt, pac, peripherals, rcc, usart, usb};
+use embassy_stm32::{Peri, bind_interrupts, dma, exti, i2c, interrupt, pac, peripherals, rcc, usart, usb};
 use embassy_sync::mutex::Mutex;
 use sophie_control::params::Params;
 use sophie_drivers::arm_buses::ArmBuses;

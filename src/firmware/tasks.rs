@@ -14,7 +14,8 @@ use sophie_tasks::ground_station::console_pipe::{Shell, ShellPort};
 use sophie_tasks::ground_station::mavlink::Lines;
 use sophie_tasks::links::Links;
 use sophie_tasks::schedule::TaskId;
-use sophie_tasks::usb::{self, Identity, Memory as UsbMemory, Port, UsbInput, UsbOutput};
+use sophie_tasks::usb::port::{Port, UsbInput, UsbOutput};
+use sophie_tasks::usb::{self, Identity, Memory as UsbMemory};
 use static_cell::StaticCell;
 
 use super::Levels;

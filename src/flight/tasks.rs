@@ -99,6 +99,6 @@ pub async fn position(links: &'static Links) -> ! {
 
 /// Deadline supervision and watchdog. Also stores the state that survives a reset.
 #[embassy_executor::task]
-pub async fn supervisor(links: &'static Links, port: sophie_boards::Dog, memory: Memory) -> ! {
+pub async fn supervisor(links: &'static Links, port: sophie_boards::WatchdogPort, memory: Memory) -> ! {
     sophie_tasks::supervision::supervisor::run(links, port, memory).await
 }

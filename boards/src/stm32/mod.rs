@@ -76,7 +76,7 @@ pub use spi::{DmaChip, PlainChip, Selected, plain_chip, spi_config};
 pub use storage::{BoardStorage, StorageCell, load_parameters};
 pub use tone::Tone;
 pub use usb::{USB_BYTES_PER_SECOND, UsbDriver, UsbPort};
-pub use watchdog::{Dog, stop_with_core};
+pub use watchdog::{WatchdogPort, stop_with_core};
 
 /// A buffer for DMA bursts of up to 16 bytes, which must not cross a 1 KiB boundary.
 #[repr(C, align(32))]

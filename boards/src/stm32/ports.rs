@@ -82,7 +82,7 @@ macro_rules! ports {
             let ground = $crate::stm32::ground_line(g.uart, g.rx, g.tx, Irqs, $params);
             $(let $bus = $shared;)?
             $crate::Board {
-                watchdog: $crate::stm32::Dog::start($parts.watchdog.dog),
+                watchdog: $crate::stm32::WatchdogPort::start($parts.watchdog.dog),
                 motors: $crate::stm32::ports!(@new_motors $parts $params $($new_motors)?),
                 imu: {
                     let i = $parts.imu;

@@ -24,7 +24,7 @@ const SHORT: (Pr, u16) = (Pr::DIVIDE_BY4, 2399);
 /// 1.6 s on the F4 (16 KiB).
 const LONG: (Pr, u16) = (Pr::DIVIDE_BY256, 0xFFF);
 
-/// Starts the watchdog with its reset values (longest count, smallest prescaler): 0.35 to 0.96 s, until [`Dog`]'s first
+/// Starts the watchdog with its reset values (longest count, smallest prescaler): 0.35 to 0.96 s, until [`WatchdogPort`]'s first
 /// feed sets the period.
 ///
 /// A debugger that halts the core also halts the watchdog in a development image only. In a flight image a halted core
@@ -44,9 +44,9 @@ pub fn stop_with_core() {
 }
 
 /// The running watchdog.
-pub struct Dog(IndependentWatchdog<'static, DogPeripheral>);
+pub struct WatchdogPort(IndependentWatchdog<'static, DogPeripheral>);
 
-impl Dog {
+impl WatchdogPort {
     /// Starts the watchdog for good.
     pub fn start(instance: Peri<'static, DogPeripheral>) -> Self {
         let mut dog = IndependentWatchdog::new(instance, PERIOD_US);
@@ -55,7 +55,7 @@ impl Dog {
     }
 }
 
-impl Watchdog for Dog {
+impl Watchdog for WatchdogPort {
     fn feed(&mut self) {
         self.0.pet();
     }

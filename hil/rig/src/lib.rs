@@ -16,7 +16,7 @@ mod verdict;
 use defmt_rtt as _;
 use embassy_executor::SendSpawner;
 use embassy_time::{Duration, Ticker};
-use sophie_boards::{Dog, start_levels};
+use sophie_boards::{WatchdogPort, start_levels};
 use sophie_ports::chip::Watchdog;
 pub use verdict::{absent, passed};
 
@@ -26,7 +26,7 @@ sophie_boards::ends_with!(verdict::end_of_run);
 const FEED_PERIOD: Duration = Duration::from_millis(50);
 
 /// Starts flight and steady level and feeds the watchdog from the latter; returns the flight level. Called once.
-pub fn keep_alive(watchdog: Dog) -> SendSpawner {
+pub fn keep_alive(watchdog: WatchdogPort) -> SendSpawner {
     defmt::info!("{=str}", sophie_boards::NAME);
     resumable_test::leave(resumable_test::ResumableTest::Test);
     let (flight, steady) = start_levels();
@@ -38,7 +38,7 @@ pub fn keep_alive(watchdog: Dog) -> SendSpawner {
 }
 
 #[embassy_executor::task]
-async fn feed(mut watchdog: Dog) {
+async fn feed(mut watchdog: WatchdogPort) {
     let mut ticker = Ticker::every(FEED_PERIOD);
     loop {
         watchdog.feed();
