@@ -11,7 +11,8 @@ pub use chosen::{
     WIRING, start_levels, take,
 };
 #[cfg(not(family = "f4"))]
-pub(crate) use chosen::{DATA_CACHE, FIRST_LEVELS};
+pub(crate) use chosen::DATA_CACHE;
+pub(crate) use chosen::FIRST_LEVELS;
 use sophie_control::params::Params;
 use sophie_ports::storage::Loaded;
 
