@@ -4,7 +4,7 @@ pub mod console;
 pub mod output;
 pub mod table;
 
-/// Longest complaint, characters: more than a path and a list of what is allowed take, less than a file's line may have.
+/// Longest complaint, characters: more than a path and a list of allowed values take, less than a file's line may have.
 const COMPLAINT_MAX: usize = 8_000;
 
 /// One line on stderr, cut after 8,000 characters; a closed stderr is ignored.
