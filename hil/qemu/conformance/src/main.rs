@@ -9,8 +9,6 @@
 
 #[cfg(target_os = "none")]
 mod core_under_test;
-#[cfg(target_os = "none")]
-mod kept_message;
 mod laws;
 #[cfg(target_os = "none")]
 mod machine;
