@@ -6,6 +6,7 @@ import json
 import lzma
 import math
 import os
+import re
 import sys
 import tempfile
 import time
@@ -18,6 +19,11 @@ import sophie  # noqa: E402
 NAN = float('nan')
 ANY = object()
 NO16 = 65535
+# MAVLink's packing of the version that the workspace states: major, minor, patch, type.
+MANIFEST = os.path.join(os.path.dirname(__file__), '../../../Cargo.toml')
+with open(MANIFEST, encoding='utf-8') as manifest:
+    VERSION = re.search(r'^version = "(\d+)\.(\d+)\.(\d+)"', manifest.read(), re.M).groups()
+FLIGHT_SW_VERSION = sum(int(part) << shift for part, shift in zip(VERSION, (24, 16, 8)))
 
 # The picture of mavlink/examples/serve.rs in MAVLink's units; ANY is a time.
 HALF_ROLL, HALF_PITCH, HALF_YAW = 0.25, -0.125, 1.0
@@ -194,7 +200,7 @@ def main():
     check(command(link, 16) == 3, 'an unknown command is unsupported')
     check(command(link, 512, 148) == 0, 'request of AUTOPILOT_VERSION')
     version = link.recv_match(type='AUTOPILOT_VERSION', blocking=True, timeout=3)
-    check(version and version.flight_sw_version == 1 << 16, f'{version}')
+    check(version and version.flight_sw_version == FLIGHT_SW_VERSION, f'{version}')
     check(command(link, 512, 435) == 0, 'request of AVAILABLE_MODES')
     modes = []
     while len(modes) < 11 and (mode := link.recv_match(type='AVAILABLE_MODES', blocking=True, timeout=3)):
