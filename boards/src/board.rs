@@ -6,13 +6,13 @@
 #[cfg_attr(feature = "f405", path = "f405.rs")]
 mod chosen;
 
+#[cfg(not(family = "f4"))]
+pub(crate) use chosen::DATA_CACHE;
+pub(crate) use chosen::FIRST_LEVELS;
 pub use chosen::{
     AnalogPort, ArmsPort, BarometerPort, ImuPort, LightsPort, MotorsPort, NAME, ServosPort, StoragePort,
     WIRING, start_levels, take,
 };
-#[cfg(not(family = "f4"))]
-pub(crate) use chosen::DATA_CACHE;
-pub(crate) use chosen::FIRST_LEVELS;
 use sophie_control::params::Params;
 use sophie_ports::storage::Loaded;
 
