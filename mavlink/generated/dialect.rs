@@ -138,6 +138,34 @@ pub enum MavCmd {
     MAV_CMD_REQUEST_MESSAGE = 512,
     MAV_CMD_DO_SET_STANDARD_MODE = 262,
     MAV_CMD_USER_1 = 31010,
+    #[doc = "Measures one step of a calibration, at rest. Answered in progress, then at its end, behind SOPHIE_CALIBRATION_RESULT."]
+    #[doc = ""]
+    #[doc = "# Parameters"]
+    #[doc = ""]
+    #[doc = "| Parameter | Description | Values |"]
+    #[doc = "| --------- | ----------- | ------ |"]
+    #[doc = "| 1 (Calibration)| Which.      | [`SophieCalibration`] |"]
+    #[doc = "| 2 (Index) | Arm, pressure sensor or servo, 1 to 4; else 0.| 0 .. 4 |"]
+    #[doc = "| 3 (Step)  | Step, from 1; a step wants those before it.| &ge; 1 |"]
+    #[doc = "| 4 (Value) | Battery: V by a meter. Servo: pulse at release, us. Pressure sensor, step 2: weight on its pad, N.|  |"]
+    #[doc = "| 5 (Value 2)| Servo: pulse at the full mark, us.|  |"]
+    MAV_CMD_SOPHIE_CALIBRATE = 53000,
+    #[doc = "Sends a report as SOPHIE_CHECK, row by row, then the acknowledgement."]
+    #[doc = ""]
+    #[doc = "# Parameters"]
+    #[doc = ""]
+    #[doc = "| Parameter | Description | Values |"]
+    #[doc = "| --------- | ----------- | ------ |"]
+    #[doc = "| 1 (Report)| Which.      | [`SophieReport`] |"]
+    MAV_CMD_SOPHIE_REPORT = 53001,
+    #[doc = "Writes the chip's brown-out level into its option bytes, for good, and restarts."]
+    #[doc = ""]
+    #[doc = "# Parameters"]
+    #[doc = ""]
+    #[doc = "| Parameter | Description | Values |"]
+    #[doc = "| --------- | ----------- | ------ |"]
+    #[doc = "| 1 (Confirm)| 1.          | 1 .. 1 |"]
+    MAV_CMD_SOPHIE_SET_BROWN_OUT = 53002,
 }
 impl MavCmd {
     pub const DEFAULT: Self = Self::MAV_CMD_DO_SET_SERVO;
@@ -382,6 +410,7 @@ impl Default for MavVtolState {
 #[repr(u32)]
 pub enum MotorTestThrottleType {
     MOTOR_TEST_THROTTLE_PERCENT = 0,
+    MOTOR_TEST_THROTTLE_PWM = 1,
 }
 impl MotorTestThrottleType {
     pub const DEFAULT: Self = Self::MOTOR_TEST_THROTTLE_PERCENT;
@@ -451,11 +480,92 @@ impl Default for SophieArmState {
         Self::DEFAULT
     }
 }
+#[cfg_attr(feature = "ts-rs", derive(TS))]
+#[cfg_attr(feature = "ts-rs", ts(export))]
+#[derive(Debug, Copy, Clone, PartialEq, FromPrimitive, ToPrimitive)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(tag = "type"))]
+#[cfg_attr(feature = "arbitrary", derive(Arbitrary))]
+#[repr(u32)]
+pub enum SophieCalibration {
+    #[doc = "Ends the running one."]
+    SOPHIE_CALIBRATION_NONE = 0,
+    #[doc = "Gyro at rest; nothing is stored."]
+    SOPHIE_CALIBRATION_GYRO = 1,
+    #[doc = "Bias of the accelerometer on a level table."]
+    SOPHIE_CALIBRATION_LEVEL = 2,
+    #[doc = "Bias and scale of the accelerometer. Steps: belly, back, nose, tail, right side, left side down."]
+    SOPHIE_CALIBRATION_ACCEL = 3,
+    #[doc = "Mounting of the inertial sensor. Steps: belly, nose, right side down."]
+    SOPHIE_CALIBRATION_MOUNTING = 4,
+    #[doc = "Divider of the flight battery's voltage."]
+    SOPHIE_CALIBRATION_BATTERY = 5,
+    #[doc = "Release and full mark of one tendon servo."]
+    SOPHIE_CALIBRATION_SERVO = 6,
+    #[doc = "Zero and gain of one pressure sensor. Steps: without a weight, with a known one."]
+    SOPHIE_CALIBRATION_FSR = 7,
+    #[doc = "Zero and sign of one arm's tilt sensor. Steps: arm straight, its tip bent up."]
+    SOPHIE_CALIBRATION_ARM = 8,
+    #[doc = "Scale and mounting of the flow module, turned for 8 s a step. Steps: 0.5 m, 1.5 m above a floor."]
+    SOPHIE_CALIBRATION_FLOW = 9,
+}
+impl SophieCalibration {
+    pub const DEFAULT: Self = Self::SOPHIE_CALIBRATION_NONE;
+}
+impl Default for SophieCalibration {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+#[cfg_attr(feature = "ts-rs", derive(TS))]
+#[cfg_attr(feature = "ts-rs", ts(export))]
+#[derive(Debug, Copy, Clone, PartialEq, FromPrimitive, ToPrimitive)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(tag = "type"))]
+#[cfg_attr(feature = "arbitrary", derive(Arbitrary))]
+#[repr(u32)]
+pub enum SophieCalibrationOutcome {
+    #[doc = "The step is measured; another follows."]
+    SOPHIE_CALIBRATION_OUTCOME_TAKEN = 0,
+    #[doc = "Complete: its parameters are set."]
+    SOPHIE_CALIBRATION_OUTCOME_DONE = 1,
+    #[doc = "A quantity is outside its range: nothing is set."]
+    SOPHIE_CALIBRATION_OUTCOME_UNFIT = 2,
+}
+impl SophieCalibrationOutcome {
+    pub const DEFAULT: Self = Self::SOPHIE_CALIBRATION_OUTCOME_TAKEN;
+}
+impl Default for SophieCalibrationOutcome {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
 bitflags! { # [cfg_attr (feature = "ts-rs" , derive (TS))] # [cfg_attr (feature = "ts-rs" , ts (export , type = "number"))] # [cfg_attr (feature = "serde" , derive (Serialize , Deserialize))] # [cfg_attr (feature = "arbitrary" , derive (Arbitrary))] # [derive (Debug , Copy , Clone , PartialEq)] pub struct SophieGripFlags : u16 { # [doc = "Every chosen arm holds."] const SOPHIE_GRIP_FLAGS_PROVEN = 1 ; # [doc = "Every arm is free."] const SOPHIE_GRIP_FLAGS_RELEASED = 2 ; } }
 impl SophieGripFlags {
     pub const DEFAULT: Self = Self::SOPHIE_GRIP_FLAGS_PROVEN;
 }
 impl Default for SophieGripFlags {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+#[cfg_attr(feature = "ts-rs", derive(TS))]
+#[cfg_attr(feature = "ts-rs", ts(export))]
+#[derive(Debug, Copy, Clone, PartialEq, FromPrimitive, ToPrimitive)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(tag = "type"))]
+#[cfg_attr(feature = "arbitrary", derive(Arbitrary))]
+#[repr(u32)]
+pub enum SophieReport {
+    #[doc = "Self-test of all parts that need not move."]
+    SOPHIE_REPORT_SELF_TEST = 1,
+    #[doc = "Settings of the chip, as the start has read them."]
+    SOPHIE_REPORT_CHIP = 2,
+}
+impl SophieReport {
+    pub const DEFAULT: Self = Self::SOPHIE_REPORT_SELF_TEST;
+}
+impl Default for SophieReport {
     fn default() -> Self {
         Self::DEFAULT
     }
@@ -1492,6 +1602,135 @@ impl MessageData for COMMAND_LONG_DATA {
         __tmp.put_u8(self.target_system);
         __tmp.put_u8(self.target_component);
         __tmp.put_u8(self.confirmation);
+        if matches!(version, MavlinkVersion::V2) {
+            let len = __tmp.len();
+            ::mavlink_core::utils::remove_trailing_zeroes(&bytes[..len])
+        } else {
+            __tmp.len()
+        }
+    }
+}
+#[doc = "ID: 396"]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "arbitrary", derive(Arbitrary))]
+#[cfg_attr(feature = "ts-rs", derive(TS))]
+#[cfg_attr(feature = "ts-rs", ts(export))]
+pub struct COMPONENT_INFORMATION_BASIC_DATA {
+    pub capabilities: u64,
+    pub time_boot_ms: u32,
+    pub time_manufacture_s: u32,
+    #[cfg_attr(feature = "ts-rs", ts(type = "string"))]
+    pub vendor_name: CharArray<32>,
+    #[cfg_attr(feature = "ts-rs", ts(type = "string"))]
+    pub model_name: CharArray<32>,
+    #[cfg_attr(feature = "ts-rs", ts(type = "string"))]
+    pub software_version: CharArray<24>,
+    #[cfg_attr(feature = "ts-rs", ts(type = "string"))]
+    pub hardware_version: CharArray<24>,
+    #[cfg_attr(feature = "ts-rs", ts(type = "string"))]
+    pub serial_number: CharArray<32>,
+}
+impl COMPONENT_INFORMATION_BASIC_DATA {
+    pub const ENCODED_LEN: usize = 160usize;
+    pub const DEFAULT: Self = Self {
+        capabilities: 0_u64,
+        time_boot_ms: 0_u32,
+        time_manufacture_s: 0_u32,
+        vendor_name: CharArray::new([0_u8; 32usize]),
+        model_name: CharArray::new([0_u8; 32usize]),
+        software_version: CharArray::new([0_u8; 24usize]),
+        hardware_version: CharArray::new([0_u8; 24usize]),
+        serial_number: CharArray::new([0_u8; 32usize]),
+    };
+    #[cfg(feature = "arbitrary")]
+    pub fn random<R: rand::Rng>(rng: &mut R) -> Self {
+        use arbitrary::{Arbitrary, Unstructured};
+        let mut buf = [0u8; 1024];
+        rng.fill_bytes(&mut buf);
+        let mut unstructured = Unstructured::new(&buf);
+        Self::arbitrary(&mut unstructured).unwrap_or_default()
+    }
+}
+impl Default for COMPONENT_INFORMATION_BASIC_DATA {
+    fn default() -> Self {
+        Self::DEFAULT.clone()
+    }
+}
+impl MessageData for COMPONENT_INFORMATION_BASIC_DATA {
+    type Message = MavMessage;
+    const ID: u32 = 396u32;
+    const NAME: &'static str = "COMPONENT_INFORMATION_BASIC";
+    const EXTRA_CRC: u8 = 50u8;
+    const ENCODED_LEN: usize = 160usize;
+    fn deser(_version: MavlinkVersion, __input: &[u8]) -> Result<Self, ::mavlink_core::error::ParserError> {
+        let avail_len = __input.len();
+        let mut payload_buf;
+        let mut buf = if avail_len < Self::ENCODED_LEN {
+            payload_buf = [0; Self::ENCODED_LEN];
+            payload_buf[0..avail_len].copy_from_slice(__input);
+            Bytes::new(&payload_buf)
+        } else {
+            Bytes::new(__input)
+        };
+        let mut __struct = Self::default();
+        __struct.capabilities = buf.get_u64_le()?;
+        __struct.time_boot_ms = buf.get_u32_le()?;
+        __struct.time_manufacture_s = buf.get_u32_le()?;
+        let mut tmp = [0_u8; 32usize];
+        for v in &mut tmp {
+            *v = buf.get_u8()?;
+        }
+        __struct.vendor_name = CharArray::new(tmp);
+        let mut tmp = [0_u8; 32usize];
+        for v in &mut tmp {
+            *v = buf.get_u8()?;
+        }
+        __struct.model_name = CharArray::new(tmp);
+        let mut tmp = [0_u8; 24usize];
+        for v in &mut tmp {
+            *v = buf.get_u8()?;
+        }
+        __struct.software_version = CharArray::new(tmp);
+        let mut tmp = [0_u8; 24usize];
+        for v in &mut tmp {
+            *v = buf.get_u8()?;
+        }
+        __struct.hardware_version = CharArray::new(tmp);
+        let mut tmp = [0_u8; 32usize];
+        for v in &mut tmp {
+            *v = buf.get_u8()?;
+        }
+        __struct.serial_number = CharArray::new(tmp);
+        Ok(__struct)
+    }
+    fn ser(&self, version: MavlinkVersion, bytes: &mut [u8]) -> usize {
+        let mut __tmp = BytesMut::new(bytes);
+        if __tmp.remaining() < Self::ENCODED_LEN {
+            panic!(
+                "buffer is too small (need {} bytes, but got {})",
+                Self::ENCODED_LEN,
+                __tmp.remaining(),
+            )
+        }
+        __tmp.put_u64_le(self.capabilities);
+        __tmp.put_u32_le(self.time_boot_ms);
+        __tmp.put_u32_le(self.time_manufacture_s);
+        for val in &self.vendor_name {
+            __tmp.put_u8(*val);
+        }
+        for val in &self.model_name {
+            __tmp.put_u8(*val);
+        }
+        for val in &self.software_version {
+            __tmp.put_u8(*val);
+        }
+        for val in &self.hardware_version {
+            __tmp.put_u8(*val);
+        }
+        for val in &self.serial_number {
+            __tmp.put_u8(*val);
+        }
         if matches!(version, MavlinkVersion::V2) {
             let len = __tmp.len();
             ::mavlink_core::utils::remove_trailing_zeroes(&bytes[..len])
@@ -3231,6 +3470,89 @@ impl MessageData for SCALED_IMU_DATA {
         }
     }
 }
+#[doc = "ID: 29"]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "arbitrary", derive(Arbitrary))]
+#[cfg_attr(feature = "ts-rs", derive(TS))]
+#[cfg_attr(feature = "ts-rs", ts(export))]
+pub struct SCALED_PRESSURE_DATA {
+    pub time_boot_ms: u32,
+    pub press_abs: f32,
+    pub press_diff: f32,
+    pub temperature: i16,
+    #[cfg_attr(feature = "serde", serde(default = "crate::utils::RustDefault::rust_default"))]
+    pub temperature_press_diff: i16,
+}
+impl SCALED_PRESSURE_DATA {
+    pub const ENCODED_LEN: usize = 16usize;
+    pub const DEFAULT: Self = Self {
+        time_boot_ms: 0_u32,
+        press_abs: 0.0_f32,
+        press_diff: 0.0_f32,
+        temperature: 0_i16,
+        temperature_press_diff: 0_i16,
+    };
+    #[cfg(feature = "arbitrary")]
+    pub fn random<R: rand::Rng>(rng: &mut R) -> Self {
+        use arbitrary::{Arbitrary, Unstructured};
+        let mut buf = [0u8; 1024];
+        rng.fill_bytes(&mut buf);
+        let mut unstructured = Unstructured::new(&buf);
+        Self::arbitrary(&mut unstructured).unwrap_or_default()
+    }
+}
+impl Default for SCALED_PRESSURE_DATA {
+    fn default() -> Self {
+        Self::DEFAULT.clone()
+    }
+}
+impl MessageData for SCALED_PRESSURE_DATA {
+    type Message = MavMessage;
+    const ID: u32 = 29u32;
+    const NAME: &'static str = "SCALED_PRESSURE";
+    const EXTRA_CRC: u8 = 115u8;
+    const ENCODED_LEN: usize = 16usize;
+    fn deser(_version: MavlinkVersion, __input: &[u8]) -> Result<Self, ::mavlink_core::error::ParserError> {
+        let avail_len = __input.len();
+        let mut payload_buf;
+        let mut buf = if avail_len < Self::ENCODED_LEN {
+            payload_buf = [0; Self::ENCODED_LEN];
+            payload_buf[0..avail_len].copy_from_slice(__input);
+            Bytes::new(&payload_buf)
+        } else {
+            Bytes::new(__input)
+        };
+        let mut __struct = Self::default();
+        __struct.time_boot_ms = buf.get_u32_le()?;
+        __struct.press_abs = buf.get_f32_le()?;
+        __struct.press_diff = buf.get_f32_le()?;
+        __struct.temperature = buf.get_i16_le()?;
+        __struct.temperature_press_diff = buf.get_i16_le()?;
+        Ok(__struct)
+    }
+    fn ser(&self, version: MavlinkVersion, bytes: &mut [u8]) -> usize {
+        let mut __tmp = BytesMut::new(bytes);
+        if __tmp.remaining() < Self::ENCODED_LEN {
+            panic!(
+                "buffer is too small (need {} bytes, but got {})",
+                Self::ENCODED_LEN,
+                __tmp.remaining(),
+            )
+        }
+        __tmp.put_u32_le(self.time_boot_ms);
+        __tmp.put_f32_le(self.press_abs);
+        __tmp.put_f32_le(self.press_diff);
+        __tmp.put_i16_le(self.temperature);
+        if matches!(version, MavlinkVersion::V2) {
+            __tmp.put_i16_le(self.temperature_press_diff);
+            let len = __tmp.len();
+            ::mavlink_core::utils::remove_trailing_zeroes(&bytes[..len])
+        } else {
+            __tmp.len()
+        }
+    }
+}
 #[doc = "ID: 126"]
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
@@ -3561,6 +3883,80 @@ impl MessageData for SETUP_SIGNING_DATA {
         }
     }
 }
+#[doc = "Arming checks that fail."]
+#[doc = ""]
+#[doc = "ID: 53003"]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "arbitrary", derive(Arbitrary))]
+#[cfg_attr(feature = "ts-rs", derive(TS))]
+#[cfg_attr(feature = "ts-rs", ts(export))]
+pub struct SOPHIE_ARMING_DATA {
+    #[doc = "Bit n: the check in place n of the table of arming checks."]
+    pub failing: u64,
+    #[doc = "Time since the start."]
+    pub time_boot_ms: u32,
+}
+impl SOPHIE_ARMING_DATA {
+    pub const ENCODED_LEN: usize = 12usize;
+    pub const DEFAULT: Self = Self {
+        failing: 0_u64,
+        time_boot_ms: 0_u32,
+    };
+    #[cfg(feature = "arbitrary")]
+    pub fn random<R: rand::Rng>(rng: &mut R) -> Self {
+        use arbitrary::{Arbitrary, Unstructured};
+        let mut buf = [0u8; 1024];
+        rng.fill_bytes(&mut buf);
+        let mut unstructured = Unstructured::new(&buf);
+        Self::arbitrary(&mut unstructured).unwrap_or_default()
+    }
+}
+impl Default for SOPHIE_ARMING_DATA {
+    fn default() -> Self {
+        Self::DEFAULT.clone()
+    }
+}
+impl MessageData for SOPHIE_ARMING_DATA {
+    type Message = MavMessage;
+    const ID: u32 = 53003u32;
+    const NAME: &'static str = "SOPHIE_ARMING";
+    const EXTRA_CRC: u8 = 161u8;
+    const ENCODED_LEN: usize = 12usize;
+    fn deser(_version: MavlinkVersion, __input: &[u8]) -> Result<Self, ::mavlink_core::error::ParserError> {
+        let avail_len = __input.len();
+        let mut payload_buf;
+        let mut buf = if avail_len < Self::ENCODED_LEN {
+            payload_buf = [0; Self::ENCODED_LEN];
+            payload_buf[0..avail_len].copy_from_slice(__input);
+            Bytes::new(&payload_buf)
+        } else {
+            Bytes::new(__input)
+        };
+        let mut __struct = Self::default();
+        __struct.failing = buf.get_u64_le()?;
+        __struct.time_boot_ms = buf.get_u32_le()?;
+        Ok(__struct)
+    }
+    fn ser(&self, version: MavlinkVersion, bytes: &mut [u8]) -> usize {
+        let mut __tmp = BytesMut::new(bytes);
+        if __tmp.remaining() < Self::ENCODED_LEN {
+            panic!(
+                "buffer is too small (need {} bytes, but got {})",
+                Self::ENCODED_LEN,
+                __tmp.remaining(),
+            )
+        }
+        __tmp.put_u64_le(self.failing);
+        __tmp.put_u32_le(self.time_boot_ms);
+        if matches!(version, MavlinkVersion::V2) {
+            let len = __tmp.len();
+            ::mavlink_core::utils::remove_trailing_zeroes(&bytes[..len])
+        } else {
+            __tmp.len()
+        }
+    }
+}
 #[doc = "Arms and grip: front-left, rear-left, front-right, rear-right. NaN where nothing fresh is known."]
 #[doc = ""]
 #[doc = "ID: 53000"]
@@ -3699,6 +4095,259 @@ impl MessageData for SOPHIE_ARMS_DATA {
             __tmp.put_u8(*val);
         }
         __tmp.put_u8(self.flags);
+        if matches!(version, MavlinkVersion::V2) {
+            let len = __tmp.len();
+            ::mavlink_core::utils::remove_trailing_zeroes(&bytes[..len])
+        } else {
+            __tmp.len()
+        }
+    }
+}
+#[doc = "Result of one step of a calibration."]
+#[doc = ""]
+#[doc = "ID: 53001"]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "arbitrary", derive(Arbitrary))]
+#[cfg_attr(feature = "ts-rs", derive(TS))]
+#[cfg_attr(feature = "ts-rs", ts(export))]
+pub struct SOPHIE_CALIBRATION_RESULT_DATA {
+    #[doc = "Time since the start."]
+    pub time_boot_ms: u32,
+    #[doc = "Quantity that is outside its range; NaN if none is."]
+    pub value: f32,
+    #[doc = "Its least allowed value, NaN if none is."]
+    pub least: f32,
+    #[doc = "Its largest allowed value, NaN if none is."]
+    pub most: f32,
+    #[doc = "What was found beside the parameters: gyro: rates x, y, z and noise, deg/s; flow: height of the turning point over the lens, m. NaN: unused."]
+    #[cfg_attr(feature = "serde", serde(with = "serde_arrays"))]
+    #[cfg_attr(feature = "ts-rs", ts(type = "Array<number>"))]
+    pub figures: [f32; 4],
+    #[doc = "SOPHIE_CALIBRATION."]
+    pub calibration: u8,
+    #[doc = "Arm, pressure sensor or servo, 1 to 4; else 0."]
+    pub index: u8,
+    #[doc = "Step, from 1."]
+    pub step: u8,
+    #[doc = "SOPHIE_CALIBRATION_OUTCOME."]
+    pub outcome: u8,
+    #[doc = "Name of the quantity, for people."]
+    #[cfg_attr(feature = "ts-rs", ts(type = "string"))]
+    pub quantity: CharArray<28>,
+    #[doc = "Its unit."]
+    #[cfg_attr(feature = "ts-rs", ts(type = "string"))]
+    pub unit: CharArray<8>,
+}
+impl SOPHIE_CALIBRATION_RESULT_DATA {
+    pub const ENCODED_LEN: usize = 72usize;
+    pub const DEFAULT: Self = Self {
+        time_boot_ms: 0_u32,
+        value: 0.0_f32,
+        least: 0.0_f32,
+        most: 0.0_f32,
+        figures: [0.0_f32; 4usize],
+        calibration: 0_u8,
+        index: 0_u8,
+        step: 0_u8,
+        outcome: 0_u8,
+        quantity: CharArray::new([0_u8; 28usize]),
+        unit: CharArray::new([0_u8; 8usize]),
+    };
+    #[cfg(feature = "arbitrary")]
+    pub fn random<R: rand::Rng>(rng: &mut R) -> Self {
+        use arbitrary::{Arbitrary, Unstructured};
+        let mut buf = [0u8; 1024];
+        rng.fill_bytes(&mut buf);
+        let mut unstructured = Unstructured::new(&buf);
+        Self::arbitrary(&mut unstructured).unwrap_or_default()
+    }
+}
+impl Default for SOPHIE_CALIBRATION_RESULT_DATA {
+    fn default() -> Self {
+        Self::DEFAULT.clone()
+    }
+}
+impl MessageData for SOPHIE_CALIBRATION_RESULT_DATA {
+    type Message = MavMessage;
+    const ID: u32 = 53001u32;
+    const NAME: &'static str = "SOPHIE_CALIBRATION_RESULT";
+    const EXTRA_CRC: u8 = 242u8;
+    const ENCODED_LEN: usize = 72usize;
+    fn deser(_version: MavlinkVersion, __input: &[u8]) -> Result<Self, ::mavlink_core::error::ParserError> {
+        let avail_len = __input.len();
+        let mut payload_buf;
+        let mut buf = if avail_len < Self::ENCODED_LEN {
+            payload_buf = [0; Self::ENCODED_LEN];
+            payload_buf[0..avail_len].copy_from_slice(__input);
+            Bytes::new(&payload_buf)
+        } else {
+            Bytes::new(__input)
+        };
+        let mut __struct = Self::default();
+        __struct.time_boot_ms = buf.get_u32_le()?;
+        __struct.value = buf.get_f32_le()?;
+        __struct.least = buf.get_f32_le()?;
+        __struct.most = buf.get_f32_le()?;
+        for v in &mut __struct.figures {
+            let val = buf.get_f32_le()?;
+            *v = val;
+        }
+        __struct.calibration = buf.get_u8()?;
+        __struct.index = buf.get_u8()?;
+        __struct.step = buf.get_u8()?;
+        __struct.outcome = buf.get_u8()?;
+        let mut tmp = [0_u8; 28usize];
+        for v in &mut tmp {
+            *v = buf.get_u8()?;
+        }
+        __struct.quantity = CharArray::new(tmp);
+        let mut tmp = [0_u8; 8usize];
+        for v in &mut tmp {
+            *v = buf.get_u8()?;
+        }
+        __struct.unit = CharArray::new(tmp);
+        Ok(__struct)
+    }
+    fn ser(&self, version: MavlinkVersion, bytes: &mut [u8]) -> usize {
+        let mut __tmp = BytesMut::new(bytes);
+        if __tmp.remaining() < Self::ENCODED_LEN {
+            panic!(
+                "buffer is too small (need {} bytes, but got {})",
+                Self::ENCODED_LEN,
+                __tmp.remaining(),
+            )
+        }
+        __tmp.put_u32_le(self.time_boot_ms);
+        __tmp.put_f32_le(self.value);
+        __tmp.put_f32_le(self.least);
+        __tmp.put_f32_le(self.most);
+        for val in &self.figures {
+            __tmp.put_f32_le(*val);
+        }
+        __tmp.put_u8(self.calibration);
+        __tmp.put_u8(self.index);
+        __tmp.put_u8(self.step);
+        __tmp.put_u8(self.outcome);
+        for val in &self.quantity {
+            __tmp.put_u8(*val);
+        }
+        for val in &self.unit {
+            __tmp.put_u8(*val);
+        }
+        if matches!(version, MavlinkVersion::V2) {
+            let len = __tmp.len();
+            ::mavlink_core::utils::remove_trailing_zeroes(&bytes[..len])
+        } else {
+            __tmp.len()
+        }
+    }
+}
+#[doc = "One row of a report."]
+#[doc = ""]
+#[doc = "ID: 53002"]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "arbitrary", derive(Arbitrary))]
+#[cfg_attr(feature = "ts-rs", derive(TS))]
+#[cfg_attr(feature = "ts-rs", ts(export))]
+pub struct SOPHIE_CHECK_DATA {
+    #[doc = "Arming checks that belong to the row, as in SOPHIE_ARMING."]
+    pub inhibits: u64,
+    #[doc = "SOPHIE_REPORT."]
+    pub report: u8,
+    #[doc = "Row, from 0."]
+    pub row: u8,
+    #[doc = "Number of rows."]
+    pub rows: u8,
+    #[doc = "1 if it is as it should be."]
+    pub passed: u8,
+    #[doc = "What was looked at."]
+    #[cfg_attr(feature = "ts-rs", ts(type = "string"))]
+    pub name: CharArray<24>,
+    #[doc = "What was found, and what is allowed."]
+    #[cfg_attr(feature = "ts-rs", ts(type = "string"))]
+    pub found: CharArray<72>,
+}
+impl SOPHIE_CHECK_DATA {
+    pub const ENCODED_LEN: usize = 108usize;
+    pub const DEFAULT: Self = Self {
+        inhibits: 0_u64,
+        report: 0_u8,
+        row: 0_u8,
+        rows: 0_u8,
+        passed: 0_u8,
+        name: CharArray::new([0_u8; 24usize]),
+        found: CharArray::new([0_u8; 72usize]),
+    };
+    #[cfg(feature = "arbitrary")]
+    pub fn random<R: rand::Rng>(rng: &mut R) -> Self {
+        use arbitrary::{Arbitrary, Unstructured};
+        let mut buf = [0u8; 1024];
+        rng.fill_bytes(&mut buf);
+        let mut unstructured = Unstructured::new(&buf);
+        Self::arbitrary(&mut unstructured).unwrap_or_default()
+    }
+}
+impl Default for SOPHIE_CHECK_DATA {
+    fn default() -> Self {
+        Self::DEFAULT.clone()
+    }
+}
+impl MessageData for SOPHIE_CHECK_DATA {
+    type Message = MavMessage;
+    const ID: u32 = 53002u32;
+    const NAME: &'static str = "SOPHIE_CHECK";
+    const EXTRA_CRC: u8 = 168u8;
+    const ENCODED_LEN: usize = 108usize;
+    fn deser(_version: MavlinkVersion, __input: &[u8]) -> Result<Self, ::mavlink_core::error::ParserError> {
+        let avail_len = __input.len();
+        let mut payload_buf;
+        let mut buf = if avail_len < Self::ENCODED_LEN {
+            payload_buf = [0; Self::ENCODED_LEN];
+            payload_buf[0..avail_len].copy_from_slice(__input);
+            Bytes::new(&payload_buf)
+        } else {
+            Bytes::new(__input)
+        };
+        let mut __struct = Self::default();
+        __struct.inhibits = buf.get_u64_le()?;
+        __struct.report = buf.get_u8()?;
+        __struct.row = buf.get_u8()?;
+        __struct.rows = buf.get_u8()?;
+        __struct.passed = buf.get_u8()?;
+        let mut tmp = [0_u8; 24usize];
+        for v in &mut tmp {
+            *v = buf.get_u8()?;
+        }
+        __struct.name = CharArray::new(tmp);
+        let mut tmp = [0_u8; 72usize];
+        for v in &mut tmp {
+            *v = buf.get_u8()?;
+        }
+        __struct.found = CharArray::new(tmp);
+        Ok(__struct)
+    }
+    fn ser(&self, version: MavlinkVersion, bytes: &mut [u8]) -> usize {
+        let mut __tmp = BytesMut::new(bytes);
+        if __tmp.remaining() < Self::ENCODED_LEN {
+            panic!(
+                "buffer is too small (need {} bytes, but got {})",
+                Self::ENCODED_LEN,
+                __tmp.remaining(),
+            )
+        }
+        __tmp.put_u64_le(self.inhibits);
+        __tmp.put_u8(self.report);
+        __tmp.put_u8(self.row);
+        __tmp.put_u8(self.rows);
+        __tmp.put_u8(self.passed);
+        for val in &self.name {
+            __tmp.put_u8(*val);
+        }
+        for val in &self.found {
+            __tmp.put_u8(*val);
+        }
         if matches!(version, MavlinkVersion::V2) {
             let len = __tmp.len();
             ::mavlink_core::utils::remove_trailing_zeroes(&bytes[..len])
@@ -4138,6 +4787,8 @@ pub enum MavMessage {
     COMMAND_INT(COMMAND_INT_DATA),
     #[doc = "ID: 76"]
     COMMAND_LONG(COMMAND_LONG_DATA),
+    #[doc = "ID: 396"]
+    COMPONENT_INFORMATION_BASIC(COMPONENT_INFORMATION_BASIC_DATA),
     #[doc = "ID: 397"]
     COMPONENT_METADATA(COMPONENT_METADATA_DATA),
     #[doc = "ID: 436"]
@@ -4174,16 +4825,30 @@ pub enum MavMessage {
     RC_CHANNELS(RC_CHANNELS_DATA),
     #[doc = "ID: 26"]
     SCALED_IMU(SCALED_IMU_DATA),
+    #[doc = "ID: 29"]
+    SCALED_PRESSURE(SCALED_PRESSURE_DATA),
     #[doc = "ID: 126"]
     SERIAL_CONTROL(SERIAL_CONTROL_DATA),
     #[doc = "ID: 36"]
     SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA),
     #[doc = "ID: 256"]
     SETUP_SIGNING(SETUP_SIGNING_DATA),
+    #[doc = "Arming checks that fail."]
+    #[doc = ""]
+    #[doc = "ID: 53003"]
+    SOPHIE_ARMING(SOPHIE_ARMING_DATA),
     #[doc = "Arms and grip: front-left, rear-left, front-right, rear-right. NaN where nothing fresh is known."]
     #[doc = ""]
     #[doc = "ID: 53000"]
     SOPHIE_ARMS(SOPHIE_ARMS_DATA),
+    #[doc = "Result of one step of a calibration."]
+    #[doc = ""]
+    #[doc = "ID: 53001"]
+    SOPHIE_CALIBRATION_RESULT(SOPHIE_CALIBRATION_RESULT_DATA),
+    #[doc = "One row of a report."]
+    #[doc = ""]
+    #[doc = "ID: 53002"]
+    SOPHIE_CHECK(SOPHIE_CHECK_DATA),
     #[doc = "ID: 253"]
     STATUSTEXT(STATUSTEXT_DATA),
     #[doc = "ID: 1"]
@@ -4196,9 +4861,10 @@ pub enum MavMessage {
 impl MavMessage {
     pub const fn all_ids() -> &'static [u32] {
         &[
-            0u32, 1u32, 4u32, 20u32, 21u32, 22u32, 23u32, 26u32, 30u32, 31u32, 36u32, 65u32, 75u32, 76u32,
-            77u32, 102u32, 106u32, 110u32, 111u32, 126u32, 132u32, 138u32, 147u32, 148u32, 149u32, 244u32,
-            245u32, 251u32, 253u32, 256u32, 331u32, 397u32, 435u32, 436u32, 437u32, 53000u32,
+            0u32, 1u32, 4u32, 20u32, 21u32, 22u32, 23u32, 26u32, 29u32, 30u32, 31u32, 36u32, 65u32, 75u32,
+            76u32, 77u32, 102u32, 106u32, 110u32, 111u32, 126u32, 132u32, 138u32, 147u32, 148u32, 149u32,
+            244u32, 245u32, 251u32, 253u32, 256u32, 331u32, 396u32, 397u32, 435u32, 436u32, 437u32, 53000u32,
+            53001u32, 53002u32, 53003u32,
         ]
     }
     pub const fn all_messages() -> &'static [(&'static str, u32)] {
@@ -4211,6 +4877,7 @@ impl MavMessage {
             (PARAM_VALUE_DATA::NAME, PARAM_VALUE_DATA::ID),
             (PARAM_SET_DATA::NAME, PARAM_SET_DATA::ID),
             (SCALED_IMU_DATA::NAME, SCALED_IMU_DATA::ID),
+            (SCALED_PRESSURE_DATA::NAME, SCALED_PRESSURE_DATA::ID),
             (ATTITUDE_DATA::NAME, ATTITUDE_DATA::ID),
             (ATTITUDE_QUATERNION_DATA::NAME, ATTITUDE_QUATERNION_DATA::ID),
             (SERVO_OUTPUT_RAW_DATA::NAME, SERVO_OUTPUT_RAW_DATA::ID),
@@ -4237,6 +4904,10 @@ impl MavMessage {
             (STATUSTEXT_DATA::NAME, STATUSTEXT_DATA::ID),
             (SETUP_SIGNING_DATA::NAME, SETUP_SIGNING_DATA::ID),
             (ODOMETRY_DATA::NAME, ODOMETRY_DATA::ID),
+            (
+                COMPONENT_INFORMATION_BASIC_DATA::NAME,
+                COMPONENT_INFORMATION_BASIC_DATA::ID,
+            ),
             (COMPONENT_METADATA_DATA::NAME, COMPONENT_METADATA_DATA::ID),
             (AVAILABLE_MODES_DATA::NAME, AVAILABLE_MODES_DATA::ID),
             (CURRENT_MODE_DATA::NAME, CURRENT_MODE_DATA::ID),
@@ -4245,6 +4916,12 @@ impl MavMessage {
                 AVAILABLE_MODES_MONITOR_DATA::ID,
             ),
             (SOPHIE_ARMS_DATA::NAME, SOPHIE_ARMS_DATA::ID),
+            (
+                SOPHIE_CALIBRATION_RESULT_DATA::NAME,
+                SOPHIE_CALIBRATION_RESULT_DATA::ID,
+            ),
+            (SOPHIE_CHECK_DATA::NAME, SOPHIE_CHECK_DATA::ID),
+            (SOPHIE_ARMING_DATA::NAME, SOPHIE_ARMING_DATA::ID),
         ]
     }
 }
@@ -4273,6 +4950,8 @@ impl Message for MavMessage {
             COMMAND_ACK_DATA::ID => COMMAND_ACK_DATA::deser(version, payload).map(Self::COMMAND_ACK),
             COMMAND_INT_DATA::ID => COMMAND_INT_DATA::deser(version, payload).map(Self::COMMAND_INT),
             COMMAND_LONG_DATA::ID => COMMAND_LONG_DATA::deser(version, payload).map(Self::COMMAND_LONG),
+            COMPONENT_INFORMATION_BASIC_DATA::ID => COMPONENT_INFORMATION_BASIC_DATA::deser(version, payload)
+                .map(Self::COMPONENT_INFORMATION_BASIC),
             COMPONENT_METADATA_DATA::ID => {
                 COMPONENT_METADATA_DATA::deser(version, payload).map(Self::COMPONENT_METADATA)
             }
@@ -4309,12 +4988,20 @@ impl Message for MavMessage {
             PING_DATA::ID => PING_DATA::deser(version, payload).map(Self::PING),
             RC_CHANNELS_DATA::ID => RC_CHANNELS_DATA::deser(version, payload).map(Self::RC_CHANNELS),
             SCALED_IMU_DATA::ID => SCALED_IMU_DATA::deser(version, payload).map(Self::SCALED_IMU),
+            SCALED_PRESSURE_DATA::ID => {
+                SCALED_PRESSURE_DATA::deser(version, payload).map(Self::SCALED_PRESSURE)
+            }
             SERIAL_CONTROL_DATA::ID => SERIAL_CONTROL_DATA::deser(version, payload).map(Self::SERIAL_CONTROL),
             SERVO_OUTPUT_RAW_DATA::ID => {
                 SERVO_OUTPUT_RAW_DATA::deser(version, payload).map(Self::SERVO_OUTPUT_RAW)
             }
             SETUP_SIGNING_DATA::ID => SETUP_SIGNING_DATA::deser(version, payload).map(Self::SETUP_SIGNING),
+            SOPHIE_ARMING_DATA::ID => SOPHIE_ARMING_DATA::deser(version, payload).map(Self::SOPHIE_ARMING),
             SOPHIE_ARMS_DATA::ID => SOPHIE_ARMS_DATA::deser(version, payload).map(Self::SOPHIE_ARMS),
+            SOPHIE_CALIBRATION_RESULT_DATA::ID => {
+                SOPHIE_CALIBRATION_RESULT_DATA::deser(version, payload).map(Self::SOPHIE_CALIBRATION_RESULT)
+            }
+            SOPHIE_CHECK_DATA::ID => SOPHIE_CHECK_DATA::deser(version, payload).map(Self::SOPHIE_CHECK),
             STATUSTEXT_DATA::ID => STATUSTEXT_DATA::deser(version, payload).map(Self::STATUSTEXT),
             SYS_STATUS_DATA::ID => SYS_STATUS_DATA::deser(version, payload).map(Self::SYS_STATUS),
             TIMESYNC_DATA::ID => TIMESYNC_DATA::deser(version, payload).map(Self::TIMESYNC),
@@ -4336,6 +5023,7 @@ impl Message for MavMessage {
             Self::COMMAND_ACK(..) => COMMAND_ACK_DATA::NAME,
             Self::COMMAND_INT(..) => COMMAND_INT_DATA::NAME,
             Self::COMMAND_LONG(..) => COMMAND_LONG_DATA::NAME,
+            Self::COMPONENT_INFORMATION_BASIC(..) => COMPONENT_INFORMATION_BASIC_DATA::NAME,
             Self::COMPONENT_METADATA(..) => COMPONENT_METADATA_DATA::NAME,
             Self::CURRENT_MODE(..) => CURRENT_MODE_DATA::NAME,
             Self::DISTANCE_SENSOR(..) => DISTANCE_SENSOR_DATA::NAME,
@@ -4354,10 +5042,14 @@ impl Message for MavMessage {
             Self::PING(..) => PING_DATA::NAME,
             Self::RC_CHANNELS(..) => RC_CHANNELS_DATA::NAME,
             Self::SCALED_IMU(..) => SCALED_IMU_DATA::NAME,
+            Self::SCALED_PRESSURE(..) => SCALED_PRESSURE_DATA::NAME,
             Self::SERIAL_CONTROL(..) => SERIAL_CONTROL_DATA::NAME,
             Self::SERVO_OUTPUT_RAW(..) => SERVO_OUTPUT_RAW_DATA::NAME,
             Self::SETUP_SIGNING(..) => SETUP_SIGNING_DATA::NAME,
+            Self::SOPHIE_ARMING(..) => SOPHIE_ARMING_DATA::NAME,
             Self::SOPHIE_ARMS(..) => SOPHIE_ARMS_DATA::NAME,
+            Self::SOPHIE_CALIBRATION_RESULT(..) => SOPHIE_CALIBRATION_RESULT_DATA::NAME,
+            Self::SOPHIE_CHECK(..) => SOPHIE_CHECK_DATA::NAME,
             Self::STATUSTEXT(..) => STATUSTEXT_DATA::NAME,
             Self::SYS_STATUS(..) => SYS_STATUS_DATA::NAME,
             Self::TIMESYNC(..) => TIMESYNC_DATA::NAME,
@@ -4376,6 +5068,7 @@ impl Message for MavMessage {
             Self::COMMAND_ACK(..) => COMMAND_ACK_DATA::ID,
             Self::COMMAND_INT(..) => COMMAND_INT_DATA::ID,
             Self::COMMAND_LONG(..) => COMMAND_LONG_DATA::ID,
+            Self::COMPONENT_INFORMATION_BASIC(..) => COMPONENT_INFORMATION_BASIC_DATA::ID,
             Self::COMPONENT_METADATA(..) => COMPONENT_METADATA_DATA::ID,
             Self::CURRENT_MODE(..) => CURRENT_MODE_DATA::ID,
             Self::DISTANCE_SENSOR(..) => DISTANCE_SENSOR_DATA::ID,
@@ -4394,10 +5087,14 @@ impl Message for MavMessage {
             Self::PING(..) => PING_DATA::ID,
             Self::RC_CHANNELS(..) => RC_CHANNELS_DATA::ID,
             Self::SCALED_IMU(..) => SCALED_IMU_DATA::ID,
+            Self::SCALED_PRESSURE(..) => SCALED_PRESSURE_DATA::ID,
             Self::SERIAL_CONTROL(..) => SERIAL_CONTROL_DATA::ID,
             Self::SERVO_OUTPUT_RAW(..) => SERVO_OUTPUT_RAW_DATA::ID,
             Self::SETUP_SIGNING(..) => SETUP_SIGNING_DATA::ID,
+            Self::SOPHIE_ARMING(..) => SOPHIE_ARMING_DATA::ID,
             Self::SOPHIE_ARMS(..) => SOPHIE_ARMS_DATA::ID,
+            Self::SOPHIE_CALIBRATION_RESULT(..) => SOPHIE_CALIBRATION_RESULT_DATA::ID,
+            Self::SOPHIE_CHECK(..) => SOPHIE_CHECK_DATA::ID,
             Self::STATUSTEXT(..) => STATUSTEXT_DATA::ID,
             Self::SYS_STATUS(..) => SYS_STATUS_DATA::ID,
             Self::TIMESYNC(..) => TIMESYNC_DATA::ID,
@@ -4416,6 +5113,7 @@ impl Message for MavMessage {
             COMMAND_ACK_DATA::NAME => Some(COMMAND_ACK_DATA::ID),
             COMMAND_INT_DATA::NAME => Some(COMMAND_INT_DATA::ID),
             COMMAND_LONG_DATA::NAME => Some(COMMAND_LONG_DATA::ID),
+            COMPONENT_INFORMATION_BASIC_DATA::NAME => Some(COMPONENT_INFORMATION_BASIC_DATA::ID),
             COMPONENT_METADATA_DATA::NAME => Some(COMPONENT_METADATA_DATA::ID),
             CURRENT_MODE_DATA::NAME => Some(CURRENT_MODE_DATA::ID),
             DISTANCE_SENSOR_DATA::NAME => Some(DISTANCE_SENSOR_DATA::ID),
@@ -4434,10 +5132,14 @@ impl Message for MavMessage {
             PING_DATA::NAME => Some(PING_DATA::ID),
             RC_CHANNELS_DATA::NAME => Some(RC_CHANNELS_DATA::ID),
             SCALED_IMU_DATA::NAME => Some(SCALED_IMU_DATA::ID),
+            SCALED_PRESSURE_DATA::NAME => Some(SCALED_PRESSURE_DATA::ID),
             SERIAL_CONTROL_DATA::NAME => Some(SERIAL_CONTROL_DATA::ID),
             SERVO_OUTPUT_RAW_DATA::NAME => Some(SERVO_OUTPUT_RAW_DATA::ID),
             SETUP_SIGNING_DATA::NAME => Some(SETUP_SIGNING_DATA::ID),
+            SOPHIE_ARMING_DATA::NAME => Some(SOPHIE_ARMING_DATA::ID),
             SOPHIE_ARMS_DATA::NAME => Some(SOPHIE_ARMS_DATA::ID),
+            SOPHIE_CALIBRATION_RESULT_DATA::NAME => Some(SOPHIE_CALIBRATION_RESULT_DATA::ID),
+            SOPHIE_CHECK_DATA::NAME => Some(SOPHIE_CHECK_DATA::ID),
             STATUSTEXT_DATA::NAME => Some(STATUSTEXT_DATA::ID),
             SYS_STATUS_DATA::NAME => Some(SYS_STATUS_DATA::ID),
             TIMESYNC_DATA::NAME => Some(TIMESYNC_DATA::ID),
@@ -4461,6 +5163,9 @@ impl Message for MavMessage {
             COMMAND_ACK_DATA::ID => Some(Self::COMMAND_ACK(COMMAND_ACK_DATA::default())),
             COMMAND_INT_DATA::ID => Some(Self::COMMAND_INT(COMMAND_INT_DATA::default())),
             COMMAND_LONG_DATA::ID => Some(Self::COMMAND_LONG(COMMAND_LONG_DATA::default())),
+            COMPONENT_INFORMATION_BASIC_DATA::ID => Some(Self::COMPONENT_INFORMATION_BASIC(
+                COMPONENT_INFORMATION_BASIC_DATA::default(),
+            )),
             COMPONENT_METADATA_DATA::ID => Some(Self::COMPONENT_METADATA(COMPONENT_METADATA_DATA::default())),
             CURRENT_MODE_DATA::ID => Some(Self::CURRENT_MODE(CURRENT_MODE_DATA::default())),
             DISTANCE_SENSOR_DATA::ID => Some(Self::DISTANCE_SENSOR(DISTANCE_SENSOR_DATA::default())),
@@ -4481,10 +5186,16 @@ impl Message for MavMessage {
             PING_DATA::ID => Some(Self::PING(PING_DATA::default())),
             RC_CHANNELS_DATA::ID => Some(Self::RC_CHANNELS(RC_CHANNELS_DATA::default())),
             SCALED_IMU_DATA::ID => Some(Self::SCALED_IMU(SCALED_IMU_DATA::default())),
+            SCALED_PRESSURE_DATA::ID => Some(Self::SCALED_PRESSURE(SCALED_PRESSURE_DATA::default())),
             SERIAL_CONTROL_DATA::ID => Some(Self::SERIAL_CONTROL(SERIAL_CONTROL_DATA::default())),
             SERVO_OUTPUT_RAW_DATA::ID => Some(Self::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA::default())),
             SETUP_SIGNING_DATA::ID => Some(Self::SETUP_SIGNING(SETUP_SIGNING_DATA::default())),
+            SOPHIE_ARMING_DATA::ID => Some(Self::SOPHIE_ARMING(SOPHIE_ARMING_DATA::default())),
             SOPHIE_ARMS_DATA::ID => Some(Self::SOPHIE_ARMS(SOPHIE_ARMS_DATA::default())),
+            SOPHIE_CALIBRATION_RESULT_DATA::ID => Some(Self::SOPHIE_CALIBRATION_RESULT(
+                SOPHIE_CALIBRATION_RESULT_DATA::default(),
+            )),
+            SOPHIE_CHECK_DATA::ID => Some(Self::SOPHIE_CHECK(SOPHIE_CHECK_DATA::default())),
             STATUSTEXT_DATA::ID => Some(Self::STATUSTEXT(STATUSTEXT_DATA::default())),
             SYS_STATUS_DATA::ID => Some(Self::SYS_STATUS(SYS_STATUS_DATA::default())),
             TIMESYNC_DATA::ID => Some(Self::TIMESYNC(TIMESYNC_DATA::default())),
@@ -4511,6 +5222,9 @@ impl Message for MavMessage {
             COMMAND_ACK_DATA::ID => Some(Self::COMMAND_ACK(COMMAND_ACK_DATA::random(rng))),
             COMMAND_INT_DATA::ID => Some(Self::COMMAND_INT(COMMAND_INT_DATA::random(rng))),
             COMMAND_LONG_DATA::ID => Some(Self::COMMAND_LONG(COMMAND_LONG_DATA::random(rng))),
+            COMPONENT_INFORMATION_BASIC_DATA::ID => Some(Self::COMPONENT_INFORMATION_BASIC(
+                COMPONENT_INFORMATION_BASIC_DATA::random(rng),
+            )),
             COMPONENT_METADATA_DATA::ID => {
                 Some(Self::COMPONENT_METADATA(COMPONENT_METADATA_DATA::random(rng)))
             }
@@ -4539,10 +5253,16 @@ impl Message for MavMessage {
             PING_DATA::ID => Some(Self::PING(PING_DATA::random(rng))),
             RC_CHANNELS_DATA::ID => Some(Self::RC_CHANNELS(RC_CHANNELS_DATA::random(rng))),
             SCALED_IMU_DATA::ID => Some(Self::SCALED_IMU(SCALED_IMU_DATA::random(rng))),
+            SCALED_PRESSURE_DATA::ID => Some(Self::SCALED_PRESSURE(SCALED_PRESSURE_DATA::random(rng))),
             SERIAL_CONTROL_DATA::ID => Some(Self::SERIAL_CONTROL(SERIAL_CONTROL_DATA::random(rng))),
             SERVO_OUTPUT_RAW_DATA::ID => Some(Self::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA::random(rng))),
             SETUP_SIGNING_DATA::ID => Some(Self::SETUP_SIGNING(SETUP_SIGNING_DATA::random(rng))),
+            SOPHIE_ARMING_DATA::ID => Some(Self::SOPHIE_ARMING(SOPHIE_ARMING_DATA::random(rng))),
             SOPHIE_ARMS_DATA::ID => Some(Self::SOPHIE_ARMS(SOPHIE_ARMS_DATA::random(rng))),
+            SOPHIE_CALIBRATION_RESULT_DATA::ID => Some(Self::SOPHIE_CALIBRATION_RESULT(
+                SOPHIE_CALIBRATION_RESULT_DATA::random(rng),
+            )),
+            SOPHIE_CHECK_DATA::ID => Some(Self::SOPHIE_CHECK(SOPHIE_CHECK_DATA::random(rng))),
             STATUSTEXT_DATA::ID => Some(Self::STATUSTEXT(STATUSTEXT_DATA::random(rng))),
             SYS_STATUS_DATA::ID => Some(Self::SYS_STATUS(SYS_STATUS_DATA::random(rng))),
             TIMESYNC_DATA::ID => Some(Self::TIMESYNC(TIMESYNC_DATA::random(rng))),
@@ -4564,6 +5284,7 @@ impl Message for MavMessage {
             Self::COMMAND_ACK(body) => body.ser(version, bytes),
             Self::COMMAND_INT(body) => body.ser(version, bytes),
             Self::COMMAND_LONG(body) => body.ser(version, bytes),
+            Self::COMPONENT_INFORMATION_BASIC(body) => body.ser(version, bytes),
             Self::COMPONENT_METADATA(body) => body.ser(version, bytes),
             Self::CURRENT_MODE(body) => body.ser(version, bytes),
             Self::DISTANCE_SENSOR(body) => body.ser(version, bytes),
@@ -4582,10 +5303,14 @@ impl Message for MavMessage {
             Self::PING(body) => body.ser(version, bytes),
             Self::RC_CHANNELS(body) => body.ser(version, bytes),
             Self::SCALED_IMU(body) => body.ser(version, bytes),
+            Self::SCALED_PRESSURE(body) => body.ser(version, bytes),
             Self::SERIAL_CONTROL(body) => body.ser(version, bytes),
             Self::SERVO_OUTPUT_RAW(body) => body.ser(version, bytes),
             Self::SETUP_SIGNING(body) => body.ser(version, bytes),
+            Self::SOPHIE_ARMING(body) => body.ser(version, bytes),
             Self::SOPHIE_ARMS(body) => body.ser(version, bytes),
+            Self::SOPHIE_CALIBRATION_RESULT(body) => body.ser(version, bytes),
+            Self::SOPHIE_CHECK(body) => body.ser(version, bytes),
             Self::STATUSTEXT(body) => body.ser(version, bytes),
             Self::SYS_STATUS(body) => body.ser(version, bytes),
             Self::TIMESYNC(body) => body.ser(version, bytes),
@@ -4604,6 +5329,7 @@ impl Message for MavMessage {
             COMMAND_ACK_DATA::ID => COMMAND_ACK_DATA::EXTRA_CRC,
             COMMAND_INT_DATA::ID => COMMAND_INT_DATA::EXTRA_CRC,
             COMMAND_LONG_DATA::ID => COMMAND_LONG_DATA::EXTRA_CRC,
+            COMPONENT_INFORMATION_BASIC_DATA::ID => COMPONENT_INFORMATION_BASIC_DATA::EXTRA_CRC,
             COMPONENT_METADATA_DATA::ID => COMPONENT_METADATA_DATA::EXTRA_CRC,
             CURRENT_MODE_DATA::ID => CURRENT_MODE_DATA::EXTRA_CRC,
             DISTANCE_SENSOR_DATA::ID => DISTANCE_SENSOR_DATA::EXTRA_CRC,
@@ -4622,10 +5348,14 @@ impl Message for MavMessage {
             PING_DATA::ID => PING_DATA::EXTRA_CRC,
             RC_CHANNELS_DATA::ID => RC_CHANNELS_DATA::EXTRA_CRC,
             SCALED_IMU_DATA::ID => SCALED_IMU_DATA::EXTRA_CRC,
+            SCALED_PRESSURE_DATA::ID => SCALED_PRESSURE_DATA::EXTRA_CRC,
             SERIAL_CONTROL_DATA::ID => SERIAL_CONTROL_DATA::EXTRA_CRC,
             SERVO_OUTPUT_RAW_DATA::ID => SERVO_OUTPUT_RAW_DATA::EXTRA_CRC,
             SETUP_SIGNING_DATA::ID => SETUP_SIGNING_DATA::EXTRA_CRC,
+            SOPHIE_ARMING_DATA::ID => SOPHIE_ARMING_DATA::EXTRA_CRC,
             SOPHIE_ARMS_DATA::ID => SOPHIE_ARMS_DATA::EXTRA_CRC,
+            SOPHIE_CALIBRATION_RESULT_DATA::ID => SOPHIE_CALIBRATION_RESULT_DATA::EXTRA_CRC,
+            SOPHIE_CHECK_DATA::ID => SOPHIE_CHECK_DATA::EXTRA_CRC,
             STATUSTEXT_DATA::ID => STATUSTEXT_DATA::EXTRA_CRC,
             SYS_STATUS_DATA::ID => SYS_STATUS_DATA::EXTRA_CRC,
             TIMESYNC_DATA::ID => TIMESYNC_DATA::EXTRA_CRC,
