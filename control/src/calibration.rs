@@ -4,6 +4,8 @@
 //! as a parameter that was set.
 
 pub mod flow;
+pub mod procedure;
+pub mod step;
 
 use crate::attitude::mounting::{Direction, Mounting};
 use crate::maths::scalar::{GRAVITY, clamp, deg, sin, sqrt};
@@ -103,6 +105,13 @@ pub struct Samples {
 }
 
 impl Samples {
+    /// No sample.
+    pub const NONE: Self = Self {
+        count: 0,
+        mean: Vec3::ZERO,
+        squares: Vec3::ZERO,
+    };
+
     /// Takes one sample; ignores samples after 65,535. A sample that is not finite spoils the set.
     pub fn add(&mut self, sample: Vec3) {
         if self.count < u16::MAX {
@@ -328,6 +337,22 @@ pub fn divider(samples: &Samples, divider: f32, meter: f32) -> Result<f32, Unfit
     Ok(new)
 }
 
+/// Pressure of a sensor that nothing moves, Pa.
+///
+/// # Errors
+/// Samples are too few or too noisy.
+pub fn quiet_pressure(samples: &Samples) -> Result<f32, Unfit> {
+    Ok(samples.quiet_mean(PRESSURE_SPREAD_MAX, "Pa")?.x)
+}
+
+/// Tilt of an arm that is held still, rad.
+///
+/// # Errors
+/// Samples are too few or too noisy.
+pub fn quiet_tilt(samples: &Samples) -> Result<f32, Unfit> {
+    Ok(samples.quiet_mean(TILT_SPREAD_MAX, "rad")?.x)
+}
+
 /// Correction of one pressure sensor relative to the common model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FsrFit {
@@ -349,10 +374,7 @@ pub fn pressure_sensor(
     now: FsrFit,
 ) -> Result<FsrFit, Unfit> {
     within("pressure of the weight", pressure, WEIGHT_PRESSURE, "Pa")?;
-    let [empty, loaded] = [
-        empty.quiet_mean(PRESSURE_SPREAD_MAX, "Pa")?.x,
-        loaded.quiet_mean(PRESSURE_SPREAD_MAX, "Pa")?.x,
-    ];
+    let [empty, loaded] = [quiet_pressure(empty)?, quiet_pressure(loaded)?];
     let trim = now.trim * (loaded - empty) / pressure;
     within("conductance over fsr_gain", trim, TRIM, "")?;
     let zero = (empty + now.zero) * now.trim / trim;
@@ -370,6 +392,20 @@ pub struct ArmFit {
 }
 
 impl ArmFit {
+    /// The correction of arm `arm`, 0 to 3, by the parameters.
+    pub fn of(p: &Params, arm: usize) -> Self {
+        let (sign, zero) = match arm {
+            0 => (p.arm_sign_1, p.arm_zero_1),
+            1 => (p.arm_sign_2, p.arm_zero_2),
+            2 => (p.arm_sign_3, p.arm_zero_3),
+            _ => (p.arm_sign_4, p.arm_zero_4),
+        };
+        Self {
+            sign: sign.number(),
+            zero,
+        }
+    }
+
     /// Tilt of an arm whose sensor reads `shown`, rad.
     pub fn tilt(&self, shown: f32) -> f32 {
         self.sign * shown - self.zero
@@ -382,10 +418,7 @@ impl ArmFit {
 /// # Errors
 /// Samples are too few or too noisy, the arm was hardly bent, or the zero is out of its range.
 pub fn arm_sensor(straight: &Samples, up: &Samples, now: ArmFit) -> Result<ArmFit, Unfit> {
-    let [straight, up] = [
-        straight.quiet_mean(TILT_SPREAD_MAX, "rad")?.x,
-        up.quiet_mean(TILT_SPREAD_MAX, "rad")?.x,
-    ];
+    let [straight, up] = [quiet_tilt(straight)?, quiet_tilt(up)?];
     within("turn of the arm", (up - straight).abs(), TURN, "rad")?;
     let shown = (straight + now.zero) * now.sign;
     let sign = if up > straight { now.sign } else { -now.sign };

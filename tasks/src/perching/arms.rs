@@ -39,7 +39,7 @@ const REASONS: PerArm<ArmingInhibit> = [
 pub async fn run(links: &Links, mut port: impl ArmImus) -> ! {
     let mut rate = FixedRate::of(links, TaskId::Arms);
     let start = Instant::now() + START - SILENCE;
-    let fits = fits(&links.params);
+    let fits: PerArm<ArmFit> = core::array::from_fn(|arm| ArmFit::of(&links.params, arm));
     let mut watches = REASONS.map(|reason| SilenceWatch::new(reason, SILENCE, start));
     loop {
         let round = rate.next().await;
@@ -69,20 +69,6 @@ pub async fn run(links: &Links, mut port: impl ArmImus) -> ! {
         let angles = ArmAngles { tilt };
         links.arms.send(angles.oldest().unwrap_or(round.started), angles);
     }
-}
-
-/// Sign and zero of each arm's sensor.
-pub fn fits(p: &Params) -> PerArm<ArmFit> {
-    [
-        (p.arm_sign_1, p.arm_zero_1),
-        (p.arm_sign_2, p.arm_zero_2),
-        (p.arm_sign_3, p.arm_zero_3),
-        (p.arm_sign_4, p.arm_zero_4),
-    ]
-    .map(|(sign, zero)| ArmFit {
-        sign: sign.number(),
-        zero,
-    })
 }
 
 fn plausible(gravity: &Vec3) -> bool {
