@@ -141,6 +141,11 @@ impl ArmingInhibits {
         self.0 == 0
     }
 
+    /// The reasons as bits: bit n is [`ArmingInhibit::ALL`]`[n]`.
+    pub const fn bits(self) -> u64 {
+        self.0
+    }
+
     /// Adds `reason`.
     pub const fn with(self, reason: ArmingInhibit) -> Self {
         Self(self.0 | reason.bit())

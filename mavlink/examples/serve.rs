@@ -129,10 +129,12 @@ fn main() -> std::io::Result<()> {
         while let Some(frame) = server.send(now, &vehicle, &mut signing, &mut inputs) {
             line.write_all(frame)?;
         }
-        match server.order(now, &vehicle) {
+        match server.order(now, &vehicle, &Params::DEFAULT) {
             // Nothing is kept here: what matters is that it is asked for.
             Some(Order::Store) => server.stored(Ok(())),
             Some(Order::Restart) => break,
+            Some(Order::Row(..)) => server.row(None, 0),
+            Some(Order::SetBrownOut) => server.brown_out_failed("no chip here"),
             None => (),
         }
         sleep(PERIOD);

@@ -21,5 +21,6 @@ pub mod wire;
 
 pub use self::server::{Order, Server};
 pub use self::services::commands::orders::CommanderRequests;
+pub use self::services::commands::report::{Report, Row};
 pub use self::vehicle::{Answers, Condition, Vehicle};
 pub use self::wire::signing::Signing;

@@ -10,6 +10,7 @@ use crate::inputs::{Inputs, pose};
 use crate::services::Services;
 use crate::services::answer::Answer;
 use crate::services::commands::orders::CommanderRequests;
+use crate::services::commands::report::{Report, Row};
 use crate::services::parameters::{Place, SetError};
 use crate::services::shell::Shell;
 use crate::vehicle::Vehicle;
@@ -30,6 +31,10 @@ pub enum Order {
     Store,
     /// Restart the board.
     Restart,
+    /// Make the row of the report with this number, from 0, for [`Server::row`].
+    Row(Report, u8),
+    /// Set the chip's brown-out level, then restart; report a failure to [`Server::brown_out_failed`].
+    SetBrownOut,
 }
 
 /// The server of one line.
@@ -95,17 +100,36 @@ impl Server {
         }
     }
 
-    /// The order to the board that is due at `now`, µs since the start.
-    pub fn order(&mut self, now: u64, vehicle: &Vehicle) -> Option<Order> {
-        self.services.continue_calibration(now, vehicle);
+    /// The order to the board that is due at `now`, µs since the start; the parameters `in_force` are those of the start.
+    pub fn order(&mut self, now: u64, vehicle: &Vehicle, in_force: &Params) -> Option<Order> {
+        self.services.continue_calibration(now, vehicle, in_force);
         self.services.shell.expire(now);
         if self.services.restart_at.is_some_and(|at| now >= at) {
             self.services.restart_at = None;
             return vehicle.at_rest().then_some(Order::Restart);
         }
         let asked = core::mem::take(&mut self.services.store_now);
-        let store = asked | self.services.parameters.to_store(vehicle.at_rest(), now);
-        store.then_some(Order::Store)
+        if asked | self.services.parameters.to_store(vehicle.at_rest(), now) {
+            return Some(Order::Store);
+        }
+        if core::mem::take(&mut self.services.set_brown_out) {
+            return vehicle.at_rest().then_some(Order::SetBrownOut);
+        }
+        let row = self.services.next_row();
+        row.map(|(report, number)| Order::Row(report, number))
+    }
+
+    /// Takes the row of [`Order::Row`], of so many `rows`; `None` ends the report.
+    pub fn row(&mut self, row: Option<Row>, rows: u8) {
+        self.services.take_row(row, rows);
+    }
+
+    /// Reports that the brown-out level was not set: `why`.
+    pub fn brown_out_failed(&mut self, why: &'static str) {
+        self.services.texts.say(
+            MavSeverity::MAV_SEVERITY_ERROR,
+            format_args!("brown-out level not set: {why}"),
+        );
     }
 
     /// The requests to the commander at `now`, µs since the start. Each is repeated until the commander answers it in

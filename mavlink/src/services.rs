@@ -14,8 +14,9 @@ use heapless::Deque;
 use sophie_control::params::Params;
 
 use self::answer::Answer;
-use self::commands::calibration::Calibration;
+use self::commands::calibration::Calibrations;
 use self::commands::orders::Orders;
+use self::commands::report::Running;
 use self::files::FILES;
 use self::ftp::Ftp;
 use self::parameters::Parameters;
@@ -38,10 +39,13 @@ pub(crate) struct Services {
     pub(crate) shell: Shell,
     /// Time of a restart that a command asked for, µs since the start.
     pub(crate) restart_at: Option<u64>,
+    /// A command asked to set the chip's brown-out level.
+    pub(crate) set_brown_out: bool,
     /// A command asked to store the parameters now.
     pub(crate) store_now: bool,
+    report: Option<Running>,
     orders: Orders,
-    calibration: Option<Calibration>,
+    pub(crate) calibrations: Calibrations,
 }
 
 impl Services {
@@ -55,9 +59,11 @@ impl Services {
             ftp: Ftp::new(&FILES),
             shell: Shell::new(),
             restart_at: None,
+            set_brown_out: false,
             store_now: false,
+            report: None,
             orders: Orders::new(),
-            calibration: None,
+            calibrations: Calibrations::new(),
         }
     }
 

@@ -4,11 +4,12 @@ use sophie_control::allocation::motor_pulses::MotorPulses;
 use sophie_control::allocation::wrench::PerArm;
 use sophie_control::arming::ArmingInhibits;
 use sophie_control::battery::{Battery, ServoBattery};
-use sophie_control::calibration::AccelFit;
+use sophie_control::calibration::procedure::Readings;
 use sophie_control::chain::Attitude;
 use sophie_control::gripper::grip::GripState;
 use sophie_control::mode::{Mode, Reason};
-use sophie_control::params::Params;
+use sophie_control::navigation::air_pressure::AirPressure;
+use sophie_control::navigation::flow_range_sample::GroundView;
 use sophie_control::pilot::bench_orders::BenchView;
 use sophie_control::pilot::rc::Sticks;
 use sophie_control::pilot::remote::RemoteAnswer;
@@ -53,8 +54,18 @@ pub struct Vehicle {
     pub reel: PerArm<f32>,
     /// State of the grip.
     pub grip: Option<GripState>,
-    /// The correction of the accelerometer's readings.
-    pub accel_fit: AccelFit,
+    /// Time of the attitude, µs.
+    pub attitude_us: u64,
+    /// Contact pressures, Pa; `None` for a sensor that is silent or faulty.
+    pub pressures: PerArm<Option<f32>>,
+    /// Flow and range below the vehicle.
+    pub ground: GroundView,
+    /// The air around the board.
+    pub air: Option<AirPressure>,
+    /// Name of the board.
+    pub board: &'static str,
+    /// Identity of the image, and of its table of parameters.
+    pub build: [u32; 2],
     /// Longest time since the start from data-ready to the motor frame, thousandths of the period.
     pub load: u16,
     /// The commander's answers.
@@ -98,7 +109,12 @@ impl Default for Vehicle {
             tilt: [f32::NAN; 4],
             reel: [f32::NAN; 4],
             grip: None,
-            accel_fit: AccelFit::of(&Params::DEFAULT),
+            attitude_us: 0,
+            pressures: [None; 4],
+            ground: GroundView::default(),
+            air: None,
+            board: "",
+            build: [0; 2],
             load: 0,
             answers: Answers::default(),
         }
@@ -109,6 +125,17 @@ impl Vehicle {
     /// The mode; `None` while the commander is silent.
     pub fn mode(&self) -> Option<Mode> {
         self.condition.map(|condition| condition.mode)
+    }
+
+    /// The sensors' readings, as a calibration takes them.
+    pub fn readings(&self) -> Readings {
+        Readings {
+            attitude: self.attitude.map(|attitude| (self.attitude_us, attitude)),
+            battery: self.battery.map(|battery| battery.voltage),
+            pressures: self.pressures,
+            tilts: self.tilt.map(|tilt| tilt.is_finite().then_some(tilt)),
+            ground: self.ground,
+        }
     }
 
     /// True while the rotors stand and cannot start: parameters may change, the board may restart.

@@ -1,5 +1,6 @@
 //! Devices beside the board and the lines to them: flow module, companion computer, radio protocols.
 
+pub(crate) mod chip;
 pub(crate) mod companion;
 pub mod crsf;
 pub mod flow_module;

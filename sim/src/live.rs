@@ -1,6 +1,5 @@
 //! A flight at the pace of real time, with MAVLink on a UDP socket.
 
-mod chip;
 mod pace;
 mod udp;
 
@@ -8,10 +7,10 @@ use std::cell::Cell;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use self::chip::ThisChip;
 pub use self::pace::Pace;
 pub use self::udp::Udp;
 use crate::clock::VirtualTime;
+use crate::devices::chip::ThisChip;
 use crate::devices::line::Line;
 use crate::devices::mavlink_server;
 use crate::devices::storage::{Memory, Port};
@@ -73,7 +72,7 @@ impl Live {
             }))
         });
         let line = self.line;
-        let shell = mavlink_server::spawn(time, links, line, BYTES_PER_SECOND, stored, || line.restart());
+        let shell = mavlink_server::spawn(time, links, line, BYTES_PER_SECOND, stored, ThisChip(line));
         let chip = ThisChip(line);
         time.spawn(console::run(
             links,

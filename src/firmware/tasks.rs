@@ -97,7 +97,7 @@ pub fn spawn(
     };
     levels.spawn(
         TaskId::Mavlink,
-        mavlink(links, lines, board.storage, board.loaded.signing)?,
+        mavlink(links, lines, board.storage, board.chip, board.loaded.signing)?,
     );
     match board.usb.driver {
         Some(driver) => {
@@ -144,6 +144,7 @@ async fn mavlink(
     links: &'static Links,
     lines: Lines<MavlinkInput, MavlinkOutput, 2>,
     storage: StoragePort,
+    chip: ThisChip,
     signing: Stored,
 ) -> ! {
     sophie_tasks::ground_station::mavlink::run(
@@ -151,7 +152,7 @@ async fn mavlink(
         lines,
         &SHELL,
         storage,
-        || sophie_boards::restart(),
+        chip,
         signing,
     )
     .await

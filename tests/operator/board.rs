@@ -381,16 +381,14 @@ impl Run {
             return time.spawn(console::run(links, line, screen, chip.clone(), chip));
         };
         let shell: &'static Shell = Box::leak(Box::default());
-        let restarted = chip.restarted.clone();
         let lines = Lines {
             inputs: [line],
             outputs: [frames.clone()],
             bytes_per_second: [5000],
         };
         let signing = key.map_or(Stored::None, |key| Stored::Key(Record::fresh(key)));
-        let restart = move || restarted.set(true);
         let storage = chip.clone();
-        time.spawn(mavlink::run(links, lines, shell, storage, restart, signing));
+        time.spawn(mavlink::run(links, lines, shell, storage, chip.clone(), signing));
         let tapped = Tapped(shell.port(), screen);
         time.spawn(console::run(links, shell.port(), tapped, chip.clone(), chip));
     }

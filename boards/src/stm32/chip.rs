@@ -14,6 +14,7 @@ use crate::{NAME, stop_motors};
 static CHECKS: StaticCell<ChipChecks> = StaticCell::new();
 
 /// The chip.
+#[derive(Clone, Copy)]
 pub struct ThisChip {
     /// Results of the start-up checks.
     pub checks: &'static [ChipCheck],

@@ -27,7 +27,12 @@ const TRAVEL_US: [f32; 2] = [SPAN_MIN_US, 1900.0];
 /// Most parameters that one calibration sets.
 pub const CHANGES: usize = 6;
 
-const RELEASE: [&str; 4] = ["servo_release_1", "servo_release_2", "servo_release_3", "servo_release_4"];
+const RELEASE: [&str; 4] = [
+    "servo_release_1",
+    "servo_release_2",
+    "servo_release_3",
+    "servo_release_4",
+];
 const TRIM: [&str; 4] = ["servo_trim_1", "servo_trim_2", "servo_trim_3", "servo_trim_4"];
 const FULL: [&str; 4] = ["servo_full_1", "servo_full_2", "servo_full_3", "servo_full_4"];
 const FSR: [[&str; 2]; 4] = [
@@ -184,7 +189,13 @@ impl Procedure {
 
     /// Takes the sensors' `readings` at `now_us`, at 50 Hz or more; returns the end of the running step. The sensors are
     /// read with the parameters `in_force`; `working` are those that will be stored.
-    pub fn sample(&mut self, now_us: u64, readings: &Readings, in_force: &Params, working: &Params) -> Option<Finding> {
+    pub fn sample(
+        &mut self,
+        now_us: u64,
+        readings: &Readings,
+        in_force: &Params,
+        working: &Params,
+    ) -> Option<Finding> {
         let running = self.running.as_mut()?;
         let step = running.step;
         match step.calibration {
@@ -212,7 +223,11 @@ impl Procedure {
         if matches!(result, Ok(Outcome::Done(_))) {
             self.kept.of = None;
         }
-        Some(Finding { step, result, figures })
+        Some(Finding {
+            step,
+            result,
+            figures,
+        })
     }
 }
 
@@ -302,7 +317,12 @@ impl Kept {
         Ok(Outcome::Done(changes(&["imu_mounting"], &[number])))
     }
 
-    fn pressure_sensor(&mut self, step: &Step, samples: &Samples, in_force: &Params) -> Result<Outcome, Unfit> {
+    fn pressure_sensor(
+        &mut self,
+        step: &Step,
+        samples: &Samples,
+        in_force: &Params,
+    ) -> Result<Outcome, Unfit> {
         if !step.is_last() {
             super::quiet_pressure(samples)?;
             self.samples = *samples;
@@ -368,7 +388,10 @@ fn marks(step: &Step, in_force: &Params, working: &Params) -> Result<Changes, Un
     }
     within("travel", (at_full - at_release).abs(), TRAVEL_US, "us")?;
     let marks = working.servo_marks.with(step.part).number();
-    Ok(changes(&[release, full, "servo_marks"], &[at_release, at_full, marks]))
+    Ok(changes(
+        &[release, full, "servo_marks"],
+        &[at_release, at_full, marks],
+    ))
 }
 
 /// The changes of `names` to `values`, rounded to a thousandth.

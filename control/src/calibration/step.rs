@@ -96,7 +96,9 @@ impl Step {
         let [first, second] = values;
         let given = match (calibration, number) {
             (Calibration::Battery, _) | (Calibration::Fsr, 2) => first > 0.0 && first.is_finite(),
-            (Calibration::Servo, _) => (first + second).is_finite() && first >= SPAN_MIN_US && second >= SPAN_MIN_US,
+            (Calibration::Servo, _) => {
+                (first + second).is_finite() && first >= SPAN_MIN_US && second >= SPAN_MIN_US
+            }
             _ => true,
         };
         given.then_some(Self {
@@ -109,7 +111,11 @@ impl Step {
 
     /// Number of the arm, sensor or servo from 1; 0 for the whole vehicle.
     pub const fn part_number(&self) -> u8 {
-        if self.calibration.is_of_one() { self.part as u8 + 1 } else { 0 }
+        if self.calibration.is_of_one() {
+            self.part as u8 + 1
+        } else {
+            0
+        }
     }
 
     /// True for the last step of its calibration.

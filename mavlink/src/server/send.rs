@@ -98,13 +98,20 @@ impl Server {
                 message_id: id,
             })),
             Answer::Parameter(place) => Some(encoder.encode(&self.services.parameters.value(place)?)),
+            Answer::Row => Some(encoder.encode(&self.services.row_message()?)),
+            Answer::Arming => Some(encoder.encode(&make::arming(vehicle, (now / 1000) as u32)?)),
+            Answer::Component => Some(encoder.encode(&make::component(vehicle, (now / 1000) as u32))),
+            Answer::CalibrationResult => {
+                let finding = self.services.calibrations.finding.as_ref()?;
+                Some(encoder.encode(&make::calibration_result(finding, (now / 1000) as u32)))
+            }
             Answer::Stream(id) => {
                 let sent = stream(encoder, id, now, vehicle);
                 self.second_battery(id, vehicle);
                 sent
             }
             Answer::ServoBattery => Some(encoder.encode(&make::servo_battery_status(vehicle)?)),
-            Answer::Version => Some(encoder.encode(&make::autopilot_version())),
+            Answer::Version => Some(encoder.encode(&make::autopilot_version(vehicle))),
             // Wraps after 49 days, as the standard's field does.
             Answer::Metadata => Some(encoder.encode(&COMPONENT_METADATA_DATA {
                 time_boot_ms: (now / 1000) as u32,
@@ -212,6 +219,7 @@ fn stream(encoder: &mut Encoder, id: u32, now: u64, vehicle: &Vehicle) -> Option
         RC_CHANNELS_DATA::ID => encoder.encode(&make::rc_channels(vehicle, ms)),
         SERVO_OUTPUT_RAW_DATA::ID => encoder.encode(&make::servo_output_raw(vehicle, ms)),
         BATTERY_STATUS_DATA::ID => encoder.encode(&make::battery_status(vehicle)),
+        SCALED_PRESSURE_DATA::ID => encoder.encode(&make::scaled_pressure(vehicle, ms)?),
         SCALED_IMU_DATA::ID => encoder.encode(&make::scaled_imu(vehicle, ms)?),
         _ => return None,
     })

@@ -24,6 +24,14 @@ pub(crate) enum Answer {
         interval_us: i32,
     },
     Parameter(Place),
+    /// The row of a report that waits.
+    Row,
+    /// The failing arming checks.
+    Arming,
+    /// Board, chip and version.
+    Component,
+    /// The end of the newest calibration step.
+    CalibrationResult,
     /// A stream's message, once.
     Stream(u32),
     /// The servo battery, behind the flight battery.
@@ -47,6 +55,10 @@ impl Answer {
             Self::Timesync(_) | Self::AskTime(_) => frame_bytes::<TIMESYNC_DATA>(),
             Self::Interval { .. } => frame_bytes::<MESSAGE_INTERVAL_DATA>(),
             Self::Parameter(_) => frame_bytes::<PARAM_VALUE_DATA>(),
+            Self::Row => frame_bytes::<SOPHIE_CHECK_DATA>(),
+            Self::Arming => frame_bytes::<SOPHIE_ARMING_DATA>(),
+            Self::Component => frame_bytes::<COMPONENT_INFORMATION_BASIC_DATA>(),
+            Self::CalibrationResult => frame_bytes::<SOPHIE_CALIBRATION_RESULT_DATA>(),
             Self::Stream(id) => STREAMS.iter().find(|s| s.id == *id).map_or(0, |s| s.bytes),
             Self::ServoBattery => frame_bytes::<BATTERY_STATUS_DATA>(),
             Self::Version => frame_bytes::<AUTOPILOT_VERSION_DATA>(),

@@ -4,6 +4,7 @@ pub(crate) mod calibration;
 mod intervals;
 mod obeyed;
 pub(crate) mod orders;
+pub mod report;
 mod restart;
 
 pub use self::obeyed::{OBEYED, Obeyed, When};
@@ -56,9 +57,18 @@ impl Services {
             }
             n if n == MavCmd::MAV_CMD_PREFLIGHT_STORAGE as u32 => self.storage(first, vehicle).into(),
             n if n == MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION as u32 => {
+                return self
+                    .guide_calibration(command, from, now, vehicle)
+                    .map(Reply::from);
+            }
+            n if n == MavCmd::MAV_CMD_SOPHIE_REPORT as u32 => {
+                return self.report(command, from, now, vehicle).map(Reply::from);
+            }
+            n if n == MavCmd::MAV_CMD_SOPHIE_SET_BROWN_OUT as u32 => self.brown_out(first, vehicle).into(),
+            n if n == MavCmd::MAV_CMD_SOPHIE_CALIBRATE as u32 => {
                 return self.calibrate(command, from, now, vehicle).map(Reply::from);
             }
-            _ => return self.order_by(command, from, now).map(Reply::from),
+            _ => return self.order_by(command, from, now, vehicle).map(Reply::from),
         };
         Some(reply)
     }

@@ -6,6 +6,8 @@
 use sophie_control::allocation::wrench::PerArm;
 use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
 use sophie_control::battery::ServoSupply;
+use sophie_control::calibration::Unfit;
+use sophie_control::calibration::procedure::{Finding, Outcome};
 use sophie_control::gripper::grip::ArmState;
 use sophie_control::maths::scalar::GRAVITY;
 use sophie_control::mode::Mode;
@@ -482,7 +484,7 @@ pub fn arms(vehicle: &Vehicle, time_boot_ms: u32) -> SOPHIE_ARMS_DATA {
 }
 
 /// Capabilities of the autopilot. Every parameter is a float, for which both encodings of the protocol are equal.
-pub fn autopilot_version() -> AUTOPILOT_VERSION_DATA {
+pub fn autopilot_version(vehicle: &Vehicle) -> AUTOPILOT_VERSION_DATA {
     let can = MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MAVLINK2
         | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_COMMAND_INT
         | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_FTP
@@ -490,6 +492,7 @@ pub fn autopilot_version() -> AUTOPILOT_VERSION_DATA {
     AUTOPILOT_VERSION_DATA {
         capabilities: can.bits().into(),
         flight_sw_version: VERSION,
+        flight_custom_version: custom_version(vehicle),
         ..AUTOPILOT_VERSION_DATA::DEFAULT
     }
 }
@@ -507,4 +510,73 @@ const fn number(text: &str) -> u32 {
         rest = after;
     }
     value
+}
+
+/// The end of a calibration step.
+pub fn calibration_result(finding: &Finding, ms: u32) -> SOPHIE_CALIBRATION_RESULT_DATA {
+    let outcome = match finding.result {
+        Ok(Outcome::Taken) => SophieCalibrationOutcome::SOPHIE_CALIBRATION_OUTCOME_TAKEN,
+        Ok(Outcome::Done(_)) => SophieCalibrationOutcome::SOPHIE_CALIBRATION_OUTCOME_DONE,
+        Err(_) => SophieCalibrationOutcome::SOPHIE_CALIBRATION_OUTCOME_UNFIT,
+    };
+    let unfit = finding.result.err().unwrap_or(Unfit {
+        what: "",
+        value: f32::NAN,
+        allowed: [f32::NAN; 2],
+        unit: "",
+    });
+    let [least, most] = unfit.allowed;
+    SOPHIE_CALIBRATION_RESULT_DATA {
+        time_boot_ms: ms,
+        value: unfit.value,
+        least,
+        most,
+        figures: finding.figures,
+        calibration: finding.step.calibration as u8,
+        index: finding.step.part_number(),
+        step: finding.step.number,
+        outcome: outcome as u8,
+        quantity: text::<28>(unfit.what).into(),
+        unit: text::<8>(unfit.unit).into(),
+    }
+}
+
+/// Identity of the image, then of its table of parameters, each with its most significant byte first.
+fn custom_version(vehicle: &Vehicle) -> [u8; 8] {
+    let [image, table] = vehicle.build.map(u32::to_be_bytes);
+    let mut bytes = [0; 8];
+    for (byte, from) in bytes.iter_mut().zip(image.into_iter().chain(table)) {
+        *byte = from;
+    }
+    bytes
+}
+
+/// Board and version.
+pub fn component(vehicle: &Vehicle, ms: u32) -> COMPONENT_INFORMATION_BASIC_DATA {
+    COMPONENT_INFORMATION_BASIC_DATA {
+        time_boot_ms: ms,
+        vendor_name: text::<32>("SOPHIE").into(),
+        model_name: text::<32>(vehicle.board).into(),
+        software_version: text::<24>(env!("CARGO_PKG_VERSION")).into(),
+        ..COMPONENT_INFORMATION_BASIC_DATA::DEFAULT
+    }
+}
+
+/// The failing arming checks; `None` while the commander is silent.
+pub fn arming(vehicle: &Vehicle, ms: u32) -> Option<SOPHIE_ARMING_DATA> {
+    Some(SOPHIE_ARMING_DATA {
+        failing: vehicle.condition?.inhibits.bits(),
+        time_boot_ms: ms,
+    })
+}
+
+/// The barometer; `None` without a fresh sample.
+pub fn scaled_pressure(vehicle: &Vehicle, ms: u32) -> Option<SCALED_PRESSURE_DATA> {
+    let air = vehicle.air?;
+    Some(SCALED_PRESSURE_DATA {
+        time_boot_ms: ms,
+        press_abs: air.pascal / 100.0,
+        temperature: (air.celsius * 100.0) as i16,
+        ..SCALED_PRESSURE_DATA::DEFAULT
+    })
 }

@@ -246,7 +246,7 @@ fn who_asks_with_numbers_that_there_are_not_reads_why() {
             MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION,
             [0.0, 1.0],
             UNSUPPORTED,
-            "refused: others calibrate at the console",
+            "refused: others: MAV_CMD_SOPHIE_CALIBRATE",
         ),
         (
             MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL,

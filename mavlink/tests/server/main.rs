@@ -10,6 +10,7 @@ mod page;
 mod parameters;
 mod protocol_detector;
 mod senders;
+mod set_up;
 mod shell;
 mod signing;
 mod station;

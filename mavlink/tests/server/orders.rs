@@ -269,6 +269,14 @@ fn one_motor_turns_once_propellers_are_said_to_be_off() {
         "{}",
         craft.spun
     );
+    // By a pulse, below the least that turns every motor: it is searched for.
+    craft.spun = 0;
+    craft.accepted(MOTOR, &[2.0, 1.0, 1030.0]);
+    craft.run(3000);
+    assert!(craft.spun.abs_diff(whole) <= 2, "{}", craft.spun);
+    for pulse in [1010.0, 1130.0, f32::INFINITY] {
+        craft.refused(MOTOR, &[1.0, 1.0, pulse], DENIED, "refused: out of range");
+    }
     for percent in [13.0, 1.0, f32::INFINITY] {
         craft.refused(MOTOR, &[1.0, 0.0, percent], DENIED, "refused: out of range");
     }
@@ -283,7 +291,7 @@ fn one_motor_turns_once_propellers_are_said_to_be_off() {
     for bad in [
         [0.0, 0.0],
         [5.0, 0.0],
-        [1.0, 1.0],
+        [1.0, 2.0],
         [f32::NAN, 0.0],
         [1.0, f32::NAN],
     ] {
@@ -291,7 +299,7 @@ fn one_motor_turns_once_propellers_are_said_to_be_off() {
             MOTOR,
             &[bad[0], bad[1], 8.0],
             DENIED,
-            "refused: motor 1 to 4, one, in percent",
+            "refused: motor 1 to 4, one, in percent or us",
         );
     }
     craft.sticks().arm_switch = true;

@@ -115,7 +115,8 @@ impl Station {
                     signed,
                 });
             }
-            self.orders.extend(self.server.order(self.now, &self.vehicle));
+            self.orders
+                .extend(self.server.order(self.now, &self.vehicle, &Params::DEFAULT));
         }
     }
 

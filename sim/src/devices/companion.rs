@@ -7,6 +7,7 @@ use mavlink_core::{MAVLinkV2MessageRaw, MavHeader, MessageData};
 use sophie_dialect::{ATT_POS_MOCAP_DATA, LANDING_TARGET_DATA};
 use sophie_tasks::links::Links;
 
+use super::chip::ThisChip;
 use super::line::Line;
 use super::mavlink_server;
 use super::storage::Memory;
@@ -56,7 +57,14 @@ impl Companion {
             params: Cell::new(links.params),
             signing: Cell::new(None),
         }));
-        mavlink_server::spawn(time, links, self.line, BYTES_PER_SECOND, memory, || ());
+        mavlink_server::spawn(
+            time,
+            links,
+            self.line,
+            BYTES_PER_SECOND,
+            memory,
+            ThisChip(self.line),
+        );
     }
 
     /// Samples the vehicle's pose. Call it each millisecond.

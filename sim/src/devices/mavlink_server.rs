@@ -1,5 +1,6 @@
 //! The simulated board's MAVLink server on a line.
 
+use sophie_ports::chip::Chip;
 use sophie_tasks::ground_station::console_pipe::Shell;
 use sophie_tasks::ground_station::mavlink;
 use sophie_tasks::links::Links;
@@ -9,14 +10,14 @@ use super::storage::{Memory, Port};
 use crate::clock::VirtualTime;
 
 /// Spawns the server on `line` for one start of the board. It sends at most `bytes_per_second`, stores parameters and
-/// key in `memory`, and calls `restart` if a client orders a restart. Returns the pipe to the console.
+/// key in `memory`. Returns the pipe to the console.
 pub(crate) fn spawn(
     time: &VirtualTime,
     links: &'static Links,
     line: &'static Line,
     bytes_per_second: u32,
     memory: &'static Memory,
-    restart: impl FnMut() + 'static,
+    chip: impl Chip + 'static,
 ) -> &'static Shell {
     let port = LinePort(line);
     let lines = mavlink::Lines {
@@ -30,7 +31,7 @@ pub(crate) fn spawn(
         lines,
         shell,
         Port(memory),
-        restart,
+        chip,
         memory.key(),
     ));
     shell

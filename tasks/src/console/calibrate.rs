@@ -18,7 +18,6 @@ use sophie_control::pilot::bench_orders::{BenchOrder, Place, SPIN_DRIVE, SPIN_DR
 use super::Console;
 use super::bench::End;
 use crate::links::Links;
-use crate::perching::arms::fits;
 use sophie_control::maths::decimal::{self, Decimal};
 use sophie_ports::chip::Chip;
 use sophie_ports::serial::{SerialInput, SerialOutput};
@@ -266,8 +265,10 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         let Some(arm) = self.one_of_four("arm", number).await else {
             return;
         };
-        let (Some([sign, zero]), Some(now)) = (ARM.get(arm), fits(&self.links.params).get(arm).copied())
-        else {
+        let (Some([sign, zero]), Some(now)) = (
+            ARM.get(arm),
+            Some(calibration::ArmFit::of(&self.links.params, arm)),
+        ) else {
             return;
         };
         let tilt: Read<'_> = &|links| {

@@ -3,6 +3,7 @@
 use sophie_control::arming::ArmingInhibit;
 
 use super::Console;
+use crate::supervision::chip_rows;
 use sophie_control::maths::decimal::Decimal;
 use sophie_ports::chip::Chip;
 use sophie_ports::chip_check::ChipCheck;
@@ -12,16 +13,18 @@ use sophie_ports::storage::Storage;
 impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, C> {
     /// Lists the start-up's checks (name, value read, value expected) and the greatest stack depth.
     pub(super) async fn silicon(&mut self) {
-        let stack = self.chip.stack().map(|used| [used.at_start(), used.in_flight()]);
-        for ChipCheck {
-            name,
-            read,
-            expected,
-            ok,
-            ..
-        } in self.chip.checks().iter().chain(stack.iter().flatten())
-        {
-            let mark = if *ok { ' ' } else { '*' };
+        for number in 0..chip_rows::rows(&self.chip) {
+            let Some(check) = chip_rows::check(&self.chip, number) else {
+                continue;
+            };
+            let ChipCheck {
+                name,
+                read,
+                expected,
+                ok,
+                ..
+            } = check;
+            let mark = if ok { ' ' } else { '*' };
             self.out
                 .line(format_args!("{mark} {name:20} {read:28} expected: {expected}"))
                 .await;

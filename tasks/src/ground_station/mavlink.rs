@@ -16,13 +16,12 @@ use heapless::Vec;
 use sophie_control::allocation::motor_pulses::MotorPulses;
 use sophie_control::allocation::wrench::PerArm;
 use sophie_control::arming::ArmingInhibit;
-use sophie_control::calibration::AccelFit;
 use sophie_control::gripper::tendon::Reel;
 use sophie_control::params::Params;
 use sophie_mavlink::inputs::Inputs;
 use sophie_mavlink::wire::frame::LONGEST;
 pub use sophie_mavlink::wire::signing;
-use sophie_mavlink::{Answers, CommanderRequests, Condition, Order, Server, Signing, Vehicle};
+use sophie_mavlink::{Answers, CommanderRequests, Condition, Order, Report, Row, Server, Signing, Vehicle};
 use sophie_ports::signing::Stored;
 
 use crate::deadline::{FixedRate, Tick};
@@ -30,7 +29,11 @@ use crate::ground_station::console_pipe::Shell;
 use crate::links::Links;
 use crate::links::mavlink_line::LineState;
 use crate::schedule::TaskId;
+use crate::storage::parameters::table_id;
 use crate::storage::storing::{self, NotNow};
+use crate::supervision::chip_rows;
+use crate::supervision::self_test::{self, SelfTest};
+use sophie_ports::chip::Chip;
 use sophie_ports::serial::{SerialInput, SerialOutput};
 use sophie_ports::storage::Storage;
 
@@ -167,13 +170,13 @@ impl<'a, const N: usize> Link<'a, N> {
 }
 
 /// Serves MAVLink on `lines`, and the console `shell` over them; never returns. `signing` is the key that was stored at the
-/// start, `restart` restarts the board.
+/// start.
 pub async fn run<I: SerialInput, O: SerialOutput, const N: usize>(
     links: &Links,
     lines: Lines<I, O, N>,
     shell: &Shell,
     mut storage: impl Storage,
-    mut restart: impl FnMut(),
+    mut chip: impl Chip,
     signing: Stored,
 ) -> ! {
     let link = Link::new(&links.params, lines.bytes_per_second, shell, signing);
@@ -185,11 +188,16 @@ pub async fn run<I: SerialInput, O: SerialOutput, const N: usize>(
     let senders = (lines.outputs).map(|output| send(&link, numbers.next().unwrap_or_default(), output));
     let serve = async {
         let reels = Reel::all(&links.params);
+        let mut self_tests = [None; N];
         let mut rate = FixedRate::of(links, TaskId::Mavlink);
         loop {
             let started = listen(links, &mut rate, &mut readers, &link).await.started;
             let now = started.as_micros();
-            let seen = picture(links, &reels);
+            let seen = Vehicle {
+                board: chip.board(),
+                build: [chip.build(), table_id()],
+                ..picture(links, &reels)
+            };
             link.with(|shared| {
                 let Common {
                     vehicle,
@@ -206,13 +214,23 @@ pub async fn run<I: SerialInput, O: SerialOutput, const N: usize>(
                     // Read again for each line: the line before may have sent an order.
                     vehicle.answers = answers(links);
                     give(links, started, server.requests(now, vehicle));
-                    server.order(now, vehicle)
+                    server.order(now, vehicle, &links.params)
                 });
                 // A calibration may have set parameters.
                 link.share_parameters(at);
                 // Detects a ground station that has disconnected.
                 link.type_in(at);
-                obey(links, &link, at, &mut storage, &mut restart, order.flatten()).await;
+                match order.flatten() {
+                    Some(Order::Row(report, number)) => {
+                        let test = self_tests.get_mut(at);
+                        if let Some((row, rows)) =
+                            test.and_then(|test| row(links, &chip, test, report, number))
+                        {
+                            link.with_server(at, |server, _| server.row(row, rows));
+                        }
+                    }
+                    order => obey(links, &link, at, &mut storage, &mut chip, order).await,
+                }
             }
             link.forget_unheard();
             for due in &link.due {
@@ -230,7 +248,7 @@ async fn obey<const N: usize>(
     link: &Link<'_, N>,
     at: usize,
     storage: &mut impl Storage,
-    restart: &mut impl FnMut(),
+    chip: &mut impl Chip,
     order: Option<Order>,
 ) {
     match order {
@@ -241,8 +259,57 @@ async fn obey<const N: usize>(
             let stored = store(links, storage, &params).await;
             link.with_server(at, |server, _| server.stored(stored));
         }
-        Some(Order::Restart) if storing::hold_arming(links).await.is_ok() => restart(),
-        Some(Order::Restart) | None => (),
+        Some(Order::Restart) if storing::hold_arming(links).await.is_ok() => chip.restart(),
+        Some(Order::SetBrownOut) => {
+            if let Err(why) = set_brown_out(links, chip).await {
+                link.with_server(at, |server, _| server.brown_out_failed(why));
+            }
+        }
+        Some(Order::Restart | Order::Row(..)) | None => (),
+    }
+}
+
+/// Sets the chip's brown-out level and restarts. Arming is refused meanwhile: the write may stall the processor.
+async fn set_brown_out(links: &Links, chip: &mut impl Chip) -> Result<(), &'static str> {
+    let mut checks = chip.checks().iter();
+    let level = checks.find(|check| check.inhibits == Some(ArmingInhibit::BrownOutLevel));
+    if level.is_none_or(|level| level.ok) {
+        return Err("nothing to do");
+    }
+    storing::hold_arming(links).await.map_err(not_now)?;
+    if chip.set_brown_out().await.is_err() {
+        links.report(ArmingInhibit::Storing, false);
+        return Err("the chip's option bytes did not take it");
+    }
+    chip.restart();
+    Ok(())
+}
+
+/// Row `number` of `report`, and the number of its rows; the row is `None` behind the last, all is while the self-test
+/// counts.
+fn row(
+    links: &Links,
+    chip: &impl Chip,
+    test: &mut Option<SelfTest>,
+    report: Report,
+    number: u8,
+) -> Option<(Option<Row>, u8)> {
+    match report {
+        Report::Chip => {
+            let check = chip_rows::check(chip, number);
+            Some((check.as_ref().map(chip_rows::row), chip_rows::rows(chip)))
+        }
+        Report::SelfTest => {
+            let running = test.get_or_insert_with(|| SelfTest::begin(links));
+            if !running.is_ready(links) {
+                return None;
+            }
+            let row = running.row(links, number);
+            if row.is_none() {
+                *test = None;
+            }
+            Some((row, self_test::ROWS))
+        }
     }
 }
 
@@ -378,17 +445,21 @@ fn give(links: &Links, at: Instant, requests: CommanderRequests) {
 /// Stores the server's parameters. Arming is refused meanwhile, and afterwards while they differ from those in force:
 /// the vehicle must fly with the values that a ground station reads.
 async fn store(links: &Links, storage: &mut impl Storage, params: &Params) -> Result<(), &'static str> {
-    storing::hold_arming(links).await.map_err(|why| match why {
-        NotNow::While(_) => "disarm first",
-        NotNow::Silent => "the commander is silent",
-        NotNow::Storing => "another line stores",
-    })?;
+    storing::hold_arming(links).await.map_err(not_now)?;
     storing::save(links, storage, params)
         .await
         .map_err(|error| error.text())?;
     links.report(ArmingInhibit::Stored, storing::differ(links, params));
     links.report(ArmingInhibit::Storing, false);
     Ok(())
+}
+
+const fn not_now(why: NotNow) -> &'static str {
+    match why {
+        NotNow::While(_) => "disarm first",
+        NotNow::Silent => "the commander is silent",
+        NotNow::Storing => "another line stores",
+    }
 }
 
 /// Snapshot of the links; a stale message is treated as missing.
@@ -424,9 +495,16 @@ fn picture(links: &Links, reels: &PerArm<Reel>) -> Vehicle {
         tilt: links.tilts().values().map(|tilt| tilt.unwrap_or(f32::NAN)),
         reel: angles.unwrap_or([f32::NAN; 4]),
         grip: links.grip.fresh(),
-        accel_fit: AccelFit::of(&links.params),
+        attitude_us: links.attitude.look(|m| m.at.as_micros()).unwrap_or_default(),
+        pressures: links
+            .contact
+            .fresh()
+            .map_or([None; 4], |contact| contact.arms.map(Result::ok)),
+        ground: links.ground.fresh().unwrap_or_default(),
+        air: links.air_pressure.fresh(),
         load: load(links),
         answers: answers(links),
+        ..Vehicle::default()
     }
 }
 

@@ -11,7 +11,6 @@ use sophie_control::arming::ArmingInhibit;
 use sophie_control::calibration::ArmFit;
 use sophie_control::maths::scalar;
 use sophie_control::maths::vector::{Quat, Vec3};
-use sophie_control::params::Params;
 
 use crate::deadline::FixedRate;
 use crate::links::Links;

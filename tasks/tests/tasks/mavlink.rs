@@ -118,7 +118,6 @@ impl Bench {
     fn of(mode: Mode, board: Board) -> Self {
         let rig = Rig::with(Params::DEFAULT);
         let (line, wire, second) = (FakeLine::default(), Wire::default(), End::default());
-        let restarts = board.restarts.clone();
         let shell: &'static Shell = Box::leak(Box::default());
         rig.time.spawn(mavlink::run(
             rig.links,
@@ -129,7 +128,7 @@ impl Bench {
             },
             shell,
             board.clone(),
-            move || restarts.set(restarts.get() + 1),
+            board.clone(),
             board.signing.get().map_or(Stored::None, Stored::Key),
         ));
         Self {

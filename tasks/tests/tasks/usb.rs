@@ -99,7 +99,7 @@ impl Bench {
             },
             shell,
             board.clone(),
-            || (),
+            board.clone(),
             Stored::None,
         ));
         Self {

@@ -78,9 +78,15 @@ fn a_step_wants_those_before_it_of_the_same_part_and_in_time() {
     let first = step(Calibration::Arm, 2, 1, [0.0; 2]);
     let second = step(Calibration::Arm, 2, 2, [0.0; 2]);
     assert_eq!(procedure.begin(second, now), Err(OutOfOrder));
-    assert_eq!(run(&mut procedure, &mut now, first, &straight), Ok(Outcome::Taken));
+    assert_eq!(
+        run(&mut procedure, &mut now, first, &straight),
+        Ok(Outcome::Taken)
+    );
     // Another arm, then too late.
-    assert_eq!(procedure.begin(step(Calibration::Arm, 3, 2, [0.0; 2]), now), Err(OutOfOrder));
+    assert_eq!(
+        procedure.begin(step(Calibration::Arm, 3, 2, [0.0; 2]), now),
+        Err(OutOfOrder)
+    );
     assert_eq!(procedure.begin(second, now + KEPT_US + 1), Err(OutOfOrder));
     let bent = Readings {
         tilts: [Some(-0.38); 4],
@@ -124,11 +130,15 @@ fn marks_of_a_servo_are_taken_without_its_trim_beside_those_of_others() {
     let mut in_force = Params::DEFAULT;
     in_force.set("servo_trim_2", 15.0).unwrap();
     let mut working = in_force;
-    working.set("servo_marks", ServoMarks::None.with(0).number()).unwrap();
+    working
+        .set("servo_marks", ServoMarks::None.with(0).number())
+        .unwrap();
     procedure
         .begin(step(Calibration::Servo, 2, 1, [1015.0, 2015.0]), 7)
         .unwrap();
-    let finding = procedure.sample(7, &Readings::default(), &in_force, &working).unwrap();
+    let finding = procedure
+        .sample(7, &Readings::default(), &in_force, &working)
+        .unwrap();
     let marks = ServoMarks::None.with(0).with(1).number();
     assert_eq!(
         named(finding.result),
@@ -143,8 +153,12 @@ fn marks_of_a_servo_are_taken_without_its_trim_beside_those_of_others() {
         ([560.0, 2015.0], "pulse at release"),
         ([1000.0, 2470.0], "pulse at the full mark"),
     ] {
-        procedure.begin(step(Calibration::Servo, 2, 1, values), 7).unwrap();
-        let finding = procedure.sample(7, &Readings::default(), &in_force, &working).unwrap();
+        procedure
+            .begin(step(Calibration::Servo, 2, 1, values), 7)
+            .unwrap();
+        let finding = procedure
+            .sample(7, &Readings::default(), &in_force, &working)
+            .unwrap();
         assert_eq!(finding.result.unwrap_err().what, what);
     }
 }
@@ -158,7 +172,10 @@ fn three_sides_give_the_mounting_and_a_left_handed_three_does_not() {
         let asked = step(Calibration::Mounting, 0, number, [0.0; 2]);
         let outcome = run(&mut procedure, &mut now, asked, &at_rest(face.force()));
         if number == 3 {
-            assert_eq!(named(outcome).first().map(|(name, _)| *name), Some("imu_mounting"));
+            assert_eq!(
+                named(outcome).first().map(|(name, _)| *name),
+                Some("imu_mounting")
+            );
         }
     }
     for (number, face) in (1..).zip([Face::Belly, Face::Right, Face::Nose]) {
@@ -191,13 +208,20 @@ fn no_step_is_made_of_other_numbers() {
 #[test]
 fn a_cancelled_step_ends_without_a_result() {
     let mut procedure = Procedure::new();
-    procedure.begin(step(Calibration::Gyro, 0, 1, [0.0; 2]), 0).unwrap();
+    procedure
+        .begin(step(Calibration::Gyro, 0, 1, [0.0; 2]), 0)
+        .unwrap();
     assert_eq!(procedure.progress(1_250_000), 50);
     assert!(procedure.cancel());
     assert!(!procedure.cancel());
     let late = 60_000_000;
     assert_eq!(
-        procedure.sample(late, &at_rest(Vec3::new(0.0, 0.0, -GRAVITY)), &Params::DEFAULT, &Params::DEFAULT),
+        procedure.sample(
+            late,
+            &at_rest(Vec3::new(0.0, 0.0, -GRAVITY)),
+            &Params::DEFAULT,
+            &Params::DEFAULT
+        ),
         None
     );
 }

@@ -1,12 +1,14 @@
-//! Calibration by command, with the console's laws ([`sophie_control::calibration`]) and texts that guide the user.
+//! Calibration by command. The procedure is [`sophie_control::calibration::procedure`], as at the console.
 //!
-//! A result is set as a parameter: stored a second later, in force after a restart.
+//! `MAV_CMD_SOPHIE_CALIBRATE` measures one step, for a host that leads its user. `PREFLIGHT_CALIBRATION` leads by texts
+//! itself, for ground stations that know no more. Parameters that are found are set: stored a second later, in force after
+//! a restart.
 
-use sophie_control::calibration::{
-    self, AccelFit, BIAS, Face, SCALES, Samples, Unfit, rest_rate, six_faces, thousandths,
-};
+use sophie_control::calibration::procedure::{Finding, Outcome, Procedure};
+use sophie_control::calibration::step::{Calibration, Step};
+use sophie_control::calibration::{Face, Unfit};
 use sophie_control::maths::decimal::Decimal;
-use sophie_control::maths::vector::Vec3;
+use sophie_control::params::Params;
 
 use super::{or_zero, whole};
 use crate::services::Services;
@@ -15,45 +17,42 @@ use crate::vehicle::Vehicle;
 use crate::wire::requests::{Command, Peer};
 use sophie_dialect::*;
 
-/// Length of one rest, µs: 125 samples at the rate of the task.
-const REST: u64 = 2_500_000;
-/// Time to turn the vehicle to the next side, µs.
-const PATIENCE: u64 = 60_000_000;
+/// Time to turn the vehicle to the next side where texts lead, µs.
+const PATIENCE_US: u64 = 60_000_000;
+/// Time between two reports of progress, µs.
+const PROGRESS_US: u64 = 1_000_000;
 
-/// The sensor under calibration.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
-    Gyro,
-    Level,
-    SixSides,
-}
-
-/// A running calibration.
+/// The calibrations of one line.
 #[derive(Clone, Debug)]
-pub struct Calibration {
-    kind: Kind,
-    /// Samples of the present rest.
-    samples: Samples,
-    /// Start of the present rest, µs.
-    rest: u64,
-    /// Time of the request for the present side, µs.
-    asked: u64,
-    /// Means of the finished sides, m/s².
-    means: heapless::Vec<Vec3, 6>,
+pub(crate) struct Calibrations {
+    procedure: Procedure,
+    /// Time at which the texts asked for the present side, µs; `None` where a host leads.
+    asked_us: Option<u64>,
+    /// Time of the next report of progress, µs.
+    report_us: u64,
+    /// The end of the newest step.
+    pub(crate) finding: Option<Finding>,
 }
 
-/// Result of a rest.
-enum RestResult {
-    /// Another rest, on the same side or the next.
-    More,
-    /// The gyro is at rest: the calibration ends.
-    Gyro,
-    /// Bias, and scale after six sides.
-    Accel(Vec3, Option<Vec3>),
+impl Calibrations {
+    pub(crate) const fn new() -> Self {
+        Self {
+            procedure: Procedure::new(),
+            asked_us: None,
+            report_us: 0,
+            finding: None,
+        }
+    }
+
+    /// Ends the running step without a result; true if one ran.
+    pub(super) fn cancel(&mut self) -> bool {
+        self.asked_us = None;
+        self.procedure.cancel()
+    }
 }
 
 impl Services {
-    /// Begins a calibration or cancels the running one; `None` if the acknowledgement comes later.
+    /// Measures one step for a host, or ends the running one; `None` if the acknowledgement comes later.
     pub(super) fn calibrate(
         &mut self,
         command: &Command,
@@ -61,38 +60,88 @@ impl Services {
         now: u64,
         vehicle: &Vehicle,
     ) -> Option<MavResult> {
-        let kind = match command.params.map(or_zero).map(whole) {
-            [Some(0), Some(0), Some(0), Some(0), Some(0), Some(0), Some(0)] => {
-                if self.calibration.take().is_some() {
-                    self.settle(MavResult::MAV_RESULT_CANCELLED);
-                }
-                return Some(MavResult::MAV_RESULT_ACCEPTED);
-            }
-            [Some(1), Some(0), Some(0), Some(0), Some(0), Some(0), Some(0)] => Kind::Gyro,
-            [Some(0), Some(0), Some(0), Some(0), Some(1), Some(0), Some(0)] => Kind::SixSides,
-            [Some(0), Some(0), Some(0), Some(0), Some(2 | 4), Some(0), Some(0)] => Kind::Level,
-            _ => return Some(self.unsupported("others calibrate at the console")),
+        let [which, part, number, first, second, ..] = command.params;
+        let [which, part, number] = [which, part, number].map(or_zero).map(whole);
+        if which == Some(0) {
+            return Some(self.end_calibration());
+        }
+        if !vehicle.at_rest() {
+            return Some(self.refuse_armed());
+        }
+        let mut all = Calibration::ALL.into_iter();
+        let calibration = all.find(|calibration| which == Some(*calibration as u32));
+        let step = calibration
+            .zip(part)
+            .zip(number)
+            .and_then(|((calibration, part), number)| Step::new(calibration, part, number, [first, second]));
+        let Some(step) = step else {
+            return Some(self.deny("no such step of a calibration"));
         };
+        self.begin_calibration(command, from, now, vehicle, step, None)
+    }
+
+    /// Leads through a calibration by texts, or ends the running one; `None` if the acknowledgement comes later.
+    pub(super) fn guide_calibration(
+        &mut self,
+        command: &Command,
+        from: Peer,
+        now: u64,
+        vehicle: &Vehicle,
+    ) -> Option<MavResult> {
+        let (calibration, text) = match command.params.map(or_zero).map(whole) {
+            [Some(0), Some(0), Some(0), Some(0), Some(0), Some(0), Some(0)] => {
+                return Some(self.end_calibration());
+            }
+            [Some(1), Some(0), Some(0), Some(0), Some(0), Some(0), Some(0)] => {
+                (Calibration::Gyro, "leave the vehicle at rest")
+            }
+            [Some(0), Some(0), Some(0), Some(0), Some(1), Some(0), Some(0)] => {
+                (Calibration::Accel, Face::Belly.text())
+            }
+            [Some(0), Some(0), Some(0), Some(0), Some(2 | 4), Some(0), Some(0)] => {
+                (Calibration::Level, "put the vehicle on a level table")
+            }
+            _ => return Some(self.unsupported("others: MAV_CMD_SOPHIE_CALIBRATE")),
+        };
+        let Some(step) = Step::new(calibration, 0, 1, [0.0; 2]) else {
+            return Some(MavResult::MAV_RESULT_UNSUPPORTED);
+        };
+        let answer = self.begin_calibration(command, from, now, vehicle, step, Some(now));
+        if answer.is_none() && self.calibrations.asked_us == Some(now) {
+            self.guide(text);
+        }
+        answer
+    }
+
+    fn end_calibration(&mut self) -> MavResult {
+        if self.calibrations.cancel() {
+            self.settle(MavResult::MAV_RESULT_CANCELLED);
+        }
+        MavResult::MAV_RESULT_ACCEPTED
+    }
+
+    fn begin_calibration(
+        &mut self,
+        command: &Command,
+        from: Peer,
+        now: u64,
+        vehicle: &Vehicle,
+        step: Step,
+        asked_us: Option<u64>,
+    ) -> Option<MavResult> {
         if !vehicle.at_rest() {
             return Some(self.refuse_armed());
         }
         if let Err(answer) = self.begin(command.number, from, now) {
             return answer;
         }
-        self.calibration = Some(Calibration {
-            kind,
-            samples: Samples::default(),
-            rest: now,
-            asked: now,
-            means: heapless::Vec::new(),
-        });
+        if self.calibrations.procedure.begin(step, now).is_err() {
+            self.settle_refused("the step before it first");
+            return None;
+        }
+        self.calibrations.asked_us = asked_us;
+        self.calibrations.report_us = now.saturating_add(PROGRESS_US);
         self.progress(0);
-        let text = match kind {
-            Kind::Gyro => "leave the vehicle at rest",
-            Kind::Level => "put the vehicle on a level table",
-            Kind::SixSides => Face::Belly.text(),
-        };
-        self.guide(text);
         None
     }
 
@@ -103,97 +152,95 @@ impl Services {
         );
     }
 
-    /// One step of the running calibration.
-    pub(crate) fn continue_calibration(&mut self, now: u64, vehicle: &Vehicle) {
-        let Some(calibration) = &mut self.calibration else {
+    /// Samples the running step; the sensors are read with the parameters `in_force`.
+    pub(crate) fn continue_calibration(&mut self, now: u64, vehicle: &Vehicle, in_force: &Params) {
+        if self.calibrations.procedure.running().is_none() {
             return;
-        };
+        }
         if !vehicle.at_rest() {
-            self.calibration = None;
+            self.calibrations.cancel();
             let result = self.refuse_armed();
             return self.settle(result);
         }
-        match calibration.step(now, vehicle) {
-            None => (),
-            Some(Ok(RestResult::More)) => {
-                let done = calibration.means.len();
-                if let (Some(side), true) = (Face::ALL.get(done), calibration.asked == now) {
-                    self.progress((done * 100 / Face::ALL.len()) as u8);
-                    self.guide(side.text());
-                }
+        let working = self.parameters.copy();
+        let readings = vehicle.readings();
+        let found = (self.calibrations.procedure).sample(now, &readings, in_force, working);
+        match found {
+            Some(finding) => self.take(finding, now),
+            None if self.calibrations.asked_us.is_none() && now >= self.calibrations.report_us => {
+                self.calibrations.report_us = now.saturating_add(PROGRESS_US);
+                self.progress(self.calibrations.procedure.progress(now));
             }
-            Some(Ok(found)) => {
-                self.calibration = None;
-                if let RestResult::Accel(bias, scale) = found {
-                    self.put(BIAS, bias, now);
-                    if let Some(scale) = scale {
-                        self.put(SCALES, scale, now);
+            None => (),
+        }
+    }
+
+    /// Takes the end of a step.
+    fn take(&mut self, finding: Finding, now: u64) {
+        if let Some(asked_us) = self.calibrations.asked_us
+            && self.guide_on(&finding, asked_us, now)
+        {
+            return;
+        }
+        self.calibrations.asked_us = None;
+        self.calibrations.finding = Some(finding);
+        match finding.result {
+            Ok(outcome) => {
+                if let Outcome::Done(changes) = outcome {
+                    for (name, value) in changes.into_iter().flatten() {
+                        if let Some(place) = self.parameters.put(name, value, now) {
+                            self.answer(Answer::Parameter(place));
+                        }
                     }
+                    self.guide("done");
                 }
-                self.guide("done");
+                self.answer(Answer::CalibrationResult);
                 self.settle(MavResult::MAV_RESULT_ACCEPTED);
             }
-            Some(Err(unfit)) => {
-                self.calibration = None;
-                let Unfit {
-                    what, value, unit, ..
-                } = unfit;
-                let [value, least, most] = [value, unfit.allowed[0], unfit.allowed[1]].map(Decimal);
-                self.texts.say(
-                    MavSeverity::MAV_SEVERITY_WARNING,
-                    format_args!("{what} {value:.2} not in {least:.2}..{most:.2} {unit}"),
-                );
+            Err(unfit) => {
+                self.say_unfit(unfit);
+                self.answer(Answer::CalibrationResult);
                 self.settle(MavResult::MAV_RESULT_FAILED);
             }
         }
     }
 
-    fn put(&mut self, names: [&str; 3], values: Vec3, now: u64) {
-        for (name, value) in names.into_iter().zip(values.to_array()) {
-            if let Some(place) = self.parameters.put(name, thousandths(value), now) {
-                self.answer(Answer::Parameter(place));
+    /// Where texts lead: asks for the next side, or waits on for this one; false at the end.
+    fn guide_on(&mut self, finding: &Finding, asked_us: u64, now: u64) -> bool {
+        let step = finding.step;
+        let next = match finding.result {
+            Ok(Outcome::Taken) => step.number.saturating_add(1),
+            // The vehicle is being turned.
+            Err(_)
+                if step.calibration == Calibration::Accel && now.saturating_sub(asked_us) < PATIENCE_US =>
+            {
+                step.number
+            }
+            _ => return false,
+        };
+        let again = Step { number: next, ..step };
+        if self.calibrations.procedure.begin(again, now).is_err() {
+            return false;
+        }
+        if next > step.number {
+            self.calibrations.asked_us = Some(now);
+            let done = usize::from(step.number);
+            self.progress((done * 100 / Face::ALL.len()) as u8);
+            if let Some(side) = Face::ALL.get(done) {
+                self.guide(side.text());
             }
         }
-    }
-}
-
-impl Calibration {
-    /// Takes a sample; at the end of a rest returns its result.
-    fn step(&mut self, now: u64, vehicle: &Vehicle) -> Option<Result<RestResult, Unfit>> {
-        if let Some(attitude) = vehicle.attitude {
-            self.samples.add(match self.kind {
-                Kind::Gyro => attitude.rate + attitude.gyro_bias,
-                Kind::Level | Kind::SixSides => attitude.accel,
-            });
-        }
-        if now.saturating_sub(self.rest) < REST {
-            return None;
-        }
-        self.rest = now;
-        let samples = core::mem::take(&mut self.samples);
-        Some(match self.kind {
-            Kind::Gyro => rest_rate(&samples).map(|_| RestResult::Gyro),
-            Kind::Level => {
-                calibration::level(&samples, &vehicle.accel_fit).map(|bias| RestResult::Accel(bias, None))
-            }
-            Kind::SixSides => self.take_side(&samples, now, &vehicle.accel_fit),
-        })
+        true
     }
 
-    /// Takes a side that lies still in the requested position; waits for it up to `PATIENCE`.
-    fn take_side(&mut self, samples: &Samples, now: u64, fit: &AccelFit) -> Result<RestResult, Unfit> {
-        let side = Face::ALL.get(self.means.len()).copied().unwrap_or(Face::Left);
-        match calibration::face(samples, side) {
-            Ok(mean) => {
-                let _ = self.means.push(mean);
-                self.asked = now;
-            }
-            Err(unfit) if now.saturating_sub(self.asked) >= PATIENCE => return Err(unfit),
-            Err(_) => (),
-        }
-        match <&[Vec3; 6]>::try_from(self.means.as_slice()) {
-            Ok(means) => six_faces(means, fit).map(|found| RestResult::Accel(found.bias, Some(found.scale))),
-            Err(_) => Ok(RestResult::More),
-        }
+    fn say_unfit(&mut self, unfit: Unfit) {
+        let Unfit {
+            what, value, unit, ..
+        } = unfit;
+        let [value, least, most] = [value, unfit.allowed[0], unfit.allowed[1]].map(Decimal);
+        self.texts.say(
+            MavSeverity::MAV_SEVERITY_WARNING,
+            format_args!("{what} {value:.2} not in {least:.2}..{most:.2} {unit}"),
+        );
     }
 }

@@ -54,6 +54,8 @@ impl Services {
         };
         match id {
             AUTOPILOT_VERSION_DATA::ID => Answer::Version.into(),
+            SOPHIE_ARMING_DATA::ID => Answer::Arming.into(),
+            COMPONENT_INFORMATION_BASIC_DATA::ID => Answer::Component.into(),
             COMPONENT_METADATA_DATA::ID => Answer::Metadata.into(),
             AVAILABLE_MODES_DATA::ID => match whole(or_zero(index)) {
                 Some(0) => Answer::Mode { index: 1, all: true }.into(),

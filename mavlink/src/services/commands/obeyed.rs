@@ -29,7 +29,7 @@ const fn obeyed(command: MavCmd, form: &'static str, when: When) -> Obeyed {
 }
 
 /// Every supported command. These texts are not in the image.
-pub const OBEYED: [Obeyed; 14] = [
+pub const OBEYED: [Obeyed; 18] = [
     obeyed(
         MavCmd::MAV_CMD_REQUEST_MESSAGE,
         "message (of the modes: which, 0 all)",
@@ -94,8 +94,28 @@ pub const OBEYED: [Obeyed; 14] = [
         ),
     ),
     obeyed(
+        MavCmd::MAV_CMD_DO_MOTOR_TEST,
+        "motor, 1, us, seconds",
+        When::Commander("the same by a pulse, which may be below the one that turns every motor"),
+    ),
+    obeyed(
         MavCmd::MAV_CMD_DO_SET_SERVO,
         "5 to 8, us",
         When::Commander("as the console's `servo`: DISARMED, arms open, 30 s at most; 0 us gives it back"),
+    ),
+    obeyed(
+        MavCmd::MAV_CMD_SOPHIE_CALIBRATE,
+        "calibration (0 ends), part, step, values",
+        When::AtRest,
+    ),
+    obeyed(
+        MavCmd::MAV_CMD_SOPHIE_REPORT,
+        "1 (self-test) or 2 (chip)",
+        When::AtRest,
+    ),
+    obeyed(
+        MavCmd::MAV_CMD_SOPHIE_SET_BROWN_OUT,
+        "1 (set the chip's brown-out level and restart)",
+        When::AtRest,
     ),
 ];

@@ -78,14 +78,20 @@ impl Orders {
 
 impl Services {
     /// Gives the order that `command` asks for; `None` if the acknowledgement comes later.
-    pub(super) fn order_by(&mut self, command: &Command, from: Peer, now: u64) -> Option<MavResult> {
+    pub(super) fn order_by(
+        &mut self,
+        command: &Command,
+        from: Peer,
+        now: u64,
+        vehicle: &Vehicle,
+    ) -> Option<MavResult> {
         let number = u32::from(command.number);
         if number == MavCmd::MAV_CMD_COMPONENT_ARM_DISARM as u32 {
             self.arm_disarm(command, from, now)
         } else if number == MavCmd::MAV_CMD_DO_GRIPPER as u32 {
             self.gripper(command, from, now)
         } else if number == MavCmd::MAV_CMD_DO_MOTOR_TEST as u32 {
-            self.motor_test(command, from, now)
+            self.motor_test(command, from, now, vehicle)
         } else if number == MavCmd::MAV_CMD_DO_SET_SERVO as u32 {
             self.set_servo(command, from, now)
         } else if number == MavCmd::MAV_CMD_USER_1 as u32 {
@@ -126,17 +132,34 @@ impl Services {
         self.give(command, from, now, order)
     }
 
-    fn motor_test(&mut self, command: &Command, from: Peer, now: u64) -> Option<MavResult> {
-        let [motor, kind, percent, seconds, count, ..] = command.params;
-        let one = whole(kind) == Some(MotorTestThrottleType::MOTOR_TEST_THROTTLE_PERCENT as u32)
-            && matches!(whole(or_zero(count)), Some(0 | 1));
-        let (Some(rotor @ 1..=4), true) = (whole(motor), one) else {
-            return Some(self.deny("motor 1 to 4, one, in percent"));
+    fn motor_test(
+        &mut self,
+        command: &Command,
+        from: Peer,
+        now: u64,
+        vehicle: &Vehicle,
+    ) -> Option<MavResult> {
+        let [motor, kind, throttle, seconds, count, ..] = command.params;
+        let by_pulse = match whole(kind) {
+            Some(kind) if kind == MotorTestThrottleType::MOTOR_TEST_THROTTLE_PERCENT as u32 => false,
+            Some(kind) if kind == MotorTestThrottleType::MOTOR_TEST_THROTTLE_PWM as u32 => true,
+            _ => return Some(self.deny("motor 1 to 4, one, in percent or us")),
         };
-        let order = if percent > 0.0 {
-            BenchOrder::Spin(Spin::at(rotor as usize - 1, percent / 100.0))
-        } else {
+        let one = matches!(whole(or_zero(count)), Some(0 | 1));
+        let (Some(rotor @ 1..=4), true) = (whole(motor), one) else {
+            return Some(self.deny("motor 1 to 4, one, in percent or us"));
+        };
+        let spin = Spin::at(rotor as usize - 1, throttle / 100.0);
+        let order = if throttle <= 0.0 || throttle.is_nan() {
             BenchOrder::End
+        } else if by_pulse {
+            BenchOrder::Spin(Spin {
+                drive: vehicle.motor_pulses.command(throttle),
+                probes: true,
+                ..spin
+            })
+        } else {
+            BenchOrder::Spin(spin)
         };
         // 0, or not given, means the longest time.
         let shorter = seconds > 0.0 && seconds < SPIN_TIME;
@@ -165,7 +188,7 @@ impl Services {
         if order == RemoteOrder::Kill {
             // A kill does not wait for another command.
             self.settle(MavResult::MAV_RESULT_TEMPORARILY_REJECTED);
-            self.calibration = None;
+            self.calibrations.cancel();
         }
         self.begin(command.number, from, now).err().unwrap_or_else(|| {
             self.orders.remote = Some(RemoteRequest { number: 0, order });
@@ -209,7 +232,7 @@ impl Services {
         }
     }
 
-    fn settle_refused(&mut self, why: &str) {
+    pub(super) fn settle_refused(&mut self, why: &str) {
         let result = self.refuse(why);
         self.settle(result);
     }

@@ -1,4 +1,4 @@
-//! Restart of the board, and storing of the parameters.
+//! Restart of the board, storing of the parameters, and the brown-out level of the chip.
 
 use super::whole;
 use crate::services::Services;
@@ -17,6 +17,17 @@ impl Services {
             }
             Some(1) => self.refuse_armed(),
             _ => self.unsupported("1 restarts, nothing else"),
+        }
+    }
+
+    pub(super) fn brown_out(&mut self, confirmed: f32, vehicle: &Vehicle) -> MavResult {
+        match whole(confirmed) {
+            Some(1) if vehicle.at_rest() => {
+                self.set_brown_out = true;
+                MavResult::MAV_RESULT_ACCEPTED
+            }
+            Some(1) => self.refuse_armed(),
+            _ => self.unsupported("1 sets it, nothing else"),
         }
     }
 

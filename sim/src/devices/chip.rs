@@ -4,11 +4,11 @@ use sophie_ports::chip::{Chip, NotSet};
 use sophie_ports::chip_check::ChipCheck;
 use sophie_tasks::storage::parameters::table_id;
 
-use crate::devices::line::Line;
+use super::line::Line;
 
 /// The chip of the board on this line.
 #[derive(Clone, Copy)]
-pub struct ThisChip(pub(super) &'static Line);
+pub struct ThisChip(pub &'static Line);
 
 impl Chip for ThisChip {
     fn restart(&mut self) {
