@@ -64,6 +64,8 @@ pub struct Vehicle {
     pub air: Option<AirPressure>,
     /// Name of the board.
     pub board: &'static str,
+    /// Revision of the chip, as text; zeros where it is not known.
+    pub chip: [u8; 24],
     /// Identity of the image, and of its table of parameters.
     pub build: [u32; 2],
     /// Longest time since the start from data-ready to the motor frame, thousandths of the period.
@@ -114,6 +116,7 @@ impl Default for Vehicle {
             ground: GroundView::default(),
             air: None,
             board: "",
+            chip: [0; 24],
             build: [0; 2],
             load: 0,
             answers: Answers::default(),

@@ -6,6 +6,9 @@ use sophie_control::arming::ArmingInhibit;
 /// Longest text of a reading, bytes.
 pub const READ: usize = 28;
 
+/// Name of the check that reads the chip's revision.
+pub const REVISION: &str = "revision";
+
 /// One check of the chip by the start-up.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ChipCheck {

@@ -1,4 +1,4 @@
-//! `sophie bringup` and `sophie params`: operations at a board's console.
+//! `sophie bringup` and `sophie params`: operations at a board.
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -18,9 +18,9 @@ use super::{FAILED, PROGRAM, REFUSED};
 /// Leads through the set-up of a vehicle.
 pub fn bringup(args: &BringupArgs) -> ExitCode {
     let walked = on_ctrl_c().map_err(Failure::Input).and_then(|stop| {
-        let mut session = args.line.session(Arc::clone(&stop))?;
+        let mut vehicle = args.line.vehicle(Arc::clone(&stop))?;
         let mut user = Terminal::new(stop);
-        sophie_bringup::run(&mut session, &mut user, &args.protocol, &args.again)
+        sophie_bringup::run(&mut vehicle, &mut user, &args.protocol, &args.again)
     });
     status(walked)
 }

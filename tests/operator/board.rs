@@ -159,9 +159,31 @@ impl Board {
         Self::on((wire, format!("mavlink:{name}")), hands, Protocol::Mavlink(key))
     }
 
-    fn on((mut wire, name): (Wire, String), hands: Hands, protocol: Protocol) -> Self {
+    /// MAVLink on a serial port.
+    #[cfg(target_os = "linux")]
+    pub fn on_serial_mavlink(hands: Hands) -> Self {
+        Self::on(Wire::serial(), hands, Protocol::Mavlink(None))
+    }
+
+    /// Over MAVLink, with the parameters that it has stored.
+    pub fn with_stored(hands: Hands, stored: Params) -> Self {
+        let (wire, name) = Wire::socket();
+        let wire = (wire, format!("mavlink:{name}"));
+        Self::starting(wire, hands, Protocol::Mavlink(None), stored)
+    }
+
+    fn on(wire: (Wire, String), hands: Hands, protocol: Protocol) -> Self {
+        Self::starting(wire, hands, protocol, Params::DEFAULT)
+    }
+
+    fn starting((mut wire, name): (Wire, String), hands: Hands, protocol: Protocol, stored: Params) -> Self {
         let hands = Arc::new(Mutex::new(hands));
-        let stored = Arc::new(Mutex::new(Params::DEFAULT));
+        let stored = Arc::new(Mutex::new(stored));
+        let signing = match protocol {
+            Protocol::Mavlink(Some(key)) => Stored::Key(Record::fresh(key)),
+            _ => Stored::None,
+        };
+        let signing = Arc::new(Mutex::new(signing));
         let stop = Arc::new(AtomicBool::new(false));
         let ms = Arc::<AtomicU64>::default();
         let outputs = Arc::<Mutex<Outputs>>::default();
@@ -176,7 +198,7 @@ impl Board {
             let (hands, stored, stop) = shared;
             while !stop.load(Ordering::Relaxed) {
                 let params = *stored.lock().unwrap();
-                Run::start(&hands, &stored, params, protocol).serve(&mut wire, &seen, &stop);
+                Run::start(&hands, &stored, &signing, params, protocol).serve(&mut wire, &seen, &stop);
             }
         });
         Self {
@@ -325,6 +347,7 @@ impl Run {
     fn start(
         hands: &Arc<Mutex<Hands>>,
         stored: &Arc<Mutex<Params>>,
+        signing: &Arc<Mutex<Stored>>,
         params: Params,
         protocol: Protocol,
     ) -> Self {
@@ -354,6 +377,7 @@ impl Run {
             chip: ThisChip {
                 hands: hands.clone(),
                 stored: stored.clone(),
+                signing: signing.clone(),
                 checks: checks(now.brown_out_set),
                 restarted,
             },
@@ -377,7 +401,7 @@ impl Run {
         time.spawn(servos::run(links, self.servos.clone()));
         time.spawn(commander::run(links));
         let (line, screen, chip) = (self.line.clone(), self.screen.clone(), self.chip.clone());
-        let (Protocol::Mavlink(key), Some(frames)) = (protocol, &self.frames) else {
+        let (Protocol::Mavlink(_), Some(frames)) = (protocol, &self.frames) else {
             return time.spawn(console::run(links, line, screen, chip.clone(), chip));
         };
         let shell: &'static Shell = Box::leak(Box::default());
@@ -386,7 +410,7 @@ impl Run {
             outputs: [frames.clone()],
             bytes_per_second: [5000],
         };
-        let signing = key.map_or(Stored::None, |key| Stored::Key(Record::fresh(key)));
+        let signing = *chip.signing.lock().unwrap();
         let storage = chip.clone();
         time.spawn(mavlink::run(links, lines, shell, storage, chip.clone(), signing));
         let tapped = Tapped(shell.port(), screen);
@@ -567,6 +591,7 @@ impl SerialOutput for Frames {
 struct ThisChip {
     hands: Arc<Mutex<Hands>>,
     stored: Arc<Mutex<Params>>,
+    signing: Arc<Mutex<Stored>>,
     checks: [ChipCheck; 2],
     restarted: Rc<Cell<bool>>,
 }
@@ -591,12 +616,12 @@ impl Storage for ThisChip {
         Ok(())
     }
 
-    /// The key comes with each start: its times begin anew.
-    async fn save_signing(&mut self, _: Option<Record>) -> Result<(), StorageError> {
-        match self.hands.lock().unwrap().broken {
-            true => Err(StorageError::Broken),
-            false => Ok(()),
+    async fn save_signing(&mut self, record: Option<Record>) -> Result<(), StorageError> {
+        if self.hands.lock().unwrap().broken {
+            return Err(StorageError::Broken);
         }
+        *self.signing.lock().unwrap() = record.map_or(Stored::None, Stored::Key);
+        Ok(())
     }
 }
 

@@ -33,10 +33,9 @@ fn until(board: &Board, what: impl Fn(&Outputs) -> bool) {
     }
 }
 
-/// The motors stand, the servos, which have no marks, get no pulse, and the board says nothing by itself.
+/// The motors stand, and the servos, which have no marks, get no pulse.
 fn rests(board: &Board) {
     until(board, |pins| pins.motors == [0.0; 4] && pins.servos == [0.0; 4]);
-    assert_eq!(board.says_by_itself(2.0), "");
 }
 
 #[test]
@@ -48,7 +47,7 @@ fn a_bring_up_is_left_in_order_wherever_it_is() {
         ("arm-2", "Enter when it is so", ""),
         ("servo-3", "+ or - moves it", "+9"),
     ] {
-        let board = Board::new(Hands::default());
+        let board = Board::on_mavlink(Hands::default(), None);
         let file = temp.0.join("bringup.toml");
         let _ = fs::remove_file(&file);
         let mut builder = Builder::begins(&temp, &board, &[]);
@@ -83,19 +82,9 @@ fn a_bring_up_is_left_in_order_wherever_it_is() {
 
 #[test]
 fn a_motor_stops_at_once() {
-    let board = Board::new(Hands::default());
-    motor_stops(&Temp::new("interrupt-motor"), &board);
-    rests(&board);
-}
-
-#[test]
-fn and_over_mavlink() {
-    let board = Board::on_mavlink(Hands::default(), None);
-    motor_stops(&Temp::new("interrupt-mavlink"), &board);
-}
-
-fn motor_stops(temp: &Temp, board: &Board) {
-    let mut builder = Builder::begins(temp, board, &[]);
+    let temp = Temp::new("interrupt-motor");
+    let board = &Board::on_mavlink(Hands::default(), None);
+    let mut builder = Builder::begins(&temp, board, &[]);
     skips_to(&mut builder, "rotors");
     // The question for the second output: the motor before has turned, and stands.
     builder.at("Type off", "off");
@@ -110,6 +99,7 @@ fn motor_stops(temp: &Temp, board: &Board) {
     // Left to itself it turns for 2 s.
     assert!(took < 1.0, "{took} s");
     assert_eq!(builder.ends().0, Some(1));
+    rests(board);
 }
 
 #[test]
@@ -145,6 +135,7 @@ fn a_load_stores_all_or_nothing() {
     assert!(board.stored() == Params::DEFAULT);
     board.hands(|hands| hands.real_time = false);
     rests(&board);
+    assert_eq!(board.says_by_itself(2.0), "");
     // Nothing is left in the working copy.
     let loaded = run(&temp, &["params", "load", "p.toml", "--port", &name]);
     assert!(

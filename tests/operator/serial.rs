@@ -47,7 +47,7 @@ fn parameters_are_dumped_compared_and_loaded_over_a_serial_port() {
 #[test]
 fn a_bring_up_goes_over_a_serial_port_and_has_it_alone() {
     let temp = Temp::new("serial-bringup");
-    let board = Board::on_serial(Hands {
+    let board = Board::on_serial_mavlink(Hands {
         brown_out_set: false,
         ..Hands::default()
     });
@@ -76,8 +76,32 @@ fn a_bring_up_goes_over_a_serial_port_and_has_it_alone() {
     let (status, said, complaint) = builder.ends();
     assert_eq!((status, &*complaint), (Some(1), ""), "{said}");
     assert!(said.contains("\nStopped. not done: live-imu, "), "{said}");
-    // Given back with the end of the program.
-    assert_eq!(params(&temp, &board, "dump").status, Some(0));
+    // Given back with the end of the program, and continued.
+    let mut builder = Builder::begins(&temp, &board, &[]);
+    builder.at("(live-imu)", "q");
+    assert_eq!(builder.ends().0, Some(1));
+}
+
+#[test]
+fn a_text_console_where_mavlink_is_wanted_is_named() {
+    let temp = Temp::new("serial-console");
+    let board = Board::on_serial(Hands::default());
+    let done = run(&temp, &["bringup", "--port", &board.name(), "--patience", "2"]);
+    done.complains(
+        2,
+        "this is the text console; bring-up wants MAVLink: the board's USB socket",
+    );
+    assert!(!temp.0.join("bringup.toml").exists());
+    // A vehicle that is signed by a key, and a line where nobody is.
+    let board = Board::on_mavlink(
+        Hands::default(),
+        sophie_sim::live::Key::from_hex(super::bringup::KEY),
+    );
+    let done = run(&temp, &["bringup", "--port", &board.name(), "--patience", "2"]);
+    done.complains(2, "it may want signed frames: --mavlink-key FILE");
+    board.hands(|hands| hands.mute = true);
+    let done = run(&temp, &["bringup", "--port", &board.name(), "--patience", "2"]);
+    done.complains(2, "no vehicle answers within 2 s, nothing came; expected MAVLink");
 }
 
 #[test]

@@ -6,7 +6,7 @@ use core::fmt::{self, Write};
 use embassy_stm32::{pac, rcc};
 use heapless::String;
 use sophie_control::arming::ArmingInhibit;
-use sophie_ports::chip_check::{ChipCheck, ChipChecks, READ};
+use sophie_ports::chip_check::{ChipCheck, ChipChecks, READ, REVISION};
 use sophie_ports::storage::Loaded;
 
 use super::clock::bus_hz;
@@ -86,7 +86,7 @@ fn revision() -> ChipCheck {
     let id = pac::DBGMCU.idc().read();
     let (part, revision) = (id.dev_id(), id.rev_id());
     needed(
-        "revision",
+        REVISION,
         format_args!("{part:#x} {revision:#x}"),
         "0x2001 (X) or later",
         revision >= 0x2001,
@@ -97,7 +97,7 @@ fn revision() -> ChipCheck {
 fn revision() -> ChipCheck {
     let id = pac::DBGMCU.idcode().read();
     let (part, revision) = (id.dev_id(), id.rev_id());
-    needed("revision", format_args!("{part:#x} {revision:#x}"), "any", true)
+    needed(REVISION, format_args!("{part:#x} {revision:#x}"), "any", true)
 }
 
 /// Core clock in MHz, from the PLL on the crystal, not the fallback oscillator.

@@ -264,14 +264,14 @@ impl Kept {
             }
             Calibration::Level => {
                 let bias = super::level(samples, &AccelFit::of(in_force))?;
-                done(changes(&BIAS, &bias.to_array()))
+                done(changes(step, &bias.to_array()))
             }
             Calibration::Accel => self.side(step, samples, in_force),
             Calibration::Mounting => self.mounting(step, samples, in_force),
             Calibration::Battery => {
                 let [meter, _] = step.values;
                 let divider = super::divider(samples, in_force.battery_divider, meter)?;
-                done(changes(&["battery_divider"], &[divider]))
+                done(changes(step, &[divider]))
             }
             Calibration::Servo => marks(step, in_force, working).map(Outcome::Done),
             Calibration::Fsr => self.pressure_sensor(step, samples, in_force),
@@ -291,11 +291,9 @@ impl Kept {
             return Ok(Outcome::Taken);
         }
         let found = super::six_faces(&self.means, &AccelFit::of(in_force))?;
-        let [x, y, z] = BIAS;
-        let [sx, sy, sz] = SCALES;
         let (bias, scale) = (found.bias, found.scale);
         let values = [bias.x, bias.y, bias.z, scale.x, scale.y, scale.z];
-        Ok(Outcome::Done(changes(&[x, y, z, sx, sy, sz], &values)))
+        Ok(Outcome::Done(changes(step, &values)))
     }
 
     fn mounting(&mut self, step: &Step, samples: &Samples, in_force: &Params) -> Result<Outcome, Unfit> {
@@ -314,7 +312,7 @@ impl Kept {
         let handed = if value.is_some() { 1.0 } else { 0.0 };
         within("three sides of one vehicle", handed, [1.0, 1.0], "")?;
         let number = value.map_or(f32::NAN, |value| value.number());
-        Ok(Outcome::Done(changes(&["imu_mounting"], &[number])))
+        Ok(Outcome::Done(changes(step, &[number])))
     }
 
     fn pressure_sensor(
@@ -335,7 +333,7 @@ impl Kept {
         };
         let [weight, _] = step.values;
         let fit = super::pressure_sensor(&self.samples, samples, weight / in_force.fsr_area, now)?;
-        Ok(Outcome::Done(changes(&[trim, zero], &[fit.trim, fit.zero])))
+        Ok(Outcome::Done(changes(step, &[fit.trim, fit.zero])))
     }
 
     fn arm_sensor(&mut self, step: &Step, samples: &Samples, in_force: &Params) -> Result<Outcome, Unfit> {
@@ -345,8 +343,7 @@ impl Kept {
             return Ok(Outcome::Taken);
         }
         let fit = super::arm_sensor(&self.samples, samples, ArmFit::of(in_force, step.part))?;
-        let [sign, zero] = ARM.get(step.part).copied().unwrap_or_default();
-        Ok(Outcome::Done(changes(&[sign, zero], &[fit.sign, fit.zero])))
+        Ok(Outcome::Done(changes(step, &[fit.sign, fit.zero])))
     }
 
     fn flow(
@@ -368,7 +365,7 @@ impl Kept {
         let (fit, pivot) = flow_fit(self.near.as_ref().unwrap_or(&round), &round, now)?;
         *figures = [pivot, f32::NAN, f32::NAN, f32::NAN];
         let values = [fit.scale, fit.mounting.number()];
-        Ok(Outcome::Done(changes(&["flow_scale", "flow_mounting"], &values)))
+        Ok(Outcome::Done(changes(step, &values)))
     }
 }
 
@@ -388,17 +385,42 @@ fn marks(step: &Step, in_force: &Params, working: &Params) -> Result<Changes, Un
     }
     within("travel", (at_full - at_release).abs(), TRAVEL_US, "us")?;
     let marks = working.servo_marks.with(step.part).number();
-    Ok(changes(
-        &[release, full, "servo_marks"],
-        &[at_release, at_full, marks],
-    ))
+    Ok(changes(step, &[at_release, at_full, marks]))
 }
 
-/// The changes of `names` to `values`, rounded to a thousandth.
-fn changes(names: &[&'static str], values: &[f32]) -> Changes {
+/// Names of the parameters that the calibration of part 0 to 3 sets.
+pub fn parameters(calibration: Calibration, part: usize) -> [Option<&'static str>; CHANGES] {
+    let one = |names: &[&'static str; 4]| names.get(part).copied();
+    let two = |names: &[[&'static str; 2]; 4]| names.get(part).map_or([None; 2], |names| names.map(Some));
+    let [x, y, z] = BIAS.map(Some);
+    match calibration {
+        Calibration::Gyro => [None; CHANGES],
+        Calibration::Level => [x, y, z, None, None, None],
+        Calibration::Accel => {
+            let [sx, sy, sz] = SCALES.map(Some);
+            [x, y, z, sx, sy, sz]
+        }
+        Calibration::Mounting => [Some("imu_mounting"), None, None, None, None, None],
+        Calibration::Battery => [Some("battery_divider"), None, None, None, None, None],
+        Calibration::Servo => [one(&RELEASE), one(&FULL), Some("servo_marks"), None, None, None],
+        Calibration::Fsr => {
+            let [trim, zero] = two(&FSR);
+            [trim, zero, None, None, None, None]
+        }
+        Calibration::Arm => {
+            let [sign, zero] = two(&ARM);
+            [sign, zero, None, None, None, None]
+        }
+        Calibration::Flow => [Some("flow_scale"), Some("flow_mounting"), None, None, None, None],
+    }
+}
+
+/// The parameters of `step` with `values`, rounded to a thousandth.
+fn changes(step: &Step, values: &[f32]) -> Changes {
     let mut changes = [None; CHANGES];
-    for (change, (name, value)) in changes.iter_mut().zip(names.iter().zip(values)) {
-        *change = Some((*name, thousandths(*value)));
+    let names = parameters(step.calibration, step.part).into_iter().flatten();
+    for (change, (name, value)) in changes.iter_mut().zip(names.zip(values)) {
+        *change = Some((name, thousandths(*value)));
     }
     changes
 }

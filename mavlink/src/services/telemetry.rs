@@ -551,13 +551,14 @@ fn custom_version(vehicle: &Vehicle) -> [u8; 8] {
     bytes
 }
 
-/// Board and version.
+/// Board, version and chip.
 pub fn component(vehicle: &Vehicle, ms: u32) -> COMPONENT_INFORMATION_BASIC_DATA {
     COMPONENT_INFORMATION_BASIC_DATA {
         time_boot_ms: ms,
         vendor_name: text::<32>("SOPHIE").into(),
         model_name: text::<32>(vehicle.board).into(),
         software_version: text::<24>(env!("CARGO_PKG_VERSION")).into(),
+        hardware_version: vehicle.chip.into(),
         ..COMPONENT_INFORMATION_BASIC_DATA::DEFAULT
     }
 }

@@ -25,8 +25,10 @@ enum Candidate {
 }
 
 /// The frames of one line.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Parser {
+    /// Last byte of the checksum by message; `None` for a message that is not read.
+    extra: fn(u32) -> Option<u8>,
     bytes: Vec<u8, LONGEST>,
     /// Length of the complete frame at the start of `bytes`; 0 without one.
     ready: usize,
@@ -34,10 +36,22 @@ pub struct Parser {
     at: u64,
 }
 
+impl Default for Parser {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl Parser {
-    /// Before the first byte.
+    /// The vehicle's parser: it reads what the vehicle takes.
     pub const fn new() -> Self {
+        Self::reading(crc_extra)
+    }
+
+    /// A parser of the messages for which `extra` gives the last byte of their checksum.
+    pub const fn reading(extra: fn(u32) -> Option<u8>) -> Self {
         Self {
+            extra,
             bytes: Vec::new(),
             ready: 0,
             at: 0,
@@ -90,7 +104,7 @@ impl Parser {
         }
         // The checksum of an unknown message cannot be tested. All of it is skipped: its content could look like a
         // frame.
-        let Some(extra) = crc_extra(u32::from_le_bytes([a, b, c, 0])) else {
+        let Some(extra) = (self.extra)(u32::from_le_bytes([a, b, c, 0])) else {
             return Candidate::Useless(whole);
         };
         let sum = self.bytes.get(1..body).map(|bytes| calculate_crc(bytes, extra));

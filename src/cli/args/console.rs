@@ -9,9 +9,11 @@ use clap::{Args, ValueEnum};
 use sophie_board_link::Failure;
 use sophie_board_link::port::PortName;
 use sophie_board_link::session::Session;
+use sophie_board_link::vehicle::Vehicle;
 
 use super::values::within;
 use crate::cli::key;
+use sophie_sim::live::Key;
 
 /// Console of a board, and its longest silence.
 #[derive(Args, Debug)]
@@ -35,8 +37,20 @@ impl LineArgs {
     /// # Errors
     /// One line: the port cannot be opened, no console answers there, or the key is invalid.
     pub fn session(&self, stop: Arc<AtomicBool>) -> Result<Session, Failure> {
+        Session::open(&self.port, self.key()?, self.patience, stop)
+    }
+
+    /// Opens the port as MAVLink, whatever its name says it carries; raising `stop` ends it.
+    ///
+    /// # Errors
+    /// One line: the port cannot be opened, no vehicle answers there, or the key is invalid.
+    pub fn vehicle(&self, stop: Arc<AtomicBool>) -> Result<Vehicle, Failure> {
+        Vehicle::open(&self.port, self.key()?, self.patience, stop)
+    }
+
+    fn key(&self) -> Result<Option<Key>, Failure> {
         let key = self.mavlink_key.as_deref().map(key::read).transpose();
-        Session::open(&self.port, key.map_err(Failure::Input)?, self.patience, stop)
+        key.map_err(Failure::Input)
     }
 }
 

@@ -195,6 +195,7 @@ pub async fn run<I: SerialInput, O: SerialOutput, const N: usize>(
             let now = started.as_micros();
             let seen = Vehicle {
                 board: chip.board(),
+                chip: chip_rows::revision(&chip),
                 build: [chip.build(), table_id()],
                 ..picture(links, &reels)
             };

@@ -78,7 +78,7 @@ pub(crate) fn parse_value(row: &ParamInfo, renamed: Option<&Renamed>, text: &str
 
 /// A value with its choice's name, if any.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Shown<'a>(pub &'a ParamInfo, pub f32);
+pub struct Shown<'a>(pub &'a ParamInfo, pub f32);
 
 impl fmt::Display for Shown<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -92,7 +92,7 @@ impl fmt::Display for Shown<'_> {
 
 /// A unit behind its value, if any.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Unit(pub &'static str);
+pub struct Unit(pub &'static str);
 
 impl fmt::Display for Unit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -5,7 +5,7 @@ use core::fmt::Write;
 use heapless::String;
 use sophie_mavlink::Row;
 use sophie_ports::chip::Chip;
-use sophie_ports::chip_check::ChipCheck;
+use sophie_ports::chip_check::{ChipCheck, REVISION};
 
 /// Number of rows.
 pub fn rows(chip: &impl Chip) -> u8 {
@@ -25,6 +25,18 @@ pub fn check(chip: &impl Chip, number: u8) -> Option<ChipCheck> {
         1 => Some(used.in_flight()),
         _ => None,
     }
+}
+
+/// Text of the chip's revision, zeros behind it; all zeros if the board does not read one.
+pub fn revision(chip: &impl Chip) -> [u8; 24] {
+    let mut text = [0; 24];
+    let mut checks = chip.checks().iter();
+    if let Some(check) = checks.find(|check| check.name == REVISION) {
+        text.iter_mut()
+            .zip(check.read.bytes())
+            .for_each(|(to, from)| *to = from);
+    }
+    text
 }
 
 /// The check as a row of a report.

@@ -1,14 +1,16 @@
-//! A builder's line to a board: a console [`session`] over a serial port, TCP or [`mavlink`], and parameter files
-//! ([`parameters`]).
+//! A builder's line to a board: a [`vehicle`] over MAVLink, a console [`session`] over a serial port, TCP or [`mavlink`],
+//! and parameter files ([`parameters`]).
 //!
-//! Every typed line is a command of docs/console.md. The line may begin in any state and lose bytes; the board may
-//! restart or fall silent. Every failure is one line that names the port and the expected answer.
+//! The line may begin in any state and lose bytes; the board may restart or fall silent. Every failure is one line that
+//! names the port and the expected answer.
 
 pub mod file;
 pub mod mavlink;
 pub mod parameters;
 pub mod port;
 pub mod session;
+pub mod station;
+pub mod vehicle;
 pub mod wire;
 
 use std::fmt;

@@ -11,7 +11,8 @@ use std::time::Duration;
 use sophie_ports::signing::Key;
 
 use crate::Failure;
-use crate::mavlink::{self, Ends};
+use crate::mavlink;
+use crate::station::{self, Ends};
 use crate::wire::Wire;
 
 /// The console's rate on serial ports.
@@ -132,19 +133,37 @@ impl PortName {
             Self::Tcp(address) => tcp(address).map(|stream| Box::new(stream) as Box<dyn Wire>),
             Self::Mavlink(carrier) => carrier.open().and_then(|ends| mavlink::open(ends, key)),
         };
+        opened.map_err(|error| self.cannot_be_opened(&error))
+    }
+}
+
+impl PortName {
+    /// Opens the port for MAVLink, whatever its name says it carries.
+    ///
+    /// # Errors
+    /// One line: the port, and why it cannot be used.
+    pub fn open_mavlink(&self) -> Result<Ends, Failure> {
+        let opened = match self {
+            Self::Serial(path) => Carrier::Serial(path.clone(), BAUD).open(),
+            Self::Tcp(address) => Carrier::Tcp(address.clone()).open(),
+            Self::Mavlink(carrier) => carrier.open(),
+        };
+        opened.map_err(|error| self.cannot_be_opened(&error))
+    }
+
+    /// One line: the port, and why it cannot be used.
+    fn cannot_be_opened(&self, error: &io::Error) -> Failure {
         let path = match self {
             Self::Serial(path) | Self::Mavlink(Carrier::Serial(path, _)) => Some(path),
             _ => None,
         };
-        opened.map_err(|error| {
-            let hint = match (path, error.kind()) {
-                (Some(_), ErrorKind::ResourceBusy | ErrorKind::WouldBlock) => "; close the other terminal",
-                (Some(_), ErrorKind::PermissionDenied) => "; on Linux join the group of the port, dialout",
-                (Some(path), _) if path.exists() => "; it is no serial port, or none that is ready",
-                _ => "",
-            };
-            Failure::Input(format!("{self}: cannot be opened: {error}{hint}"))
-        })
+        let hint = match (path, error.kind()) {
+            (Some(_), ErrorKind::ResourceBusy | ErrorKind::WouldBlock) => "; close the other terminal",
+            (Some(_), ErrorKind::PermissionDenied) => "; on Linux join the group of the port, dialout",
+            (Some(path), _) if path.exists() => "; it is no serial port, or none that is ready",
+            _ => "",
+        };
+        Failure::Input(format!("{self}: cannot be opened: {error}{hint}"))
     }
 }
 
@@ -165,11 +184,11 @@ impl Carrier {
                     output: Box::new(stream),
                 }
             }
-            Self::UdpIn(address) => mavlink::udp(udp(address)?, None)?,
+            Self::UdpIn(address) => station::udp(udp(address)?, None)?,
             Self::UdpOut(address) => {
                 let to = address.to_socket_addrs()?.next();
                 let to = to.ok_or_else(|| io::Error::new(ErrorKind::NotFound, "no such host"))?;
-                mavlink::udp(udp(if to.is_ipv4() { "0.0.0.0:0" } else { "[::]:0" })?, Some(to))?
+                station::udp(udp(if to.is_ipv4() { "0.0.0.0:0" } else { "[::]:0" })?, Some(to))?
             }
         })
     }

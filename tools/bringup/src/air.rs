@@ -1,15 +1,19 @@
 //! The barometer: found, plausible, quiet at rest, and moved by a metre of height.
 
 use std::ops::RangeInclusive;
+use std::time::Duration;
 
 use super::walk::{Stop, Verdict, Walk};
 use super::{Judged, Step};
-use sophie_board_link::parameters::{self, Version};
+use mavlink_core::MessageData;
+use sophie_dialect::{MavMessage, SCALED_PRESSURE_DATA};
 
 /// Boards that carry a barometer (`BarometerPort` of each board): a silent one is broken. Other boards fly without.
 const CARRY: [&str; 2] = ["matek-h743", "cuav-v5"];
-const WATCH: &str = "watch air";
-/// Rows of `watch`, five a second: at rest, lifted, and put down, the last two after rows in which the vehicle still
+/// Period of the samples, µs, and the silence after which there is no barometer.
+const PERIOD_US: f32 = 200_000.0;
+const SILENCE: Duration = Duration::from_secs(3);
+/// Samples, five a second: at rest, lifted, and put down, the last two after samples in which the vehicle still
 /// moves.
 const REST: usize = 20;
 const MOVED: usize = 10;
@@ -40,41 +44,30 @@ pub(super) fn air(walk: &mut Walk<'_>, _: &Step) -> Judged {
     Ok(judged(&rest, &up, &down))
 }
 
-/// Pressures of so many rows, Pa; `None` if the last row has none.
-fn pressures(walk: &mut Walk<'_>, rows: usize) -> Result<Option<Vec<f64>>, Stop> {
-    walk.session.begin(WATCH)?;
-    let (mut found, mut last) = (Vec::new(), None);
-    let mut seen = 0;
-    while seen < rows {
-        let line = walk.session.line(WATCH)?;
-        let Some(row) = pressure(&line) else {
-            continue;
+/// So many pressures, Pa; `None` if the barometer is silent.
+fn pressures(walk: &mut Walk<'_>, count: usize) -> Result<Option<Vec<f64>>, Stop> {
+    let id = [SCALED_PRESSURE_DATA::ID];
+    walk.vehicle.stream(&id, PERIOD_US)?;
+    let mut found = Vec::new();
+    while found.len() < count {
+        let sample = walk.vehicle.wait(SILENCE, |message| match message {
+            MavMessage::SCALED_PRESSURE(air) => Some((air.press_abs, air.temperature)),
+            _ => None,
+        })?;
+        let Some((hectopascal, centidegrees)) = sample else {
+            break;
         };
-        seen += 1;
-        walk.user.live(&line);
-        last = row;
-        found.extend(row);
+        let (pascal, degrees) = (f64::from(hectopascal) * 100.0, f64::from(centidegrees) * 0.01);
+        walk.user.live(&format!("{pascal:.1} Pa, {degrees:.1} deg C"));
+        found.push(pascal);
     }
-    walk.session.cancel()?;
-    Ok(last.map(|_| found))
-}
-
-/// The pressure of a row, Pa: `Some(None)` if it is stale, `None` if the line is not a row.
-fn pressure(line: &str) -> Option<Option<f64>> {
-    let mut words = line.split_whitespace();
-    let (pressure, _, None) = (words.next()?, words.next()?, words.next()) else {
-        return None;
-    };
-    match pressure.parse::<f64>() {
-        Ok(pressure) => Some(Some(pressure)),
-        Err(_) => (pressure == "-").then_some(None),
-    }
+    walk.vehicle.stream(&id, -1.0)?;
+    Ok((found.len() == count).then_some(found))
 }
 
 fn missing(walk: &mut Walk<'_>) -> Judged {
-    let Version { firmware, .. } = parameters::version(walk.session)?;
-    let board = firmware.rsplit(' ').next().unwrap_or_default();
-    let carries = CARRY.contains(&board);
+    let board = walk.vehicle.identity()?.board;
+    let carries = CARRY.contains(&&*board);
     let line = if carries {
         format!("no barometer answers on {board}, which carries one: the log names the fault")
     } else {
@@ -138,22 +131,6 @@ mod tests {
     fn rows(pascal: f64, count: usize) -> Vec<f64> {
         let noise = |nth: usize| if nth.is_multiple_of(2) { 0.4 } else { -0.4 };
         (0..count).map(|nth| pascal + noise(nth)).collect()
-    }
-
-    #[test]
-    fn a_row_is_told_from_the_lines_around_it() {
-        for (line, wanted) in [
-            ("101325.5    26.0", Some(Some(101_325.5))),
-            ("       -       -", Some(None)),
-            ("      Pa    degC", None),
-            (
-                "pressure of the air in Pa, temperature of the barometer in deg C",
-                None,
-            ),
-            ("", None),
-        ] {
-            assert_eq!(pressure(line), wanted, "{line}");
-        }
     }
 
     #[test]

@@ -1,117 +1,141 @@
-//! Steps that run the console's dialogues `calibrate` and `rotors`.
+//! Steps that calibrate: the builder is led, the vehicle measures, and what it has found is stored.
 
+use sophie_control::calibration::Face;
+use sophie_control::calibration::procedure::MOUNTING_SIDES;
+use sophie_control::calibration::step::Calibration;
 use sophie_control::maths::decimal;
 
-use super::checks::takes_pulses;
-use super::walk::{Stop, Verdict, Walk};
+use super::walk::{Measured, Stop, Verdict, Walk, is_done};
 use super::{Judged, Step};
 
-/// Ends of the last line of a successful calibration.
-const TAKEN: [&str; 3] = [", in force after save", ", as in force", "nothing to store"];
+/// Begin of each rest.
+const READY: &str = "Enter when it is so, s skips, q stops:";
 
-/// Runs the dialogue of `command`, stores its result, and judges by its last line.
-fn calibrated(walk: &mut Walk<'_>, command: &str) -> Judged {
-    calibrated_then(walk, command, None)
+/// Measures all steps of a calibration, each after its instruction; `value` goes with the last one.
+fn calibrated(
+    walk: &mut Walk<'_>,
+    calibration: Calibration,
+    part: usize,
+    instructions: &[&str],
+    value: f32,
+) -> Judged {
+    let before = walk.before(calibration, part.saturating_sub(1))?;
+    for (step, instruction) in (1..).zip(instructions) {
+        walk.say(&format!("  | {instruction}"));
+        walk.ask(READY)?;
+        match walk.measure(calibration, part, step, [value, 0.0])? {
+            Measured::Bad(line) => return Ok(Verdict::of(false, vec![line])),
+            Measured::Good(result) if is_done(&result) => {
+                let mut figures = walk.note_changes(calibration, part.saturating_sub(1), &before)?;
+                figures.extend(found(calibration, &result.figures));
+                return Ok(Verdict::of(true, figures));
+            }
+            Measured::Good(_) => (),
+        }
+    }
+    Ok(Verdict::of(
+        false,
+        vec!["the vehicle wants more steps than this program knows".to_owned()],
+    ))
 }
 
-/// As [`calibrated`]; asks `first` of the builder before the board restarts with the new values.
-fn calibrated_then(walk: &mut Walk<'_>, command: &str, first: Option<&str>) -> Judged {
-    let said = walk.dialogue(command)?;
-    let last = said.last().map_or("", String::as_str);
-    let taken = TAKEN.iter().any(|text| last.ends_with(text));
-    let mut verdict = Verdict {
-        shown: true,
-        ..Verdict::of(taken, figures(&said))
-    };
-    if taken {
-        if let Some(first) = first {
-            walk.ask(first)?;
-        }
-        verdict.parameters = walk.keep(&said)?;
+/// What was found beside the parameters.
+fn found(calibration: Calibration, figures: &[f32; 4]) -> Option<String> {
+    let [x, y, z, noise] = figures;
+    match calibration {
+        Calibration::Gyro => Some(format!(
+            "at rest {x:.2} {y:.2} {z:.2} deg/s, noise {noise:.2}; nothing to store"
+        )),
+        Calibration::Flow => Some(format!("turned about a point {:.0} cm over the lens", x * 100.0)),
+        _ => None,
+    }
+}
+
+/// As [`calibrated`], then stored.
+fn stored(
+    walk: &mut Walk<'_>,
+    calibration: Calibration,
+    part: usize,
+    instructions: &[&str],
+    value: f32,
+) -> Judged {
+    let mut verdict = calibrated(walk, calibration, part, instructions, value)?;
+    if verdict.passed {
+        verdict.parameters = walk.keep()?;
     }
     Ok(verdict)
 }
 
-/// The results, without the instructions.
-fn figures(said: &[String]) -> Vec<String> {
-    let found = |line: &&String| {
-        let line = line.as_str();
-        line.contains(" -> ")
-            || TAKEN.iter().any(|text| line.ends_with(text))
-            || [
-                "not ",
-                "scale ",
-                "output ",
-                "ended",
-                "refused",
-                "controller ",
-                "all ",
-                "after the change",
-                "after 'save'",
-                "nose is",
-                "turned about",
-            ]
-            .iter()
-            .any(|begin| line.starts_with(begin))
-    };
-    let mut figures: Vec<String> = said.iter().filter(found).cloned().collect();
-    if figures.is_empty() {
-        figures.extend(said.last().cloned());
-    }
-    figures
-}
-
 pub(super) fn mounting(walk: &mut Walk<'_>, _: &Step) -> Judged {
-    calibrated(walk, "calibrate mounting")
+    stored(
+        walk,
+        Calibration::Mounting,
+        0,
+        &MOUNTING_SIDES.map(Face::text),
+        0.0,
+    )
 }
 
 pub(super) fn gyro(walk: &mut Walk<'_>, _: &Step) -> Judged {
     walk.ready()?;
-    calibrated(walk, "calibrate gyro")
+    stored(walk, Calibration::Gyro, 0, &["Leave the vehicle at rest."], 0.0)
 }
 
 pub(super) fn level(walk: &mut Walk<'_>, _: &Step) -> Judged {
     loop {
         match &*walk.ask("Enter for the level table, 6 for six sides:")? {
-            "" => return calibrated(walk, "calibrate level"),
-            "6" => return calibrated(walk, "calibrate accel"),
+            "" => {
+                let table = "Put the vehicle on a level table, by a spirit level on its body.";
+                return stored(walk, Calibration::Level, 0, &[table], 0.0);
+            }
+            "6" => return stored(walk, Calibration::Accel, 0, &Face::ALL.map(Face::text), 0.0),
             _ => (),
         }
     }
 }
 
 pub(super) fn arm(walk: &mut Walk<'_>, step: &Step) -> Judged {
-    calibrated(walk, &format!("calibrate arm {}", step.number))
+    let instructions = [
+        "Hold the arm straight, by a ruler along it.",
+        "Bend its tip up by a hand's breadth, and hold.",
+    ];
+    stored(walk, Calibration::Arm, step.number, &instructions, 0.0)
 }
 
 pub(super) fn fsr(walk: &mut Walk<'_>, step: &Step) -> Judged {
     let last = walk.weight.clone();
     let question = format!("Weight in N, 132 g are 1.3 N; Enter for {last}:");
-    let weight = number(walk, &question, Some(last))?;
-    walk.weight.clone_from(&weight);
-    // A board that starts with a pressed sensor takes its arms for closed.
-    let free = Some("Take the weight off, then Enter:");
-    calibrated_then(walk, &format!("calibrate fsr {} {weight}", step.number), free)
-}
-
-pub(super) fn servo(walk: &mut Walk<'_>, step: &Step) -> Judged {
-    walk.ready()?;
-    calibrated(walk, &format!("calibrate servo {}", step.number))
+    let (text, weight) = typed(walk, &question, Some(last))?;
+    walk.weight = text;
+    let instructions = [
+        "Nothing may touch the sensor.",
+        "Put the weight on its pad, all of it.",
+    ];
+    let mut verdict = calibrated(walk, Calibration::Fsr, step.number, &instructions, weight)?;
+    if verdict.passed {
+        // A board that starts with a pressed sensor takes its arms for closed.
+        walk.ask("Take the weight off, then Enter:")?;
+        verdict.parameters = walk.keep()?;
+    }
+    Ok(verdict)
 }
 
 /// A vehicle without a module needs no calibration of it.
 pub(super) fn flow(walk: &mut Walk<'_>, _: &Step) -> Judged {
-    let said = walk.session.command("get flow_port")?;
-    if said.first().is_some_and(|line| line.contains(" none")) {
+    if walk.vehicle.value("flow_port")? <= 0.0 {
         let none = "no flow module: flow_port is none";
         return Ok(Verdict::of(true, vec![none.to_owned()]));
     }
     walk.ready()?;
     let mut places = Vec::new();
     for place in ["flow_x", "flow_y", "flow_z"] {
-        places.extend(walk.session.command(&format!("get {place}"))?);
+        places.push(format!("{place} {} m", walk.vehicle.value(place)?));
     }
-    let mut verdict = calibrated(walk, "calibrate flow")?;
+    let instructions = [
+        "Hold it 0.5 m over a floor with a pattern. From Enter on, for 8 s: roll it to both sides, then pitch it.",
+        "Now 1.5 m over it, and the same again.",
+    ];
+    let mut verdict = stored(walk, Calibration::Flow, 0, &instructions, 0.0)?;
     verdict.figures.extend(places);
     Ok(verdict)
 }
@@ -120,80 +144,26 @@ pub(super) fn battery(walk: &mut Walk<'_>, _: &Step) -> Judged {
     if let Some(refused) = walk.propellers_off()? {
         return Ok(Verdict::of(false, vec![refused]));
     }
-    let volts = number(walk, "Volts that the meter shows at the battery's plug:", None)?;
-    let mut verdict = calibrated(walk, &format!("calibrate battery {volts}"))?;
-    let status = walk.ready()?;
-    verdict.figures.push(format!("meter {volts} V"));
-    verdict
-        .figures
-        .extend(status.into_iter().filter(|line| line.starts_with("battery ")));
-    Ok(verdict)
-}
-
-pub(super) fn esc(walk: &mut Walk<'_>, _: &Step) -> Judged {
-    walk.ready()?;
-    if let Some(refused) = walk.propellers_off()? {
-        return Ok(Verdict::of(false, vec![refused]));
-    }
-    // The motor outputs are set first: they are in force, after a restart, before the motors turn.
-    let idle = if takes_pulses(walk.session)? {
-        let idle = calibrated(walk, "calibrate esc idle")?;
-        if !idle.passed {
-            return Ok(idle);
-        }
-        if let Some(refused) = walk.propellers_off()? {
-            return Ok(Verdict::of(false, vec![refused]));
-        }
-        idle
-    } else {
-        Verdict::default()
-    };
-    let mut verdict = calibrated(walk, "calibrate esc")?;
-    verdict.figures.splice(0..0, idle.figures);
-    verdict.parameters.extend(idle.parameters);
-    Ok(verdict)
-}
-
-pub(super) fn rotors(walk: &mut Walk<'_>, _: &Step) -> Judged {
-    walk.ready()?;
-    if let Some(refused) = walk.propellers_off()? {
-        return Ok(Verdict::of(false, vec![refused]));
-    }
-    let said = walk.dialogue("rotors")?;
-    let right = |said: &[String]| {
-        said.last()
-            .is_some_and(|line| line == "all rotors as they should")
-    };
-    let mut verdict = Verdict {
-        shown: true,
-        ..Verdict::of(right(&said), figures(&said))
-    };
-    // The motor order is stored; the turning rotors are compared with it once more.
-    verdict.parameters = walk.keep(&said)?;
-    if !verdict.passed && !verdict.parameters.is_empty() {
-        walk.say("  The order of the wires is stored. Once more, to see it right:");
-        if let Some(refused) = walk.propellers_off()? {
-            return Ok(Verdict::of(false, vec![refused]));
-        }
-        let again = walk.dialogue("rotors")?;
-        verdict.passed = right(&again);
-        verdict.figures.extend(figures(&again));
-        verdict.parameters.extend(walk.keep(&again)?);
+    let (text, volts) = typed(walk, "Volts that the meter shows at the battery's plug:", None)?;
+    let instructions = ["Leave the battery connected as it was measured."];
+    let mut verdict = stored(walk, Calibration::Battery, 0, &instructions, volts)?;
+    verdict.figures.push(format!("meter {text} V"));
+    if let Some(volts) = super::live::battery(walk)? {
+        verdict.figures.push(format!("battery {volts:.2} V"));
     }
     Ok(verdict)
 }
 
-/// A number that the builder types; Enter takes `usual`.
-fn number(walk: &mut Walk<'_>, question: &str, usual: Option<String>) -> Result<String, Stop> {
+/// A number that the builder types, as text too; Enter takes `usual`.
+fn typed(walk: &mut Walk<'_>, question: &str, usual: Option<String>) -> Result<(String, f32), Stop> {
     loop {
         let reply = walk.ask(question)?;
-        if reply.is_empty()
-            && let Some(usual) = &usual
-        {
-            return Ok(usual.clone());
-        }
-        if decimal::parse(&reply).is_some() {
-            return Ok(reply);
+        let text = match (&usual, reply.is_empty()) {
+            (Some(usual), true) => usual.clone(),
+            _ => reply,
+        };
+        if let Some(number) = decimal::parse(&text) {
+            return Ok((text, number));
         }
     }
 }

@@ -1,11 +1,17 @@
 //! Chip, setup, self-tests, and the final check.
 
-use super::protocol::Identity;
-use super::walk::{Stop, Verdict, Walk};
-use super::{Judged, Step};
 use sophie_board_link::Failure;
-use sophie_board_link::parameters::{self, Version};
-use sophie_board_link::session::{Session, restarts};
+use sophie_board_link::vehicle::{Identity, Vehicle, inhibits};
+use sophie_control::allocation::motor_pulses::by_pulses;
+use sophie_control::arming::ArmingInhibit;
+use sophie_control::maths::decimal;
+use sophie_control::params::Params;
+use sophie_dialect::{MavCmd, MavMessage, MavResult, SophieReport};
+use sophie_tasks::storage::parameters::{Allowed, Shown, Unit, table_id};
+
+use super::protocol;
+use super::walk::{Stop, Verdict, Walk, number};
+use super::{Judged, Step};
 
 /// Parameters of the parts, which the builder enters; the rest have good defaults or are measured.
 const SETUP: [&str; 7] = [
@@ -20,170 +26,249 @@ const SETUP: [&str; 7] = [
 ];
 /// Pulse ends of motor controllers that take pulses.
 const PULSES: [&str; 3] = ["motor_pulse_min", "motor_pulse_idle", "motor_pulse_max"];
-/// Text of `status` for a storage that a save repairs.
-const UNSOUND: [&str; 3] = [
-    "stored parameters unreadable",
-    "storage holds another firmware's data",
-    "parameter storage full",
+/// State of a storage that is repaired by storing.
+const UNSOUND: [ArmingInhibit; 3] = [
+    ArmingInhibit::StorageUnreadable,
+    ArmingInhibit::StorageForeign,
+    ArmingInhibit::StorageFull,
 ];
-/// Row of `silicon` that fails with such a storage; the setup clears it.
-const STORED: &str = "stored data of";
-const BROWN_OUT: &str = "brown-out level";
 /// Rows of the self-test that may fail while their parts are unpowered.
-const STILL_OFF: [&str; 2] = ["receiver", "battery"];
+const STILL_OFF: [ArmingInhibit; 3] = [
+    ArmingInhibit::RcLost,
+    ArmingInhibit::BatterySilent,
+    ArmingInhibit::BatteryLow,
+];
+/// Number of attempts at a report that lost rows on its way.
+const TRIES: u32 = 3;
 
-/// A row of `silicon`.
-struct Look {
+/// A row of a report.
+struct Row {
     name: String,
-    read: String,
-    marked: bool,
+    found: String,
+    passed: bool,
+    /// Arming checks that belong to it.
+    inhibits: Vec<ArmingInhibit>,
 }
 
-/// The rows of `silicon`: mark, name, value, expected value.
-fn looks(session: &mut Session) -> Result<Vec<Look>, Failure> {
-    let said = session.command("silicon")?;
-    let looks = said.iter().filter_map(|line| {
-        let (found, _) = line.split_once("expected:")?;
-        let name = found.get(2..22)?.trim().to_owned();
-        let read = found.get(22..)?.trim().to_owned();
-        let marked = line.starts_with('*');
-        Some(Look { name, read, marked })
-    });
-    Ok(looks.collect())
+impl Row {
+    /// One of `these` belongs to it.
+    fn concerns(&self, these: &[ArmingInhibit]) -> bool {
+        self.inhibits.iter().any(|inhibit| these.contains(inhibit))
+    }
+
+    fn line(&self) -> String {
+        let verdict = if self.passed { "pass" } else { "FAIL" };
+        format!("{verdict}  {:20} {}", self.name, self.found)
+    }
 }
 
-/// Firmware and chip of the board.
-pub(super) fn identity(session: &mut Session) -> Result<Identity, Failure> {
-    let Version { firmware, build } = parameters::version(session)?;
-    let looks = looks(session)?;
-    let revision = looks.into_iter().find(|look| look.name == "revision");
-    Ok(Identity {
-        firmware,
-        build,
-        chip: revision.map_or_else(|| "unknown".to_owned(), |look| look.read),
-    })
+/// All rows of a report; the vehicle's reason if it refuses.
+fn report(walk: &mut Walk<'_>, report: SophieReport) -> Result<Result<Vec<Row>, String>, Stop> {
+    let which = report as u8;
+    let mut tries = 1..TRIES;
+    loop {
+        let mut rows = Vec::new();
+        let params = [f32::from(which)];
+        let result = walk
+            .vehicle
+            .command_with(MavCmd::MAV_CMD_SOPHIE_REPORT, &params, |message| {
+                if let MavMessage::SOPHIE_CHECK(row) = message
+                    && row.report == which
+                    && usize::from(row.row) == rows.len()
+                {
+                    rows.push((
+                        row.rows,
+                        Row {
+                            name: row.name.to_str().unwrap_or_default().to_owned(),
+                            found: row.found.to_str().unwrap_or_default().to_owned(),
+                            passed: row.passed != 0,
+                            inhibits: inhibits(row.inhibits),
+                        },
+                    ));
+                }
+            })?;
+        if result != MavResult::MAV_RESULT_ACCEPTED {
+            let refused = walk.vehicle.refused("the report");
+            return Ok(Err(refused.to_string()));
+        }
+        let whole = rows
+            .first()
+            .is_none_or(|(count, _)| usize::from(*count) == rows.len());
+        if whole || tries.next().is_none() {
+            return Ok(Ok(rows.into_iter().map(|(_, row)| row).collect()));
+        }
+    }
+}
+
+/// Firmware and chip of the board, and a warning where its parameters are not those of this program.
+pub(super) fn identity(vehicle: &mut Vehicle) -> Result<(protocol::Identity, Option<String>), Failure> {
+    let Identity {
+        board,
+        version,
+        chip,
+        image,
+        table,
+    } = vehicle.identity()?;
+    let count = Params::TABLE.len();
+    let other = (table != table_id())
+        .then(|| "Its table of parameters is not this program's: use the sophie of its release".to_owned());
+    let identity = protocol::Identity {
+        firmware: format!("SOPHIE {version} on {board}"),
+        build: format!("build {image:08x}, {count} parameters, table {table:08x}"),
+        chip: if chip.is_empty() {
+            "unknown".to_owned()
+        } else {
+            chip
+        },
+    };
+    Ok((identity, other))
+}
+
+/// Settings of the chip; not those of the stored data, which the setup repairs.
+fn chip_rows(walk: &mut Walk<'_>) -> Result<Result<Vec<Row>, String>, Stop> {
+    report(walk, SophieReport::SOPHIE_REPORT_CHIP)
 }
 
 pub(super) fn chip(walk: &mut Walk<'_>, _: &Step) -> Judged {
-    let found = looks(walk.session)?;
-    if found.iter().any(|look| look.marked && look.name == BROWN_OUT) {
-        for line in walk.session.command("brownout")? {
+    let mut found = match chip_rows(walk)? {
+        Ok(found) => found,
+        Err(refused) => return Ok(Verdict::of(false, vec![refused])),
+    };
+    let level = [ArmingInhibit::BrownOutLevel];
+    if let Some(row) = found.iter().find(|row| !row.passed && row.concerns(&level)) {
+        for line in [
+            &*format!("{}: {}", row.name, row.found),
+            "Until it is set, a supply that breaks down lets the chip execute garbage. Setting it writes the",
+            "chip's option bytes: from then on the chip stands in reset below that level, with this firmware",
+            "and every other, until a tool for option bytes takes it back. Nothing else is changed.",
+        ] {
             walk.say(&format!("  | {line}"));
         }
         walk.ask("Enter sets it, once for this chip, s skips, q stops:")?;
-        let said = walk.session.restart("brownout set")?;
-        if !restarts(&said) {
-            return Ok(Verdict::of(false, said));
+        if let Err(Failure::Board(line)) = walk.vehicle.restarting(MavCmd::MAV_CMD_SOPHIE_SET_BROWN_OUT) {
+            return Ok(Verdict::of(false, vec![line]));
         }
         walk.ready()?;
+        found = match chip_rows(walk)? {
+            Ok(found) => found,
+            Err(refused) => return Ok(Verdict::of(false, vec![refused])),
+        };
     }
-    let found = looks(walk.session)?;
-    let line = |look: &Look| {
-        let mark = if look.marked { ", not as expected" } else { "" };
-        format!("{}: {}{mark}", look.name, look.read)
+    if found.is_empty() {
+        let none = "the board reports no settings of its chip".to_owned();
+        return Ok(Verdict::of(false, vec![none]));
+    }
+    let line = |row: &Row| {
+        let mark = if row.passed { "" } else { ", not as expected" };
+        format!("{}: {}{mark}", row.name, row.found)
     };
-    let sound = found.iter().all(|look| !look.marked || look.name == STORED);
-    Ok(Verdict::of(
-        sound && !found.is_empty(),
-        found.iter().map(line).collect(),
-    ))
+    let sound = found.iter().all(|row| row.passed || row.concerns(&UNSOUND));
+    Ok(Verdict::of(sound, found.iter().map(line).collect()))
 }
 
 pub(super) fn setup(walk: &mut Walk<'_>, _: &Step) -> Judged {
-    let mut said = Vec::new();
     for name in SETUP {
-        said.push(set_up(walk, name)?);
-        if name == "motor_protocol" && takes_pulses(walk.session)? {
+        set_up(walk, name)?;
+        if name == "motor_protocol" && takes_pulses(walk)? {
             for name in PULSES {
-                said.push(set_up(walk, name)?);
+                set_up(walk, name)?;
             }
         }
     }
-    let status = walk.ready()?;
-    let unsound = status
-        .iter()
-        .find(|line| UNSOUND.iter().any(|text| line.contains(text)));
-    if let Some(line) = unsound {
-        walk.say(&format!("  | {line}"));
+    walk.ready()?;
+    let failing = walk.vehicle.arming()?;
+    if let Some(why) = failing.iter().find(|why| UNSOUND.contains(why)) {
+        walk.say(&format!("  | {}", why.text()));
         walk.ask("Enter erases what cannot be read and stores these, s skips, q stops:")?;
-        walk.user
-            .say("  saving; the board restarts: leave the vehicle at rest");
-        parameters::save(walk.session)?;
-        walk.ready()?;
+        walk.restart()?;
     }
-    let kept = walk.keep(&said)?;
-    let pulses = takes_pulses(walk.session)?;
-    let rows = parameters::listed(walk.session)?;
+    let kept = walk.keep()?;
+    let pulses = takes_pulses(walk)?;
+    let values = walk.vehicle.values()?;
     let asked = |name: &str| SETUP.contains(&name) || pulses && PULSES.contains(&name);
-    let rows = rows.into_iter().filter(|listed| asked(&listed.name));
-    let rows: Vec<parameters::Listed> = rows.collect();
-    let figures = rows
-        .iter()
-        .map(|listed| format!("{} {}", listed.name, listed.value));
+    let rows = Params::TABLE.iter().filter(|row| asked(row.name));
+    let figures = rows.filter_map(|row| Some(format!("{} {}", row.name, values.get(row.name)?)));
     let mut verdict = Verdict::of(true, figures.collect());
     verdict.parameters = kept;
     Ok(verdict)
 }
 
 /// True if the motor controllers take pulses, by the parameters.
-pub(super) fn takes_pulses(session: &mut Session) -> Result<bool, Failure> {
-    let rows = parameters::listed(session)?;
-    let protocol = rows.iter().find(|listed| listed.name == "motor_protocol");
-    Ok(protocol.is_some_and(|listed| matches!(&*listed.value, "400" | "125")))
+fn takes_pulses(walk: &mut Walk<'_>) -> Result<bool, Stop> {
+    Ok(by_pulses(&walk.vehicle.values()?.params()))
 }
 
-/// Shows a parameter and takes another value for it; returns the console's line of the change, empty without one.
-fn set_up(walk: &mut Walk<'_>, name: &str) -> Result<String, Stop> {
-    for line in walk.session.command(&format!("get {name}"))? {
-        walk.say(&format!("  | {}", line.trim()));
-    }
+/// Shows a parameter and takes another value for it.
+fn set_up(walk: &mut Walk<'_>, name: &str) -> Result<(), Stop> {
+    let Some(row) = Params::row(name) else {
+        return Ok(());
+    };
+    let now = walk.vehicle.value(name)?;
+    walk.say(&format!(
+        "  | {name} {}{}; it takes {}",
+        Shown(row, now),
+        Unit(row.unit),
+        Allowed(row)
+    ));
     loop {
-        let value = walk.ask(&format!("Enter keeps {name}, or type another value:"))?;
-        if value.is_empty() {
-            return Ok(String::new());
+        let reply = walk.ask(&format!("Enter keeps {name}, or type another value:"))?;
+        if reply.is_empty() {
+            return Ok(());
         }
-        let said = walk.session.command(&format!("set {name} {value}"))?.join("; ");
-        walk.say(&format!("  | {said}"));
-        if said.contains(" -> ") {
-            return Ok(said);
+        let named = row.choice_named(&reply).map(|choice| choice.value);
+        let Some(value) = named.or_else(|| decimal::parse(&reply)) else {
+            walk.say(&format!(
+                "  | '{reply}' is no value; {name} takes {}",
+                Allowed(row)
+            ));
+            continue;
+        };
+        match walk.set(name, value)? {
+            Ok(_) => return Ok(()),
+            Err(refused) => walk.say(&format!("  | {refused}")),
         }
     }
 }
 
-/// The table, and the names of the rows that fail.
-fn tested(walk: &mut Walk<'_>) -> Result<(Vec<String>, Vec<String>), Stop> {
+/// The rows of the self-test.
+fn tested(walk: &mut Walk<'_>) -> Result<Result<Vec<Row>, String>, Stop> {
     walk.ready()?;
-    let said = walk.session.command("selftest")?;
-    let failed = said
-        .iter()
-        .filter_map(|line| Some(line.strip_prefix("FAIL  ")?.get(..18)?.trim().to_owned()));
-    let failed = failed.collect();
-    Ok((said, failed))
+    report(walk, SophieReport::SOPHIE_REPORT_SELF_TEST)
 }
 
 pub(super) fn selftest(walk: &mut Walk<'_>, _: &Step) -> Judged {
-    let (said, failed) = tested(walk)?;
-    let passed = complete(&said) && failed.iter().all(|name| STILL_OFF.contains(&&**name));
-    Ok(Verdict::of(passed, said))
-}
-
-/// The table has its last line.
-fn complete(said: &[String]) -> bool {
-    said.last()
-        .is_some_and(|line| line.ends_with(" passed") || line.ends_with(" failed"))
+    Ok(match tested(walk)? {
+        Ok(rows) => {
+            let passed = rows.iter().all(|row| row.passed || row.concerns(&STILL_OFF));
+            Verdict::of(passed && !rows.is_empty(), rows.iter().map(Row::line).collect())
+        }
+        Err(refused) => Verdict::of(false, vec![refused]),
+    })
 }
 
 pub(super) fn everything(walk: &mut Walk<'_>, _: &Step) -> Judged {
-    let (mut said, failed) = tested(walk)?;
-    let sound = complete(&said) && failed.is_empty();
-    let status = walk.ready()?;
-    let free = status.iter().any(|line| line == "nothing forbids arming");
-    let forbids = |line: &&String| line.starts_with("arming refused") || *line == "nothing forbids arming";
-    said.extend(status.iter().filter(forbids).cloned());
-    let unsaved = parameters::unsaved(walk.session)?;
-    said.extend(unsaved.iter().map(|line| format!("not saved: {line}")));
-    let rows = parameters::listed(walk.session)?;
-    let other = rows.iter().filter(|listed| listed.changed);
-    said.extend(other.map(|listed| format!("not the default: {} {}", listed.name, listed.value)));
-    Ok(Verdict::of(sound && free && unsaved.is_empty(), said))
+    let rows = match tested(walk)? {
+        Ok(rows) => rows,
+        Err(refused) => return Ok(Verdict::of(false, vec![refused])),
+    };
+    let sound = !rows.is_empty() && rows.iter().all(|row| row.passed);
+    let mut figures: Vec<String> = rows.iter().map(Row::line).collect();
+    walk.ready()?;
+    let failing = walk.vehicle.arming()?;
+    figures.extend(
+        failing
+            .iter()
+            .map(|why| format!("arming refused: {}", why.text())),
+    );
+    if failing.is_empty() {
+        figures.push("nothing forbids arming".to_owned());
+    }
+    let values = walk.vehicle.values()?;
+    for row in Params::TABLE {
+        let value = values.get(row.name).unwrap_or(row.default);
+        if value.to_bits() != row.default.to_bits() {
+            figures.push(format!("not the default: {} {}", row.name, number(value)));
+        }
+    }
+    Ok(Verdict::of(sound && failing.is_empty(), figures))
 }

@@ -1,9 +1,10 @@
-//! The guided bring-up. Each step asks the builder for an action, types the console's own commands, judges the answer,
-//! and is written into the [`protocol`] before the next one begins.
+//! The guided bring-up. Each step asks the builder for an action, gives the vehicle commands over MAVLink, judges
+//! the answers by their numbers, and is written into the [`protocol`] before the next one begins.
 //!
 //! A step that measures also stores: it has passed when the board has restarted with its values in force. However a run
 //! ends, the finished steps are kept and not repeated.
 
+mod actuators;
 mod air;
 mod calibrate;
 mod checks;
@@ -20,8 +21,7 @@ use self::protocol::{Entry, Protocol, Result as Ended};
 pub use self::walk::{Reply, User};
 use self::walk::{Stop, Verdict, Walk};
 use sophie_board_link::Failure;
-use sophie_board_link::parameters;
-use sophie_board_link::session::Session;
+use sophie_board_link::vehicle::{Values, Vehicle};
 
 /// One step.
 pub struct Step {
@@ -140,10 +140,10 @@ pub const STEPS: [Step; 28] = [
     numbered("fsr-2", "Pressure sensor 2, rear-left", FSR, 2, calibrate::fsr),
     numbered("fsr-3", "Pressure sensor 3, front-right", FSR, 3, calibrate::fsr),
     numbered("fsr-4", "Pressure sensor 4, rear-right", FSR, 4, calibrate::fsr),
-    numbered("servo-1", "Servo 1, front-left", SERVO, 1, calibrate::servo),
-    numbered("servo-2", "Servo 2, rear-left", SERVO, 2, calibrate::servo),
-    numbered("servo-3", "Servo 3, front-right", SERVO, 3, calibrate::servo),
-    numbered("servo-4", "Servo 4, rear-right", SERVO, 4, calibrate::servo),
+    numbered("servo-1", "Servo 1, front-left", SERVO, 1, actuators::servo),
+    numbered("servo-2", "Servo 2, rear-left", SERVO, 2, actuators::servo),
+    numbered("servo-3", "Servo 3, front-right", SERVO, 3, actuators::servo),
+    numbered("servo-4", "Servo 4, rear-right", SERVO, 4, actuators::servo),
     step(
         "flow",
         "Flow and range module",
@@ -161,13 +161,13 @@ pub const STEPS: [Step; 28] = [
         "esc",
         "Motor controllers",
         "Propellers off, flight battery connected. Each motor turns for 2 s.",
-        calibrate::esc,
+        actuators::esc,
     ),
     step(
         "rotors",
         "Which rotor is which",
         "Propellers off, flight battery connected. Each output turns for 2 s: say which rotor, and which way.",
-        calibrate::rotors,
+        actuators::rotors,
     ),
     step(
         "radio",
@@ -194,7 +194,7 @@ const LAST: &str = "final";
 /// # Errors
 /// One line: a file that cannot be written or belongs to another board, an unknown step, or a lost line.
 pub fn run(
-    session: &mut Session,
+    vehicle: &mut Vehicle,
     user: &mut dyn User,
     protocol: &Path,
     again: &[String],
@@ -209,13 +209,16 @@ pub fn run(
         }
     }
     let mut protocol = Protocol::open(protocol)?;
-    let board = checks::identity(session)?;
+    let (board, other_table) = checks::identity(vehicle)?;
     user.say(&format!("{}, chip {}", board.firmware, board.chip));
     user.say(&board.build);
+    if let Some(other) = other_table {
+        user.say(&other);
+    }
     if let Some(other) = protocol.identify(board)? {
         user.say(&other);
     }
-    reopen(session, user, &mut protocol)?;
+    reopen(vehicle, user, &mut protocol)?;
     again.iter().for_each(|id| protocol.drop_entry(id));
     // Written before the first step: a run needs a writable file.
     protocol.write()?;
@@ -227,12 +230,13 @@ pub fn run(
     if !protocol.open_steps().is_empty() {
         user.say("Propellers off, flight battery disconnected, until a step asks for it.");
     }
-    let done = steps(&mut Walk::new(session, user), &mut protocol);
+    let done = steps(&mut Walk::new(vehicle, user), &mut protocol);
     user.say("");
     match done {
         Ok(()) => user.say(&protocol.state()),
         Err(Stop::Skip | Stop::Quit | Stop::Failed(Failure::Stopped(_))) => {
-            leave(session, user)?;
+            // Nothing is left running at the board.
+            vehicle.calm()?;
             user.say(&format!("Stopped. {}", protocol.state()));
         }
         Err(Stop::Failed(failure)) => return Err(failure),
@@ -241,25 +245,14 @@ pub fn run(
     Ok(protocol.open_steps().is_empty())
 }
 
-/// Leaves the board with no command running, and names the parameters that it has not stored.
-fn leave(session: &mut Session, user: &mut dyn User) -> Result<(), Failure> {
-    session.calm()?;
-    for line in parameters::unsaved(session)? {
-        user.say(&format!(
-            "Not saved at the board, and lost with its next restart: {line}"
-        ));
-    }
-    Ok(())
-}
-
 /// Reopens the steps whose values the board no longer has.
-fn reopen(session: &mut Session, user: &mut dyn User, protocol: &mut Protocol) -> Result<(), Failure> {
+fn reopen(vehicle: &mut Vehicle, user: &mut dyn User, protocol: &mut Protocol) -> Result<(), Failure> {
     if STEPS.iter().all(|step| protocol.entry(step.id).is_none()) {
         return Ok(());
     }
-    let rows = parameters::listed(session)?;
+    let values = vehicle.values()?;
     for (index, step) in STEPS.iter().enumerate() {
-        if let Some(lost) = lost(index, protocol, &rows) {
+        if let Some(lost) = lost(index, protocol, &values) {
             user.say(&format!("{} is to be done again: {lost}", step.id));
             protocol.drop_entry(step.id);
         }
@@ -269,32 +262,32 @@ fn reopen(session: &mut Session, user: &mut dyn User, protocol: &mut Protocol) -
 
 /// The first parameter that the step at `index` has stored and whose value on the board differs. The last step that
 /// stored a parameter is responsible for its value.
-fn lost(index: usize, protocol: &Protocol, rows: &[parameters::Listed]) -> Option<String> {
+fn lost(index: usize, protocol: &Protocol, values: &Values) -> Option<String> {
     let (step, later) = STEPS.get(index..)?.split_first()?;
     let stored = |step: &Step| {
         let entry = protocol.entry(step.id)?;
         (entry.result == Ended::Passed).then_some(&entry.parameters)
     };
     stored(step)?.iter().find_map(|(name, value)| {
-        let now = &rows.iter().find(|listed| listed.name == *name)?.value;
+        let now = walk::number(values.get(name)?);
         let has = if name == MARKS {
             marked(step, now)
         } else {
             let answers = |later| stored(later).is_some_and(|all| all.contains_key(name));
-            now.parse() == Ok(*value) || later.iter().any(answers)
+            now == *value || later.iter().any(answers)
         };
         (!has).then(|| format!("{name} is {now} at the board, was {value}"))
     })
 }
 
 /// The marks `now` have the digit of the step's servo: each step adds its own to one parameter.
-fn marked(step: &Step, now: &str) -> bool {
-    let Some((servo, now)) = step.number.checked_sub(1).zip(now.parse::<f32>().ok()) else {
+fn marked(step: &Step, now: f64) -> bool {
+    let Some(servo) = step.number.checked_sub(1) else {
         return false;
     };
     ServoMarks::ALL
         .iter()
-        .any(|marks| marks.number() == now && marks.has(servo))
+        .any(|marks| f64::from(marks.number()) == now && marks.has(servo))
 }
 
 fn steps(walk: &mut Walk<'_>, protocol: &mut Protocol) -> Result<(), Stop> {
@@ -328,7 +321,7 @@ fn one(walk: &mut Walk<'_>, protocol: &mut Protocol, step: &Step) -> Result<bool
         Err(Stop::Skip) => (Ended::Skipped, Verdict::default()),
         Err(stop) => return Err(stop),
     };
-    for line in verdict.figures.iter().filter(|_| !verdict.shown) {
+    for line in &verdict.figures {
         walk.say(&format!("    {line}"));
     }
     walk.say(match ended {
@@ -380,12 +373,7 @@ mod tests {
 
     /// The steps to be done again where the board has `name` at `now`.
     fn again(protocol: &Protocol, name: &str, now: &str) -> Vec<&'static str> {
-        let rows = [parameters::Listed {
-            name: name.to_owned(),
-            value: now.to_owned(),
-            allowed: String::new(),
-            changed: true,
-        }];
+        let rows = Values([(name.to_owned(), now.parse().unwrap())].into());
         let open = (0..STEPS.len()).filter(|index| lost(*index, protocol, &rows).is_some());
         open.map(|index| STEPS[index].id).collect()
     }

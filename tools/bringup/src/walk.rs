@@ -1,19 +1,16 @@
-//! The context of every step: the builder, the session, and dialogues with both.
+//! The context of every step: the builder, the vehicle, and what both are asked.
 
 use std::collections::BTreeMap;
-use std::time::Instant;
 
 use sophie_board_link::Failure;
-use sophie_board_link::parameters;
-use sophie_board_link::session::{Session, Turn};
-
-/// Questions and waiting texts of the console.
-const READY: &str = "Enter when it is so, any other key ends: ";
-const TURNED_EVENLY: &str = "did it turn, evenly, and beep no more? y or n: ";
-const WHICH_ROTOR: &str = "which rotor turned, 1 to 4, or 0 for none? ";
-const WHICH_WAY: &str = "from above, clockwise (c) or anticlockwise (a)? ";
-const MARK: &str = " us\n";
-const QUESTIONS: [&str; 5] = [READY, TURNED_EVENLY, WHICH_ROTOR, WHICH_WAY, MARK];
+use sophie_board_link::vehicle::Vehicle;
+use sophie_control::calibration::procedure;
+use sophie_control::calibration::step::Calibration;
+use sophie_control::params::Params;
+use sophie_dialect::{
+    MavCmd, MavMessage, MavResult, SOPHIE_CALIBRATION_RESULT_DATA, SophieCalibrationOutcome,
+};
+use sophie_tasks::storage::parameters::{Allowed, Shown, Unit};
 
 /// The builder's reply.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -58,8 +55,6 @@ impl From<Failure> for Stop {
 pub(super) struct Verdict {
     pub passed: bool,
     pub figures: Vec<String>,
-    /// The figures were shown already.
-    pub shown: bool,
     /// Parameters that are stored and in force.
     pub parameters: BTreeMap<String, f64>,
 }
@@ -74,28 +69,46 @@ impl Verdict {
     }
 }
 
+/// What one step of a calibration has given.
+pub(super) enum Measured {
+    /// Taken, or complete.
+    Good(SOPHIE_CALIBRATION_RESULT_DATA),
+    /// Why not, in a line.
+    Bad(String),
+}
+
 /// The context of a run.
 pub(super) struct Walk<'a> {
-    pub session: &'a mut Session,
+    pub vehicle: &'a mut Vehicle,
     pub user: &'a mut dyn User,
     /// Count of the board's restarts when the builder last confirmed that the propellers are off.
     off_since: Option<u32>,
     /// Weight of the last pressure sensor, N.
     pub weight: String,
+    /// Parameters set and not stored yet, with their new values.
+    changed: BTreeMap<String, f32>,
 }
 
 impl<'a> Walk<'a> {
-    pub(super) fn new(session: &'a mut Session, user: &'a mut dyn User) -> Self {
+    pub(super) fn new(vehicle: &'a mut Vehicle, user: &'a mut dyn User) -> Self {
         Self {
-            session,
+            vehicle,
             user,
             off_since: None,
             weight: "1.3".to_owned(),
+            changed: BTreeMap::new(),
         }
     }
 
     pub(super) fn say(&mut self, line: &str) {
         self.user.say(line);
+    }
+
+    /// Shows what the vehicle has said.
+    fn show_texts(&mut self) {
+        for text in self.vehicle.texts() {
+            self.user.say(&format!("  | {text}"));
+        }
     }
 
     /// The builder's reply; `s` skips the step, `q` and the end of input stop.
@@ -104,89 +117,8 @@ impl<'a> Walk<'a> {
         understood(reply)
     }
 
-    /// Waits until the vehicle is disarmed and calibrated; returns the lines of `status`.
-    pub(super) fn ready(&mut self) -> Result<Vec<String>, Stop> {
-        let begun = Instant::now();
-        let mut said = false;
-        loop {
-            let status = self.session.command("status")?;
-            let mode = status.first().map_or("nothing", String::as_str);
-            if mode.starts_with("DISARMED") {
-                return Ok(status);
-            }
-            if !said {
-                said = true;
-                self.user.say(&format!("  waiting: {mode}"));
-            }
-            if begun.elapsed() > self.session.longest_start() {
-                let port = self.session.port();
-                let mode = mode.to_owned();
-                return Err(Stop::Failed(Failure::Board(format!(
-                    "{port}: the board does not come to DISARMED: {mode}"
-                ))));
-            }
-            std::thread::sleep(std::time::Duration::from_millis(200));
-        }
-    }
-
-    /// Confirms to the console that the propellers are off, once for each start of the board; the console's complaint
-    /// if it refuses.
-    pub(super) fn propellers_off(&mut self) -> Result<Option<String>, Stop> {
-        if self.off_since == Some(self.session.restarts()) {
-            return Ok(None);
-        }
-        while self.ask("Type off once all four propellers are off:")? != "off" {}
-        let said = self.session.command("propellers off")?;
-        if said.iter().any(|line| line.contains("motors may be tried")) {
-            self.off_since = Some(self.session.restarts());
-            return Ok(None);
-        }
-        Ok(Some(said.join("; ")))
-    }
-
-    /// Types `command` and answers its questions with the builder's replies; returns all output.
-    pub(super) fn dialogue(&mut self, command: &str) -> Result<Vec<String>, Stop> {
-        self.session.begin(command)?;
-        let mut all = Vec::new();
-        loop {
-            let Turn { lines, question } = self.session.turn(command, &QUESTIONS)?;
-            for line in &lines {
-                self.user.say(&format!("  | {line}"));
-            }
-            all.extend(lines);
-            let Some(question) = question else {
-                return Ok(all);
-            };
-            if let Err(stop) = self.answer(question) {
-                // The console must not be left in the middle of it.
-                if !matches!(stop, Stop::Failed(_)) {
-                    self.session.cancel()?;
-                }
-                return Err(stop);
-            }
-        }
-    }
-
-    /// The builder's answer to `question`, pressed at the console.
-    fn answer(&mut self, question: &str) -> Result<(), Stop> {
-        let keys = match question {
-            READY => {
-                self.ask("Enter when it is so, s skips, q stops:")?;
-                "\r".to_owned()
-            }
-            MARK => return self.mark(),
-            TURNED_EVENLY => self.one_of("Did it turn, evenly, and beep no more? y or n:", "yn")?,
-            WHICH_ROTOR => self.one_of("Which rotor turned, 1 to 4, 0 for none, r once more?", "01234r")?,
-            _ => self.one_of(
-                "From above, clockwise (c) or anticlockwise (a), r once more?",
-                "car",
-            )?,
-        };
-        self.press(&keys)
-    }
-
     /// A reply that is one of `keys`.
-    fn one_of(&mut self, question: &str, keys: &str) -> Result<String, Stop> {
+    pub(super) fn one_of(&mut self, question: &str, keys: &str) -> Result<String, Stop> {
         loop {
             let reply = self.ask(question)?;
             if reply.len() == 1 && keys.contains(&reply) {
@@ -195,65 +127,221 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Moves a servo by the builder's `+`, `-`, `+12` until Enter takes its mark.
-    fn mark(&mut self) -> Result<(), Stop> {
-        loop {
-            let reply = self.ask("+ or - moves it by 10 us (+9: nine times), Enter takes it:")?;
-            if reply.is_empty() {
-                return self.press("\r");
+    /// Waits until the vehicle is disarmed and calibrated.
+    pub(super) fn ready(&mut self) -> Result<(), Stop> {
+        let user = &mut *self.user;
+        let waits = |mode: &str| user.say(&format!("  waiting: {mode}"));
+        Ok(self.vehicle.ready(waits)?)
+    }
+
+    /// Tells the vehicle that the propellers are off, once for each start of the board; its complaint if it refuses.
+    pub(super) fn propellers_off(&mut self) -> Result<Option<String>, Stop> {
+        if self.off_since == Some(self.vehicle.restarts()) {
+            return Ok(None);
+        }
+        while self.ask("Type off once all four propellers are off:")? != "off" {}
+        match self.order(MavCmd::MAV_CMD_USER_1, &[1.0])? {
+            None => {
+                self.off_since = Some(self.vehicle.restarts());
+                Ok(None)
             }
-            let Some(keys) = moves(&reply) else {
-                continue;
-            };
-            for key in keys.bytes() {
-                if !self.session.press(key)? {
-                    return Ok(());
-                }
-                let Turn { lines, question } = self.session.turn("a move of the servo", &QUESTIONS)?;
-                if let Some(line) = lines.last() {
-                    self.user.live(&format!("  | {line}"));
-                }
-                if question.is_none() {
-                    // The command has ended; the next turn finds the prompt.
-                    return Ok(self.session.press(b'\r').map(|_| ())?);
-                }
-            }
+            refused => Ok(refused),
         }
     }
 
-    /// Presses the keys, unless the command has ended meanwhile.
-    fn press(&mut self, keys: &str) -> Result<(), Stop> {
-        for key in keys.bytes() {
-            if !self.session.press(key)? {
-                self.user.say("  the console has waited too long for the answer");
-            }
+    /// Gives `command`; the vehicle's reason if it refuses.
+    pub(super) fn order(&mut self, command: MavCmd, params: &[f32]) -> Result<Option<String>, Stop> {
+        // Older texts belong to other orders.
+        self.show_texts();
+        let result = self.vehicle.command(command, params)?;
+        if result == MavResult::MAV_RESULT_ACCEPTED {
+            return Ok(None);
         }
-        Ok(())
+        Ok(Some(self.reason()?))
     }
 
-    /// Stores the parameters that are set and not saved; returns those of `said`, in force after the restart.
-    pub(super) fn keep(&mut self, said: &[String]) -> Result<BTreeMap<String, f64>, Stop> {
-        let set: BTreeMap<String, f64> = said.iter().filter_map(|line| changed(line)).collect();
-        if parameters::unsaved(self.session)?.is_empty() {
-            return Ok(set);
+    /// The vehicle's newest text, which gives the reason of a refusal and follows its acknowledgement.
+    fn reason(&mut self) -> Result<String, Stop> {
+        let text = self.vehicle.wait(REASON, |message| match message {
+            MavMessage::STATUSTEXT(_) => Some(()),
+            _ => None,
+        });
+        text?;
+        let texts = self.vehicle.texts();
+        Ok(texts
+            .last()
+            .cloned()
+            .unwrap_or_else(|| "refused without a reason".to_owned()))
+    }
+
+    /// Measures one step of a calibration and shows its result.
+    pub(super) fn measure(
+        &mut self,
+        calibration: Calibration,
+        part: usize,
+        step: u8,
+        values: [f32; 2],
+    ) -> Result<Measured, Stop> {
+        self.show_texts();
+        let [first, second] = values;
+        let params = [
+            calibration as u8 as f32,
+            part as f32,
+            f32::from(step),
+            first,
+            second,
+        ];
+        let mut found = None;
+        let result = self
+            .vehicle
+            .command_with(MavCmd::MAV_CMD_SOPHIE_CALIBRATE, &params, |message| {
+                if let MavMessage::SOPHIE_CALIBRATION_RESULT(result) = message
+                    && (result.calibration, result.step) == (calibration as u8, step)
+                {
+                    found = Some(result.clone());
+                }
+            })?;
+        let bad = match (result, found) {
+            (MavResult::MAV_RESULT_ACCEPTED, Some(result)) => return Ok(Measured::Good(result)),
+            (MavResult::MAV_RESULT_FAILED, Some(result)) => unfit(&result),
+            // The result is lost on its way: the step is measured again by the builder.
+            (MavResult::MAV_RESULT_ACCEPTED | MavResult::MAV_RESULT_FAILED, None) => {
+                "not taken: its result was lost on its way".to_owned()
+            }
+            _ => format!("not taken: {}", self.reason()?),
+        };
+        // The reason is told once.
+        self.vehicle.texts();
+        Ok(Measured::Bad(bad))
+    }
+
+    /// Notes the parameters that a calibration of `part` (0 to 3) has set, given their values before; a line for each.
+    pub(super) fn note_changes(
+        &mut self,
+        calibration: Calibration,
+        part: usize,
+        before: &BTreeMap<String, f32>,
+    ) -> Result<Vec<String>, Stop> {
+        let mut lines = Vec::new();
+        for name in procedure::parameters(calibration, part).into_iter().flatten() {
+            let now = self.vehicle.value(name)?;
+            let old = before.get(name).copied().unwrap_or(now);
+            lines.push(self.changed(name, old, now));
         }
-        self.user
-            .say("  saving; the board restarts: leave the vehicle at rest");
-        parameters::save(self.session)?;
-        self.ready()?;
-        let rows = parameters::listed(self.session)?;
-        for (name, value) in &set {
-            let now = rows.iter().find(|listed| listed.name == *name);
-            let now = now.map_or("nothing", |listed| &listed.value);
-            if now.parse() != Ok(*value) {
-                let port = self.session.port();
+        Ok(lines)
+    }
+
+    /// Values of the parameters that a calibration of `part` (0 to 3) sets.
+    pub(super) fn before(
+        &mut self,
+        calibration: Calibration,
+        part: usize,
+    ) -> Result<BTreeMap<String, f32>, Stop> {
+        let mut values = BTreeMap::new();
+        for name in procedure::parameters(calibration, part).into_iter().flatten() {
+            values.insert(name.to_owned(), self.vehicle.value(name)?);
+        }
+        Ok(values)
+    }
+
+    /// Notes and shows a change.
+    fn changed(&mut self, name: &str, old: f32, new: f32) -> String {
+        self.changed.insert(name.to_owned(), new);
+        let line = match Params::row(name) {
+            Some(row) => format!(
+                "{name} {} -> {}{}",
+                Shown(row, old),
+                Shown(row, new),
+                Unit(row.unit)
+            ),
+            None => format!("{name} {old} -> {new}"),
+        };
+        self.user.say(&format!("  | {line}"));
+        line
+    }
+
+    /// Sets `name` to `value`; the line of the change, or why it is refused.
+    pub(super) fn set(&mut self, name: &str, value: f32) -> Result<Result<String, String>, Stop> {
+        let Some(row) = Params::row(name) else {
+            return Ok(Err(format!("no parameter is called {name}")));
+        };
+        let refused = format!(
+            "{name} cannot be {}; it takes {}",
+            Shown(row, value),
+            Allowed(row)
+        );
+        if !row.allows(value) {
+            return Ok(Err(refused));
+        }
+        let old = self.vehicle.value(name)?;
+        let now = self.vehicle.set(name, value)?;
+        if now.to_bits() != value.to_bits() {
+            return Ok(Err(self.reason()?));
+        }
+        Ok(Ok(self.changed(name, old, now)))
+    }
+
+    /// Stores what was set and restarts; returns it, read back after the restart.
+    pub(super) fn keep(&mut self) -> Result<BTreeMap<String, f64>, Stop> {
+        let changed = std::mem::take(&mut self.changed);
+        if changed.is_empty() {
+            return Ok(BTreeMap::new());
+        }
+        self.restart()?;
+        let mut kept = BTreeMap::new();
+        for (name, value) in changed {
+            let now = self.vehicle.value(&name)?;
+            if now.to_bits() != value.to_bits() {
+                let port = self.vehicle.port();
                 return Err(Stop::Failed(Failure::Board(format!(
-                    "{port}: read back after the restart: {name} is {now}, saved was {value}"
+                    "{port}: read back after the restart: {name} is {now}, stored was {value}"
                 ))));
             }
+            kept.insert(name, number(value));
         }
-        Ok(set)
+        Ok(kept)
     }
+
+    /// Stores the parameters and restarts.
+    pub(super) fn restart(&mut self) -> Result<(), Stop> {
+        self.user
+            .say("  storing; the board restarts: leave the vehicle at rest");
+        self.show_texts();
+        self.vehicle.store_and_restart()?;
+        // Texts of the start repeat the arming checks.
+        self.vehicle.texts();
+        self.ready()
+    }
+}
+
+/// Longest wait for the text behind a refusal.
+const REASON: std::time::Duration = std::time::Duration::from_millis(500);
+
+/// The number as it is written: a float's shortest decimal.
+pub(super) fn number(value: f32) -> f64 {
+    value.to_string().parse().unwrap_or_else(|_| f64::from(value))
+}
+
+/// Why a step is not taken.
+fn unfit(result: &SOPHIE_CALIBRATION_RESULT_DATA) -> String {
+    let (quantity, unit) = (
+        result.quantity.to_str().unwrap_or_default(),
+        result.unit.to_str().unwrap_or_default(),
+    );
+    let SOPHIE_CALIBRATION_RESULT_DATA {
+        value, least, most, ..
+    } = result;
+    let unit = if unit.is_empty() {
+        String::new()
+    } else {
+        format!(" {unit}")
+    };
+    format!("not taken: {quantity} is {value:.2}; {least:.2} to {most:.2}{unit} allowed")
+}
+
+/// True where the calibration is complete.
+pub(super) fn is_done(result: &SOPHIE_CALIBRATION_RESULT_DATA) -> bool {
+    result.outcome == SophieCalibrationOutcome::SOPHIE_CALIBRATION_OUTCOME_DONE as u8
 }
 
 /// The text of a reply.
@@ -268,67 +356,5 @@ pub(super) fn understood(reply: Reply) -> Result<String, Stop> {
             "s" => Err(Stop::Skip),
             other => Ok(other.to_owned()),
         },
-    }
-}
-
-/// Name and new value of `arm_zero_1 0 -> 0.04 rad, in force after save`.
-fn changed(line: &str) -> Option<(String, f64)> {
-    let (change, force) = line.rsplit_once(", ")?;
-    if !matches!(force, "in force after save" | "as in force") {
-        return None;
-    }
-    let (old, new) = change.split_once(" -> ")?;
-    let name = old.split(' ').next()?;
-    Some((name.to_owned(), new.split(' ').next()?.parse().ok()?))
-}
-
-/// `+++`, `--`, `+12` as single keys; most is what moves a servo over its whole range.
-fn moves(reply: &str) -> Option<String> {
-    const MOST: usize = 200;
-    let sign = reply.chars().next().filter(|sign| matches!(sign, '+' | '-'))?;
-    let count = match reply.get(1..)?.parse() {
-        Ok(count) => count,
-        Err(_) if reply.chars().all(|c| c == sign) => reply.len(),
-        Err(_) => return None,
-    };
-    (count <= MOST).then(|| sign.to_string().repeat(count))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_change_is_read_from_its_line() {
-        let value = |line: &str| changed(line).map(|(name, value)| format!("{name} {value}"));
-        for (line, wanted) in [
-            (
-                "accel_bias_x 0 -> -0.11 m/s2, in force after save",
-                Some("accel_bias_x -0.11"),
-            ),
-            (
-                "arm_sign_1 1 along -> -1 reversed, as in force",
-                Some("arm_sign_1 -1"),
-            ),
-            ("infill 6.9 -> 8 %", None),
-            ("ended: nothing is changed", None),
-        ] {
-            assert_eq!(value(line).as_deref(), wanted, "{line}");
-        }
-    }
-
-    #[test]
-    fn moves_of_a_servo_are_counted() {
-        for (reply, keys) in [
-            ("+", Some("+")),
-            ("---", Some("---")),
-            ("+4", Some("++++")),
-            ("-12", Some("------------")),
-        ] {
-            assert_eq!(moves(reply).as_deref(), keys, "{reply}");
-        }
-        for reply in ["", "x", "+-", "+x", "5", "+1000", "+ 1"] {
-            assert!(moves(reply).is_none(), "{reply}");
-        }
     }
 }
