@@ -229,6 +229,18 @@ impl Face {
         Self::Left,
     ];
 
+    /// The side that lies below, in a word.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Belly => "belly",
+            Self::Back => "back",
+            Self::Nose => "nose",
+            Self::Tail => "tail",
+            Self::Right => "right",
+            Self::Left => "left",
+        }
+    }
+
     /// Orientation of the vehicle, in words.
     pub const fn text(self) -> &'static str {
         match self {

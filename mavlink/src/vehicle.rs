@@ -9,7 +9,6 @@ use sophie_control::chain::Attitude;
 use sophie_control::gripper::grip::GripState;
 use sophie_control::mode::{Mode, Reason};
 use sophie_control::navigation::air_pressure::AirPressure;
-use sophie_control::navigation::flow_range_sample::GroundView;
 use sophie_control::pilot::bench_orders::BenchView;
 use sophie_control::pilot::rc::Sticks;
 use sophie_control::pilot::remote::RemoteAnswer;
@@ -54,12 +53,8 @@ pub struct Vehicle {
     pub reel: PerArm<f32>,
     /// State of the grip.
     pub grip: Option<GripState>,
-    /// Time of the attitude, µs.
-    pub attitude_us: u64,
-    /// Contact pressures, Pa; `None` for a sensor that is silent or faulty.
-    pub pressures: PerArm<Option<f32>>,
-    /// Flow and range below the vehicle.
-    pub ground: GroundView,
+    /// The sensors, as calibrations take them.
+    pub readings: Readings,
     /// The air around the board.
     pub air: Option<AirPressure>,
     /// Name of the board.
@@ -111,9 +106,7 @@ impl Default for Vehicle {
             tilt: [f32::NAN; 4],
             reel: [f32::NAN; 4],
             grip: None,
-            attitude_us: 0,
-            pressures: [None; 4],
-            ground: GroundView::default(),
+            readings: Readings::default(),
             air: None,
             board: "",
             chip: [0; 24],
@@ -128,17 +121,6 @@ impl Vehicle {
     /// The mode; `None` while the commander is silent.
     pub fn mode(&self) -> Option<Mode> {
         self.condition.map(|condition| condition.mode)
-    }
-
-    /// The sensors' readings, as a calibration takes them.
-    pub fn readings(&self) -> Readings {
-        Readings {
-            attitude: self.attitude.map(|attitude| (self.attitude_us, attitude)),
-            battery: self.battery.map(|battery| battery.voltage),
-            pressures: self.pressures,
-            tilts: self.tilt.map(|tilt| tilt.is_finite().then_some(tilt)),
-            ground: self.ground,
-        }
     }
 
     /// True while the rotors stand and cannot start: parameters may change, the board may restart.

@@ -16,7 +16,6 @@ pub mod one_of;
 mod output;
 mod parameters;
 mod report;
-mod rotors;
 mod save;
 mod selftest;
 pub mod terminals;
@@ -24,6 +23,7 @@ mod watch;
 
 use embassy_futures::yield_now;
 use embassy_time::Timer;
+use sophie_control::calibration::procedure::Procedure;
 use sophie_control::params::Params;
 
 use self::command::{Command, HELP, parse};
@@ -58,6 +58,7 @@ pub async fn run(
         storage,
         chip,
         params: links.params,
+        procedure: Procedure::new(),
         order: 0,
     };
     let mut line = Line::default();
@@ -94,6 +95,8 @@ struct Console<'a, I, O, S, C> {
     chip: C,
     /// The working copy.
     params: Params,
+    /// The calibrations.
+    procedure: Procedure,
     /// Sequence number of the newest bench order of this console.
     order: u32,
 }
@@ -142,8 +145,8 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
             }
             Command::PropellersOff => self.propellers_off().await,
             Command::Motor(number, percent) => self.motor(number, percent).await,
+            Command::MotorPulse(number, pulse) => self.motor_by_pulse(number, pulse).await,
             Command::Servo { number, to, at } => self.servo(number, to, at).await,
-            Command::Rotors => self.rotors().await,
             Command::Calibrate(what, arguments) => self.calibrate(what, arguments).await,
             Command::Watch(group) => self.watch(group).await,
             Command::SelfTest => self.selftest().await,

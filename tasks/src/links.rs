@@ -30,6 +30,7 @@ use sophie_control::approach::pipe_target::PipeTarget;
 use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
 use sophie_control::attitude::attitude_loop::Target;
 use sophie_control::battery::{Battery, ServoBattery, ServoSupply};
+use sophie_control::calibration::procedure::Readings;
 use sophie_control::chain::setpoint::{ClampCommand, Setpoint};
 use sophie_control::chain::{Attitude, Demand, ImuSample, MixOutput};
 use sophie_control::gripper::grip::GripState;
@@ -242,6 +243,19 @@ impl Links {
             }
         } else {
             ServoSupply::NotFitted
+        }
+    }
+
+    /// What the sensors show, as calibrations take it.
+    pub fn readings(&self) -> Readings {
+        Readings {
+            attitude: (self.attitude.latest())
+                .filter(|_| self.attitude.fresh().is_some())
+                .map(|m| (m.at.as_micros(), m.value)),
+            battery: self.battery.fresh().map(|battery| battery.voltage),
+            pressures: (self.contact.fresh()).map_or([None; 4], |contact| contact.arms.map(Result::ok)),
+            tilts: self.tilts().values(),
+            ground: self.ground.fresh().unwrap_or_default(),
         }
     }
 

@@ -36,7 +36,7 @@ fn acks(station: &Station) -> Vec<(u8, u8)> {
 }
 
 fn feels(station: &mut Station, force: Vec3) {
-    station.vehicle.attitude.as_mut().unwrap().accel = force;
+    station.vehicle.readings.attitude.as_mut().unwrap().1.accel = force;
 }
 
 #[test]
@@ -77,7 +77,7 @@ fn a_gyro_at_rest_changes_nothing_and_a_shaken_one_is_not_taken() {
     calibrate(&mut station, GYRO);
     for i in 0..150 {
         let rate = if i % 2 == 0 { 0.25 } else { -0.25 };
-        station.vehicle.attitude.as_mut().unwrap().rate = Vec3::new(rate, 0.0, 0.0);
+        station.vehicle.readings.attitude.as_mut().unwrap().1.rate = Vec3::new(rate, 0.0, 0.0);
         station.run(20);
     }
     assert_eq!(acks(&station), [(5, 0), (4, 0)]);

@@ -51,7 +51,8 @@ fn station() -> Station {
 #[test]
 fn a_step_is_measured_with_its_progress_and_its_result_comes_before_the_acknowledgement() {
     let mut station = station();
-    station.vehicle.attitude.as_mut().unwrap().accel = Face::Belly.force() + Vec3::new(0.25, 0.0, 0.0);
+    station.vehicle.readings.attitude.as_mut().unwrap().1.accel =
+        Face::Belly.force() + Vec3::new(0.25, 0.0, 0.0);
     calibrate(&mut station, Calibration::Level, [0.0, 1.0, 0.0, 0.0]);
     station.run(2700);
     assert_eq!(acks(&station), [(5, 0), (5, 40), (5, 80), (0, 0)]);
@@ -77,13 +78,13 @@ fn steps_of_a_part_follow_each_other_and_what_is_unfit_is_named_with_its_range()
     station.run(100);
     assert_eq!(acks(&station), [(1, 0)], "the second step first");
     station.sent.clear();
-    station.vehicle.tilt = [0.0, 0.02, 0.0, 0.0];
+    station.vehicle.readings.tilts = [0.0, 0.02, 0.0, 0.0].map(Some);
     calibrate(&mut station, Calibration::Arm, [2.0, 1.0, 0.0, 0.0]);
     station.run(2700);
-    station.vehicle.tilt = [0.0, 0.05, 0.0, 0.0];
+    station.vehicle.readings.tilts = [0.0, 0.05, 0.0, 0.0].map(Some);
     calibrate(&mut station, Calibration::Arm, [2.0, 2.0, 0.0, 0.0]);
     station.run(2700);
-    station.vehicle.tilt = [0.0, 0.42, 0.0, 0.0];
+    station.vehicle.readings.tilts = [0.0, 0.42, 0.0, 0.0].map(Some);
     calibrate(&mut station, Calibration::Arm, [2.0, 2.0, 0.0, 0.0]);
     station.run(2700);
     let results = station.got::<SOPHIE_CALIBRATION_RESULT_DATA>();

@@ -1,6 +1,7 @@
 //! A ground station beside a server.
 
 use mavlink_core::{MAVLinkV2MessageRaw, MavHeader, MavlinkVersion, MessageData};
+use sophie_control::calibration::procedure::Readings;
 use sophie_control::chain::Attitude;
 use sophie_control::maths::vector::{Quat, Vec3};
 use sophie_control::mode::Mode;
@@ -17,17 +18,22 @@ pub const PERIOD: u64 = 20_000;
 
 /// A vehicle at rest that nothing is wrong with.
 pub fn vehicle(mode: Mode) -> Vehicle {
+    let attitude = Attitude {
+        q: Quat::default(),
+        accel: Vec3::new(0.0, 0.0, -9.80665),
+        calibrated: true,
+        ..Attitude::default()
+    };
     Vehicle {
         condition: Some(Condition {
             mode,
             ..Condition::default()
         }),
-        attitude: Some(Attitude {
-            q: Quat::default(),
-            accel: Vec3::new(0.0, 0.0, -9.80665),
-            calibrated: true,
-            ..Attitude::default()
-        }),
+        attitude: Some(attitude),
+        readings: Readings {
+            attitude: Some((0, attitude)),
+            ..Readings::default()
+        },
         sticks: Some(sophie_control::pilot::rc::Sticks::default()),
         battery: Some(sophie_control::battery::Battery {
             voltage: 15.2,

@@ -6,7 +6,7 @@
 use core::fmt;
 
 use embassy_time::{Duration, Instant};
-use sophie_control::allocation::motor_pulses::least_command;
+use sophie_control::allocation::motor_pulses::{MotorPulses, least_command};
 use sophie_control::gripper::tendon::Reel;
 use sophie_control::maths::scalar::{deg, to_deg};
 use sophie_control::pilot::bench_orders::{
@@ -81,6 +81,32 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         self.say_end(format_args!("motor {number} stopped"), end).await;
     }
 
+    /// Spins motor `number` by a pulse, µs, which may be below the least that turns every motor.
+    pub(super) async fn motor_by_pulse(&mut self, number: &str, pulse: &str) {
+        let Some(rotor) = self.one_of_four("motor", number).await else {
+            return;
+        };
+        let pulses = MotorPulses::from_params(&self.links.params).unwrap_or(MotorPulses::DIGITAL);
+        let drive = decimal::parse(pulse).map(|pulse_us| pulses.command(pulse_us));
+        let Some(drive) = drive.filter(|drive| (SPIN_DRIVE_MIN..=SPIN_DRIVE_MAX).contains(drive)) else {
+            let [least, most] = [SPIN_DRIVE_MIN, SPIN_DRIVE_MAX].map(|drive| Decimal(pulses.pulse_us(drive)));
+            return self
+                .out
+                .line(format_args!(
+                    "a motor cannot be tried at '{pulse}'; {least:.0} to {most:.0} us"
+                ))
+                .await;
+        };
+        let spin = Spin {
+            probes: true,
+            ..Spin::at(rotor, drive)
+        };
+        let seconds = Decimal(SPIN_TIME);
+        let begun = format_args!("motor {number} at {pulse} us for {seconds} s; any key stops it");
+        let end = self.order(BenchOrder::Spin(spin), begun).await;
+        self.say_end(format_args!("motor {number} stopped"), end).await;
+    }
+
     /// Sends servo `number` to a pulse (µs), an angle (degrees from release) or its release mark.
     pub(super) async fn servo(&mut self, number: &str, to: &str, at: Option<&str>) {
         let Some(servo) = self.one_of_four("servo", number).await else {
@@ -91,7 +117,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
             return self
                 .out
                 .line(format_args!(
-                    "servo {number} has no marks yet: 'calibrate servo {number}', or 'servo {number} pulse'"
+                    "servo {number} has no marks yet: find them by 'servo {number} pulse', then 'calibrate servo'"
                 ))
                 .await;
         }
@@ -173,29 +199,10 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
     /// Sends `order` and renews it until it ends or a key aborts it; prints `begun` once the commander has accepted
     /// it.
     pub(super) async fn order(&mut self, order: BenchOrder, begun: fmt::Arguments<'_>) -> End {
-        match self.order_until_key(order, begun).await {
-            Err(end) => end,
-            Ok(_) => {
-                let order = BenchOrder::End;
-                if let Ok(number) = self.next_order() {
-                    self.links
-                        .bench
-                        .send(Instant::now(), BenchRequest { number, order });
-                }
-                // Discards the other bytes of the same key.
-                self.keys.pressed();
-                End::Key
-            }
-        }
-    }
-
-    /// As [`Self::order`], until the next key; the order then still runs until its renewal expires.
-    pub(super) async fn order_until_key(
-        &mut self,
-        order: BenchOrder,
-        begun: fmt::Arguments<'_>,
-    ) -> Result<u8, End> {
-        let number = self.next_order().map_err(End::Refused)?;
+        let number = match self.next_order() {
+            Ok(number) => number,
+            Err(why) => return End::Refused(why),
+        };
         let asked = Instant::now();
         let request = BenchRequest { number, order };
         // Sent immediately: another console waiting for its next run must not use the same number.
@@ -210,19 +217,25 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
                 .filter(|answer| answer.number == number)
                 .map(|answer| answer.state)
             {
-                Some(BenchState::Done) => return Err(End::Done),
-                Some(BenchState::Refused(why)) => return Err(End::Refused(why)),
-                Some(BenchState::Ended(why)) => return Err(End::Ended(why)),
+                Some(BenchState::Done) => return End::Done,
+                Some(BenchState::Refused(why)) => return End::Refused(why),
+                Some(BenchState::Ended(why)) => return End::Ended(why),
                 Some(BenchState::Running) if !said => {
                     said = true;
                     self.out.line(begun).await;
                 }
                 Some(BenchState::Running) => (),
-                None if asked.elapsed() > COMMANDER => return Err(End::Silent),
+                None if asked.elapsed() > COMMANDER => return End::Silent,
                 None => (),
             }
-            if let Some(key) = self.keys.poll() {
-                return Ok(key);
+            if self.keys.pressed() {
+                let order = BenchOrder::End;
+                if let Ok(number) = self.next_order() {
+                    self.links
+                        .bench
+                        .send(Instant::now(), BenchRequest { number, order });
+                }
+                return End::Key;
             }
         }
     }

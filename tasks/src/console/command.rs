@@ -23,14 +23,14 @@ pub(super) enum Command<'a> {
     Silicon,
     BrownOut,
     SetBrownOut,
-    Rotors,
-    Calibrate(&'a str, [Option<&'a str>; 2]),
+    Calibrate(&'a str, [Option<&'a str>; 3]),
     Watch(&'a str),
     SelfTest,
     Mavlink,
     MavlinkKey(&'a str),
     PropellersOff,
     Motor(&'a str, Option<&'a str>),
+    MotorPulse(&'a str, &'a str),
     Servo {
         number: &'a str,
         to: &'a str,
@@ -69,14 +69,14 @@ pub(super) const HELP: [(&str, &str); 23] = [
     ("propellers off", "says that they are: motors may be tried"),
     ("motor N [%]", "spins motor N for 2 s; a key stops it"),
     (
+        "motor N US us",
+        "the same by a pulse, to find the one that turns it",
+    ),
+    (
         "servo N TO [AT]",
         "TO is release, pulse (AT us) or angle (AT deg); a key ends it",
     ),
-    (
-        "rotors",
-        "asks what turns where, motor by motor, and says what to swap",
-    ),
-    ("calibrate WHAT", "step by step; alone it lists what there is"),
+    ("calibrate WHAT", "one step of a calibration; alone it lists them"),
     (
         "mavlink [key K]",
         "the MAVLink line; K signs it: 64 hex digits, or off",
@@ -133,9 +133,8 @@ pub(super) fn parse(line: &str) -> Option<Result<Command<'_>, Misunderstood<'_>>
         ("silicon", [None, ..]) => Command::Silicon,
         ("brownout", [None, ..]) => Command::BrownOut,
         ("brownout", [Some("set"), None, ..]) => Command::SetBrownOut,
-        ("rotors", [None, ..]) => Command::Rotors,
-        ("calibrate", [what, first, second, None]) => {
-            Command::Calibrate(what.unwrap_or_default(), [first, second])
+        ("calibrate", [what, first, second, third]) if words.next().is_none() => {
+            Command::Calibrate(what.unwrap_or_default(), [first, second, third])
         }
         ("watch", [group, None, ..]) => Command::Watch(group.unwrap_or_default()),
         ("selftest", [None, ..]) => Command::SelfTest,
@@ -143,6 +142,7 @@ pub(super) fn parse(line: &str) -> Option<Result<Command<'_>, Misunderstood<'_>>
         ("mavlink", [Some("key"), Some(key), None, _]) => Command::MavlinkKey(key),
         ("propellers", [Some("off"), None, ..]) => Command::PropellersOff,
         ("motor", [Some(number), percent, None, _]) => Command::Motor(number, percent),
+        ("motor", [Some(number), Some(pulse), Some("us"), None]) => Command::MotorPulse(number, pulse),
         ("servo", [Some(number), Some(to), at, None]) => Command::Servo { number, to, at },
         _ => {
             let usage = HELP.iter().find(|(usage, _)| name(usage) == word);

@@ -89,18 +89,4 @@ impl<I: SerialInput> Keys<I> {
         }
         pressed
     }
-    /// Next key within `time`; `None` on time-out or receive error.
-    pub(super) async fn key(&mut self, time: Duration) -> Option<u8> {
-        let until = Instant::now() + time;
-        loop {
-            if let Some(byte) = self.next() {
-                return Some(byte);
-            }
-            match with_deadline(until, self.wait()).await {
-                Ok(Ok(true)) => (),
-                Ok(Ok(false)) => Timer::after(PAUSE).await,
-                Ok(Err(_)) | Err(_) => return None,
-            }
-        }
-    }
 }

@@ -496,12 +496,7 @@ fn picture(links: &Links, reels: &PerArm<Reel>) -> Vehicle {
         tilt: links.tilts().values().map(|tilt| tilt.unwrap_or(f32::NAN)),
         reel: angles.unwrap_or([f32::NAN; 4]),
         grip: links.grip.fresh(),
-        attitude_us: links.attitude.look(|m| m.at.as_micros()).unwrap_or_default(),
-        pressures: links
-            .contact
-            .fresh()
-            .map_or([None; 4], |contact| contact.arms.map(Result::ok)),
-        ground: links.ground.fresh().unwrap_or_default(),
+        readings: links.readings(),
         air: links.air_pressure.fresh(),
         load: load(links),
         answers: answers(links),

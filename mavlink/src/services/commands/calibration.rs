@@ -163,8 +163,7 @@ impl Services {
             return self.settle(result);
         }
         let working = self.parameters.copy();
-        let readings = vehicle.readings();
-        let found = (self.calibrations.procedure).sample(now, &readings, in_force, working);
+        let found = (self.calibrations.procedure).sample(now, &vehicle.readings, in_force, working);
         match found {
             Some(finding) => self.take(finding, now),
             None if self.calibrations.asked_us.is_none() && now >= self.calibrations.report_us => {
