@@ -147,15 +147,7 @@ async fn mavlink(
     chip: ThisChip,
     signing: Stored,
 ) -> ! {
-    sophie_tasks::ground_station::mavlink::run(
-        links,
-        lines,
-        &SHELL,
-        storage,
-        chip,
-        signing,
-    )
-    .await
+    sophie_tasks::ground_station::mavlink::run(links, lines, &SHELL, storage, chip, signing).await
 }
 
 #[embassy_executor::task]

@@ -106,11 +106,11 @@ params! {
     motor_protocol: MotorProtocol = MotorProtocol::Dshot300, "1";
     /// Pulse that stops a motor; OneShot125 takes an eighth.
     motor_pulse_min = 1000.0, "us", 800.0 ..= 1500.0;
-    /// Lowest pulse at which every rotor turns (`calibrate esc idle`).
+    /// Lowest pulse at which every rotor turns (`motor N US us`).
     motor_pulse_idle = 1070.0, "us", 800.0 ..= 2200.0;
     /// Pulse of full drive.
     motor_pulse_max = 2000.0, "us", 1200.0 ..= 2200.0;
-    /// Which rotor hangs at each motor output (`rotors`): its four digits, each of 1 to 4 once, are the rotors at outputs 1
+    /// Which rotor hangs at each motor output (`motor N`): its four digits, each of 1 to 4 once, are the rotors at outputs 1
     /// to 4; 1243 where the wires of 3 and 4 are swapped.
     motor_map: MotorMap = MotorMap::STRAIGHT, "1";
     /// Receiver: 0 for CRSF at 420 kbaud, 1 for SBUS. Read by the board at start-up.

@@ -22,20 +22,14 @@ const SAMPLING: Duration = Duration::from_millis(10);
 /// The verbs and what they measure.
 const VERBS: [(&str, &str); 11] = [
     ("gyro", "at rest; measured at each start, nothing to store"),
-    (
-        "level",
-        "accelerometer's bias on a table that is level",
-    ),
+    ("level", "accelerometer's bias on a table that is level"),
     (
         "accel SIDE",
         "bias and scale: belly, back, nose, tail, right, left",
     ),
     ("mounting SIDE", "of the inertial sensor: belly, nose, right down"),
     ("battery VOLTS", "its divider, by a meter"),
-    (
-        "servo N R F",
-        "marks: pulses at release and full, us",
-    ),
+    ("servo N R F", "marks: pulses at release and full, us"),
     ("fsr N empty", "pressure sensor N without a weight"),
     ("fsr N NEWTON", "and with one: zero and gain"),
     ("arm N straight", "tilt sensor of arm N, arm held straight"),
@@ -93,7 +87,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         }
         let seconds = Decimal(step.calibration.time_us() as f32 * 1e-6);
         self.out
-            .line(format_args!("measures for {seconds} s; any key ends it"))
+            .line(format_args!("measures for {seconds} s; a key ends it"))
             .await;
         loop {
             Timer::after(SAMPLING).await;

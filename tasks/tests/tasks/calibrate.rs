@@ -9,7 +9,7 @@ use sophie_control::params::{MotorProtocol, Params};
 
 use crate::bench::{Table, UNLOADED};
 
-const MEASURES: &str = "measures for 2.5 s; any key ends it";
+const MEASURES: &str = "measures for 2.5 s; a key ends it";
 const TAKEN: &str = "taken: now the next step";
 
 impl Table {
@@ -400,7 +400,7 @@ fn turned_over_a_floor(table: &mut Table, distance: f32, quality: u8) -> Vec<Str
 fn the_flow_modules_scale_and_mounting_are_found_by_turning_it() {
     let mut table = Table::set();
     let said = table.says("calibrate flow near", 100);
-    assert_eq!(said, ["measures for 8 s; any key ends it"]);
+    assert_eq!(said, ["measures for 8 s; a key ends it"]);
     assert_eq!(turned_over_a_floor(&mut table, 0.5, 120), [TAKEN]);
     table.says("calibrate flow far", 100);
     let said = turned_over_a_floor(&mut table, 1.5, 120);

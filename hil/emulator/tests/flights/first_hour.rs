@@ -8,7 +8,7 @@ use sophie_emulator::terminal::Sockets;
 use sophie_emulator::wires::BoardFault;
 
 use super::console::{terminal, wake};
-use super::script::{Key, Typed, differs, typed};
+use super::script::{Typed, differs, typed};
 use super::*;
 
 const PAGE: &str = "docs/first-hour.md";
@@ -79,12 +79,12 @@ fn heard(user: &mut TcpStream, step: &Typed) -> String {
     let Some(mut from) = until(user, &mut said, 0, &step.command) else {
         return said;
     };
-    for Key { after, key } in step.keys() {
+    for after in step.keys() {
         match until(user, &mut said, from, after) {
             Some(there) => from = there,
             None => return said,
         }
-        user.write_all(key.as_bytes()).unwrap();
+        user.write_all(b" ").unwrap();
     }
     let end = if step.restarts() { "restarting\r\n" } else { PROMPT };
     until(user, &mut said, from, end);

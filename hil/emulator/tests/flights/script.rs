@@ -32,13 +32,6 @@ pub(super) fn typed(page: &str) -> Vec<Typed> {
     script
 }
 
-/// A key pressed while a command runs, once it has printed `after`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Key<'a> {
-    pub after: &'a str,
-    pub key: &'a str,
-}
-
 impl Typed {
     pub fn restarts(&self) -> bool {
         self.answer
@@ -46,26 +39,14 @@ impl Typed {
             .is_some_and(|line| line.ends_with("restarting"))
     }
 
-    /// Keys in order: the one after a question, Enter where asked for, any key where one ends the command or at
-    /// [`ANY_KEY`].
-    pub fn keys(&self) -> impl Iterator<Item = Key<'_>> {
+    /// The texts after which any key is pressed, in order: where one ends the command or at [`ANY_KEY`].
+    pub fn keys(&self) -> impl Iterator<Item = &str> {
         let before = std::iter::once("").chain(self.answer.iter().map(String::as_str));
         before
             .zip(&self.answer)
-            .filter_map(|(before, line)| match line.rsplit_once("? ") {
-                Some((question, key)) if key.len() == 1 => Some(Key { after: question, key }),
-                _ if line == ANY_KEY => Some(Key {
-                    after: longest(before),
-                    key: " ",
-                }),
-                _ if line.ends_with("any key ends it") => Some(Key {
-                    after: longest(line),
-                    key: " ",
-                }),
-                _ if line.starts_with("Enter when it is so") => Some(Key {
-                    after: longest(line),
-                    key: "\r",
-                }),
+            .filter_map(|(before, line)| match line.as_str() {
+                ANY_KEY => Some(longest(before)),
+                _ if line.ends_with("any key ends it") => Some(longest(line)),
                 _ => None,
             })
     }
@@ -152,21 +133,14 @@ fn a_page_is_read_and_its_answers_compared() {
 
 #[test]
 fn keys_are_pressed_where_the_answer_asks_for_them() {
-    let page = "```console\n> watch imu\nroll az\n… -9.…\n(any key)\n> ask\nwhich, 1 to 4? 2\nEnter when it is so:\ndone\n\
+    let page = "```console\n> watch imu\nroll az\n… -9.…\n(any key)\n\
                 > servo 1\nservo 1 to 9 us; any key ends it\nback\n```\n";
     let script = typed(page);
-    let keys = |step: &Typed| {
-        step.keys()
-            .map(|k| (k.after.to_owned(), k.key.to_owned()))
-            .collect::<Vec<_>>()
-    };
-    let key = |after: &str, key: &str| (after.to_owned(), key.to_owned());
-    assert_eq!(keys(&script[0]), [key("-9.", " ")]);
+    assert_eq!(script[0].keys().collect::<Vec<_>>(), ["-9."]);
     assert_eq!(
-        keys(&script[1]),
-        [key("which, 1 to 4", "2"), key("Enter when it is so:", "\r")]
+        script[1].keys().collect::<Vec<_>>(),
+        ["servo 1 to 9 us; any key ends it"]
     );
-    assert_eq!(keys(&script[2]), [key("servo 1 to 9 us; any key ends it", " ")]);
     let rows = "watch imu\r\n roll   az\r\n 0.1 -9.81\r\n 0.2 -9.80\r\n> ";
     assert_eq!(differs(&script[0], rows), None);
     assert!(differs(&script[0], "watch imu\r\n roll   az\r\n 0.1 -8.81\r\n> ").is_some());
