@@ -3,7 +3,7 @@
 use core::task::Poll;
 
 use embassy_futures::poll_once;
-use embassy_time::{Duration, Instant, Timer, with_deadline};
+use embassy_time::Duration;
 
 use sophie_ports::error::PortError;
 use sophie_ports::serial::SerialInput;
