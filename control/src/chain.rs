@@ -1,8 +1,22 @@
-//! Flight step, 1 kHz: from a batch of inertial samples to four motor commands.
+//! The flight step, 1 kHz: from a batch of inertial readings to four motor commands.
 //!
-//! Four stages with their own state: [`Sensing`] filters, [`Estimator`] gives the attitude, [`Control`] the demand,
-//! [`Mixing`] the commands. On the vehicle each belongs to a task, joined by links; instruction counts, QEMU and
-//! replays run them as one [`FlightChain`], with identical bits for a recorded mission.
+//! Four stages, each with its own state, owned by a task of the flight level and joined by links
+//! (`sophie_tasks::flight`); the links carry the messages of [`messages`] and of [`attitude::messages`] with the data-ready
+//! time of the newest reading, from which every deadline counts. World NED, body FRD, quaternions body to world, SI units.
+//!
+//! | stage | takes | gives | deadline | a miss costs |
+//! |---|---|---|---|---|
+//! | 1 [`Sensing`] (task `imu`) | [`ImuReading`]s of the part at its own rate, 4 to 8 a step: rad/s, m/s², board axes | [`ImuSample`]: low-passed, calibrated, mounted, body axes | 0.2 ms | the next stages wait; without a mix for 10 ms the motors stop |
+//! | 2 [`Estimator`] (`estimator`) | the sample | [`Attitude`]: body to world, rates without bias, specific force | 0.3 ms | the same |
+//! | 3 [`Control`] (`control`) | the attitude; the commander's [`setpoint`] at 100 Hz; the last mix's shares | [`Demand`]: stop, idle, one motor, or a wrench in N and N m | 0.4 ms | the same; a setpoint older than 50 ms is a stop |
+//! | 4 [`Mixing`] (`mixer`) | the demand; the arms' tilts at 100 Hz; the battery's voltage | [`MixOutput`]: thrusts in N, commands 0 to 1 by rotor, shares given | 0.5 ms | the frame is late: due 0.6 ms after data-ready |
+//!
+//! The task `motors` maps rotors to outputs and sends the frame. The arms bend with thrust, so stage 4 follows their tilt
+//! at every step: it allocates at the tilt that the last thrusts have left, then moves the tilt by its model, corrected by
+//! one arm's sensor a step. What stage 4 could not give comes back to stage 3, which stops its integrals there.
+//!
+//! [`Estimator`]: crate::attitude::estimator::Estimator
+//! [`attitude::messages`]: crate::attitude::messages
 
 mod control;
 #[cfg(test)]
@@ -13,113 +27,9 @@ mod sensing;
 pub mod setpoint;
 mod step_clock;
 
+pub use crate::attitude::messages::{Attitude, ImuReading, ImuSample};
 pub use control::{Command, Control, RESTING_ROLL_GAIN};
-pub use messages::{Attitude, Demand, ImuReading, ImuSample, MixOutput, lift};
+pub use messages::{Demand, MixOutput, lift};
 pub use mixing::{ArmReading, Mixing, MixingStep, Surroundings};
 pub use sensing::Sensing;
 pub use step_clock::{CONTROL_RATE_HZ, StepClock};
-
-use crate::allocation::mixer::Flexible;
-use crate::attitude::attitude_loop::Target;
-use crate::attitude::estimator::Estimator;
-use crate::attitude::rate_loop::Feedback;
-use crate::params::Params;
-
-/// Messages of the last step.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Flow {
-    /// Data-ready time of the newest sample, µs.
-    pub at_us: u64,
-    /// From sensing to the estimator.
-    pub sample: ImuSample,
-    /// From the estimator to control.
-    pub attitude: Attitude,
-    /// From control to mixing.
-    pub demand: Demand,
-    /// From control to the log.
-    pub target: Target,
-    /// From mixing to the motors, and back to control.
-    pub mix: MixOutput,
-}
-
-/// The four stages in series.
-#[derive(Clone, Debug)]
-pub struct FlightChain<A = Flexible> {
-    /// First stage.
-    pub sensing: Sensing,
-    /// Second stage.
-    pub estimator: Estimator,
-    /// Third stage.
-    pub control: Control,
-    /// Fourth stage.
-    pub mixing: Mixing<A>,
-    /// Messages between them.
-    pub flow: Flow,
-    feedback: Feedback,
-}
-
-impl<A: MixingStep> FlightChain<A> {
-    /// A chain at rest for samples at `rate_hz`.
-    pub fn new(p: &Params, rate_hz: f32, allocation: A) -> Self {
-        Self {
-            sensing: Sensing::new(p, rate_hz),
-            estimator: Estimator::new(p),
-            control: Control::new(p),
-            mixing: Mixing::new(p, allocation),
-            flow: Flow::default(),
-            feedback: Feedback::NOTHING,
-        }
-    }
-
-    /// First stage: takes readings, oldest first, the newest ready at `at_us` µs; true if a step is due.
-    #[inline(always)]
-    pub fn sense(&mut self, at_us: u64, readings: &[ImuReading]) -> bool {
-        let due = self.sensing.take(at_us, readings, &mut self.flow.sample);
-        if due {
-            self.flow.at_us = at_us;
-        }
-        due
-    }
-
-    /// Second stage.
-    #[inline(always)]
-    pub fn estimate(&mut self) {
-        self.estimator
-            .estimate(&self.flow.sample, &mut self.flow.attitude);
-    }
-
-    /// Third stage.
-    #[inline(always)]
-    pub fn control(&mut self, command: &Command) {
-        self.flow.demand = self.control.step(&self.flow.attitude, command, &self.feedback);
-        self.flow.target = self.control.target();
-    }
-
-    /// Fourth stage.
-    #[inline(always)]
-    pub fn mix(&mut self, surroundings: &Surroundings) {
-        let Flow {
-            at_us, demand, mix, ..
-        } = &mut self.flow;
-        self.mixing.step(*at_us, demand, surroundings, mix);
-        self.feedback = self.flow.mix.feedback();
-    }
-
-    /// All stages; true if a step was due.
-    #[inline(always)]
-    pub fn step(
-        &mut self,
-        at_us: u64,
-        readings: &[ImuReading],
-        command: &Command,
-        surroundings: &Surroundings,
-    ) -> bool {
-        let due = self.sense(at_us, readings);
-        if due {
-            self.estimate();
-            self.control(command);
-            self.mix(surroundings);
-        }
-        due
-    }
-}
