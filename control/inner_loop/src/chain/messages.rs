@@ -3,8 +3,8 @@
 use crate::allocation::desaturation::Given;
 use crate::allocation::wrench::{PerArm, Wrench};
 use crate::attitude::rate_loop::Feedback;
+use crate::chain::spin::Spin;
 use crate::maths::scalar::cos;
-use crate::pilot::bench_orders::Spin;
 
 /// Demand of control on the mixer.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -21,10 +21,11 @@
 mod control;
 #[cfg(test)]
 mod lying_sensor_tests;
-pub(crate) mod messages;
-pub(crate) mod mixing;
+pub mod messages;
+pub mod mixing;
 mod sensing;
 pub mod setpoint;
+pub mod spin;
 mod step_clock;
 
 pub use crate::attitude::messages::{Attitude, ImuReading, ImuSample};
