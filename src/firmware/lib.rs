@@ -95,18 +95,18 @@ fn greet(beginning: &Beginning) {
         );
     }
     if let Some(words) = &kept.last_words {
-        defmt::error!("the run before ended with: {=str}", words.as_str());
+        defmt::error!("previous run ended with: {=str}", words.as_str());
     }
     let calibrated = start
         .retained
         .is_some_and(|retained| retained.gyro_bias.is_some());
     match start.retained.map(|retained| retained.grip_memory) {
-        Some(GripMemory::Controlled(_)) => defmt::warn!("arms closed: they go on from where they were"),
+        Some(GripMemory::Controlled(_)) => defmt::warn!("arms closed: gripper state restored"),
         Some(GripMemory::HeldByGears(_)) => defmt::warn!("arms closed: left to the servos' gears"),
         _ => {}
     }
     if calibrated {
-        defmt::info!("goes on with the calibration of the run before");
+        defmt::info!("gyro calibration restored");
     }
 }
 

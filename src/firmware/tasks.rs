@@ -9,9 +9,9 @@ use sophie_ports::chip_check::ChipCheck;
 use sophie_ports::sensors::Barometer;
 use sophie_ports::signing::Stored;
 use sophie_steady::tasks as steady;
-use sophie_tasks::console::one_of::OneOf;
-use sophie_tasks::console::terminals::{Keyboards, Screens, Served};
-use sophie_tasks::ground_station::console_pipe::{Shell, ShellPort};
+use sophie_tasks::console::either::Either;
+use sophie_tasks::console::terminals::{ActiveTerminal, TerminalInputs, TerminalOutputs};
+use sophie_tasks::ground_station::console_pipe::{ConsolePipe, ConsolePipePort};
 use sophie_tasks::ground_station::mavlink::Lines;
 use sophie_tasks::links::Links;
 use sophie_tasks::schedule::TaskId;
@@ -22,17 +22,18 @@ use static_cell::StaticCell;
 use super::Levels;
 
 /// The terminals of the console: at a serial line, over USB, or over MAVLink.
-type ConsoleInput = Keyboards<'static, OneOf<OneOf<BufferedInput, UsbInput<'static>>, ShellPort<'static>>, 3>;
+type ConsoleInput =
+    TerminalInputs<'static, Either<Either<BufferedInput, UsbInput<'static>>, ConsolePipePort<'static>>, 3>;
 type ConsoleOutput =
-    Screens<'static, OneOf<OneOf<BufferedOutput, UsbOutput<'static>>, ShellPort<'static>>, 3>;
+    TerminalOutputs<'static, Either<Either<BufferedOutput, UsbOutput<'static>>, ConsolePipePort<'static>>, 3>;
 
 /// Input of MAVLink, of a serial line or of USB.
-type MavlinkInput = OneOf<BufferedInput, UsbInput<'static>>;
+type MavlinkInput = Either<BufferedInput, UsbInput<'static>>;
 /// Its output.
-type MavlinkOutput = OneOf<BufferedOutput, UsbOutput<'static>>;
+type MavlinkOutput = Either<BufferedOutput, UsbOutput<'static>>;
 
-static SHELL: Shell = Shell::new();
-static SERVED: StaticCell<Served> = StaticCell::new();
+static SHELL: ConsolePipe = ConsolePipe::new();
+static SERVED: StaticCell<ActiveTerminal> = StaticCell::new();
 static USB_PORT: StaticCell<Port> = StaticCell::new();
 static USB_MEMORY: StaticCell<UsbMemory<'static>> = StaticCell::new();
 
@@ -71,17 +72,17 @@ pub fn spawn(
     levels.spawn(TaskId::Telemetry, telemetry(links, board.telemetry)?);
     let checks = board.chip.checks;
     let port: &'static Port = USB_PORT.init_with(Port::new);
-    let served: &'static Served = SERVED.init(Served::default());
+    let served: &'static ActiveTerminal = SERVED.init(ActiveTerminal::default());
     let (usb_input, usb_output) = port.console();
-    let input = served.keyboards([
-        OneOf::First(OneOf::First(board.console_input)),
-        OneOf::First(OneOf::Second(usb_input)),
-        OneOf::Second(SHELL.port()),
+    let input = served.inputs([
+        Either::First(Either::First(board.console_input)),
+        Either::First(Either::Second(usb_input)),
+        Either::Second(SHELL.port()),
     ]);
-    let output = served.screens([
-        OneOf::First(OneOf::First(board.console_output)),
-        OneOf::First(OneOf::Second(usb_output)),
-        OneOf::Second(SHELL.port()),
+    let output = served.outputs([
+        Either::First(Either::First(board.console_output)),
+        Either::First(Either::Second(usb_output)),
+        Either::Second(SHELL.port()),
     ]);
     levels.spawn_unmeasured(
         "console",
@@ -89,8 +90,8 @@ pub fn spawn(
     );
     let (usb_input, usb_output) = port.mavlink();
     let lines = Lines {
-        inputs: [OneOf::First(board.mavlink_input), OneOf::Second(usb_input)],
-        outputs: [OneOf::First(board.mavlink_output), OneOf::Second(usb_output)],
+        inputs: [Either::First(board.mavlink_input), Either::Second(usb_input)],
+        outputs: [Either::First(board.mavlink_output), Either::Second(usb_output)],
         bytes_per_second: [
             sophie_boards::MAVLINK_BYTES_PER_SECOND,
             sophie_boards::USB_BYTES_PER_SECOND,

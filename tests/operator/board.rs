@@ -31,7 +31,7 @@ use sophie_ports::signing::{Key, Record, Stored};
 use sophie_ports::storage::{Loaded, Storage, StorageError};
 use sophie_tasks::console;
 use sophie_tasks::flight::{control, estimator, imu, mixer, motors};
-use sophie_tasks::ground_station::console_pipe::{Shell, ShellPort};
+use sophie_tasks::ground_station::console_pipe::{ConsolePipe, ConsolePipePort};
 use sophie_tasks::ground_station::mavlink::{self, Lines};
 use sophie_tasks::links::Links;
 use sophie_tasks::navigation::barometer;
@@ -404,7 +404,7 @@ impl Run {
         let (Protocol::Mavlink(_), Some(frames)) = (protocol, &self.frames) else {
             return time.spawn(console::run(links, line, screen, chip.clone(), chip));
         };
-        let shell: &'static Shell = Box::leak(Box::default());
+        let shell: &'static ConsolePipe = Box::leak(Box::default());
         let lines = Lines {
             inputs: [line],
             outputs: [frames.clone()],
@@ -549,7 +549,7 @@ impl SerialOutput for Screen {
 }
 
 /// The console over MAVLink, whose words are on the screen as well.
-struct Tapped(ShellPort<'static>, Screen);
+struct Tapped(ConsolePipePort<'static>, Screen);
 
 impl SerialOutput for Tapped {
     async fn write(&mut self, bytes: &[u8]) -> Result<(), PortError> {

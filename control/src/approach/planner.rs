@@ -59,7 +59,7 @@ pub struct View {
     /// Age of the newest fix or flow, s.
     pub age: f32,
     /// Newest hit of the range.
-    pub foot: RangeHit,
+    pub range_hit: RangeHit,
     /// Reported place of the pipe; with it the range is not used.
     pub target: Option<PipeTarget>,
 }
@@ -170,7 +170,7 @@ impl ApproachPlanner {
             returns: false,
             up: -RISE,
             edges: Edges::default(),
-            seen: v.foot.count,
+            seen: v.range_hit.count,
             steps: [f32::INFINITY; 2],
             farthest: 0.0,
             other: None,
@@ -314,7 +314,7 @@ impl ApproachPlanner {
         let asks = !self.leaves && self.phase != Phase::Commit;
         if asks && self.has_target {
             self.follow(v, dt)?;
-        } else if asks && v.foot.age > RANGE_AGE {
+        } else if asks && v.range_hit.age > RANGE_AGE {
             return Err(ApproachAbort::RangeStale);
         }
         let before = self.edges.surface_depth();
@@ -380,13 +380,16 @@ impl ApproachPlanner {
 
     /// The step that a new range shows.
     fn look(&mut self, v: &View) -> Option<Edge> {
-        if v.foot.count == self.seen {
+        if v.range_hit.count == self.seen {
             return None;
         }
-        self.seen = v.foot.count;
-        let range = v.foot.point.map_or(0.0, |point| point.z - v.position.z);
+        self.seen = v.range_hit.count;
+        let range = v
+            .range_hit
+            .surface_point
+            .map_or(0.0, |point| point.z - v.position.z);
         self.farthest = self.farthest.max(range);
-        match v.foot.point {
+        match v.range_hit.surface_point {
             Some(point) => self.edges.step(self.local(point)),
             // No target in reach: farther than every surface.
             None => self.edges.step_beyond(self.local(v.position)),

@@ -53,7 +53,7 @@ reasons! {
     /// The position estimate is missing or too old to begin a hold.
     NoPosition = "no position to hold",
     /// Hold by dead reckoning: height and estimated wind only, until a position returns or the hold ends.
-    PositionStale = "position stale: steer it",
+    PositionStale = "dead reckoning: steer it",
     /// The hold has ended.
     PositionLost = "position lost: throttle to hover",
     /// Autonomous perching requires centred sticks, so that the pilot ends it by moving one.
@@ -71,13 +71,13 @@ reasons! {
     /// Autonomous perching: the vehicle did not settle over the crown in time.
     NotCentred = "not settled over the crown",
     /// Autonomous perching: no contact at touchdown.
-    NotTouched = "nothing touched at the crown",
+    NotTouched = "no contact at touchdown",
     /// Autonomous perching: contact earlier than the range predicts.
-    TouchedEarly = "touched before the crown: climbing",
+    TouchedEarly = "early contact: climbing",
     /// Autonomous perching: the range is missing.
     RangeStale = "range stale",
     /// Autonomous perching: height by the range is inconsistent with the vehicle's motion.
-    RangeMisfit = "range does not fit the motion",
+    RangeMisfit = "range inconsistent",
     /// Autonomous perching: the companion computer has stopped sending the pipe's position.
     TargetStale = "pipe target stale",
     /// Autonomous perching: the reported position of the pipe is implausible.
@@ -127,7 +127,7 @@ reasons! {
     /// The arms stay closed: the belly would slide before the rotors carry the weight.
     LeansTooFar = "leaning too far to let go",
     /// The rotors lift the vehicle off while the arms open, since the belly would slide.
-    LiftsOff = "leaning: lifting off",
+    LiftsOff = "tilt limit: lift-off",
     /// A release takes less throttle.
     ThrottleTooHigh = "throttle too high to release",
     /// The tendons are slack, and the arms' pressure sensors still read contact.

@@ -22,14 +22,14 @@ pub struct Estimate {
     /// Counts the jumps of the position with the sender's origin.
     pub reset_count: u8,
     /// Newest hit of the range beam.
-    pub foot: RangeHit,
+    pub range_hit: RangeHit,
 }
 
 impl Estimate {
     /// True if every number is finite.
     pub fn is_finite(&self) -> bool {
-        let foot = self.foot.point.unwrap_or_default();
+        let foot = self.range_hit.surface_point.unwrap_or_default();
         let sum = self.position + self.velocity + self.disturbance + foot;
-        sum.is_finite() && (self.yaw_offset + self.age).is_finite() && !self.foot.age.is_nan()
+        sum.is_finite() && (self.yaw_offset + self.age).is_finite() && !self.range_hit.age.is_nan()
     }
 }

@@ -5,7 +5,7 @@
 //! the noise of the poses dominates. docs/design/navigation.md has limits and times.
 
 use super::fix::Fix;
-use super::fix_age::{TAINTED_AGE, UNKNOWN_AGE};
+use super::fix_age::{DEAD_RECKONING_INVALID_AGE, UNKNOWN_AGE};
 use super::history::StateSnapshot;
 use super::inertial::Inertial;
 use crate::maths::elapsed::seconds;
@@ -265,7 +265,7 @@ impl ExternalPoseMonitor {
         });
         let turned = self
             .turned_us
-            .is_some_and(|since| at.saturating_sub(since) < TAINTED_AGE);
+            .is_some_and(|since| at.saturating_sub(since) < DEAD_RECKONING_INVALID_AGE);
         let found = if self.same >= FROZEN_FIXES && flies {
             Some(PoseFault::Frozen)
         } else if self.down.wrong || (self.level.wrong && !turned) {

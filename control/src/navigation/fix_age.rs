@@ -16,4 +16,4 @@ pub const LOST_AGE: f32 = 10.0;
 pub const UNKNOWN_AGE: f32 = 1.0;
 /// Age forced on the last fix of an inconsistent source, µs: just above [`APPROACH_AGE`], so that no mode dead-reckons
 /// on it (see [`crate::mode::Mode::Hold`]).
-pub const TAINTED_AGE: u64 = 1_310_000;
+pub const DEAD_RECKONING_INVALID_AGE: u64 = 1_310_000;

@@ -213,7 +213,7 @@ impl FlowRangeFusion {
     }
 
     /// Flow or range disagree with the vehicle's motion, so that the estimate by them is invalid.
-    pub fn misleads(&self) -> bool {
+    pub fn is_inconsistent(&self) -> bool {
         self.disagrees || self.scale.wrong()
     }
 

@@ -18,7 +18,7 @@ use crate::navigation::baro_height::{BaroHeight, PressureFault};
 use crate::navigation::estimate::Estimate;
 use crate::navigation::external_pose::{ExternalPoseMonitor, PoseFault, TURN_GAIN, TURN_STEP};
 use crate::navigation::fix::Fix;
-use crate::navigation::fix_age::{LOST_AGE, TAINTED_AGE, UNKNOWN_AGE};
+use crate::navigation::fix_age::{DEAD_RECKONING_INVALID_AGE, LOST_AGE, UNKNOWN_AGE};
 use crate::navigation::flow_range::{FlowRangeFault, FlowRangeFusion, beam};
 use crate::navigation::flow_range_sample::{Flow, GroundView};
 use crate::navigation::history::{StateHistory, StateSnapshot};
@@ -33,7 +33,7 @@ const READY_SPEED: f32 = 0.1;
 /// Least deviation of a bias that is kept over a restart of the estimate, as after a perch, m/s²: level that of the
 /// attitude, 0.6°, down that of the sensor alone.
 const KEPT_BIAS: [f32; 3] = [0.1, 0.1, 0.03];
-/// Largest bias that is kept, m/s²: a larger one comes from a misled estimate.
+/// Largest bias that is kept, m/s²: a larger one comes from an estimate with inconsistent flow.
 const SENSOR_BIAS: f32 = 0.3;
 /// Thrust over weight beyond which the rotors carry the vehicle.
 pub const FLIES: f32 = 0.5;
@@ -198,9 +198,9 @@ impl PositionEstimator {
         });
         track.left_out |= left_out;
         let reset_count = track.reset_count;
-        if self.pose_monitor.fault() == Some(PoseFault::Disagrees) && !track.tainted {
-            track.taint();
-            track.tainted = true;
+        if self.pose_monitor.fault() == Some(PoseFault::Disagrees) && !track.dead_reckoning_invalid {
+            track.invalidate_dead_reckoning();
+            track.dead_reckoning_invalid = true;
             self.baro_height.forget();
         }
         if let Some(fix) = new {
@@ -217,11 +217,11 @@ impl PositionEstimator {
         if let Some(flow) = flow {
             track.take_flow(&mut self.history, &mut self.flow_range, &flow, posed);
         }
-        let misled = self.flow_range.misleads() && !posed;
-        if misled && !track.misled {
-            track.taint();
+        let flow_inconsistent = self.flow_range.is_inconsistent() && !posed;
+        if flow_inconsistent && !track.flow_inconsistent {
+            track.invalidate_dead_reckoning();
         }
-        track.misled = misled;
+        track.flow_inconsistent = flow_inconsistent;
         if track.reset_count != reset_count {
             self.baro_height.forget();
         }
@@ -250,9 +250,9 @@ struct Track {
     /// Poses were rejected since the last fused one.
     left_out: bool,
     /// Dead reckoning was invalidated because the poses disagree.
-    tainted: bool,
+    dead_reckoning_invalid: bool,
     /// Dead reckoning was invalidated because flow or range disagree.
-    misled: bool,
+    flow_inconsistent: bool,
     /// A pose was fused, the newest one at this time, µs: the axes are its sender's.
     posed: bool,
     pose_us: u64,
@@ -263,9 +263,9 @@ struct Track {
     resets: u8,
     reset_count: u8,
     ready: bool,
-    foot: RangeHit,
+    range_hit: RangeHit,
     /// Measurement time of `foot`, µs; 0 before the first.
-    foot_us: u64,
+    range_hit_us: u64,
 }
 
 impl Track {
@@ -280,8 +280,8 @@ impl Track {
             fixed_us: fix.at_us,
             fixes: 1,
             left_out: false,
-            tainted: false,
-            misled: false,
+            dead_reckoning_invalid: false,
+            flow_inconsistent: false,
             posed: true,
             pose_us: fix.at_us,
             height_us: fix.at_us,
@@ -289,8 +289,8 @@ impl Track {
             resets: fix.resets,
             reset_count: 0,
             ready: false,
-            foot: RangeHit::default(),
-            foot_us: 0,
+            range_hit: RangeHit::default(),
+            range_hit_us: 0,
         }
     }
 
@@ -318,7 +318,7 @@ impl Track {
     /// Its end, µs, and its axes, if these are the vehicle's own and the biases are plausible for a sensor.
     fn learnt(&self) -> Option<(u64, [Axis; 3])> {
         let sound = self.axes.iter().all(|axis| axis.bias().abs() < SENSOR_BIAS);
-        (sound && !self.posed && !self.misled).then_some((self.at_us, self.axes))
+        (sound && !self.posed && !self.flow_inconsistent).then_some((self.at_us, self.axes))
     }
 
     /// The step at `at_us` µs follows the last one, and the newest fix is not too old.
@@ -383,16 +383,18 @@ impl Track {
             pose_monitor.note_gate(fix.at_us, true);
             return;
         }
-        (self.left_out, self.tainted) = (false, false);
+        (self.left_out, self.dead_reckoning_invalid) = (false, false);
         self.fixed_us = fix.at_us;
         (self.posed, self.pose_us, self.height_us) = (true, fix.at_us, fix.at_us);
     }
 
     /// Invalidates dead reckoning after poses or flow have disagreed with the vehicle's motion: the velocity gets the
     /// variance of a first fix, the level biases are reset, so that the disturbance is the acceleration as measured,
-    /// and the age rises to [`TAINTED_AGE`], so that no mode coasts.
-    fn taint(&mut self) {
-        self.fixed_us = self.fixed_us.min(self.at_us.saturating_sub(TAINTED_AGE));
+    /// and the age rises to [`DEAD_RECKONING_INVALID_AGE`], so that no mode coasts.
+    fn invalidate_dead_reckoning(&mut self) {
+        self.fixed_us = self
+            .fixed_us
+            .min(self.at_us.saturating_sub(DEAD_RECKONING_INVALID_AGE));
         for axis in &mut self.axes {
             axis.set_speed(axis.velocity());
         }
@@ -414,9 +416,9 @@ impl Track {
         let Some(then) = history.at(at).map(|moment| moment.of(lens, self.yaw_offset)) else {
             return;
         };
-        self.foot.point = distance.map(|d| then.position + beam(then.q, d, self.yaw_offset));
-        self.foot.count = self.foot.count.wrapping_add(1);
-        self.foot_us = at;
+        self.range_hit.surface_point = distance.map(|d| then.position + beam(then.q, d, self.yaw_offset));
+        self.range_hit.count = self.range_hit.count.wrapping_add(1);
+        self.range_hit_us = at;
     }
 
     /// Fuses a range of `distance` m, measured at `at` µs, as height; beside a pose it gives the height of the ground
@@ -559,11 +561,11 @@ impl Track {
             age: seconds(self.fixed_us, self.at_us),
             by_pressure,
             reset_count: self.reset_count,
-            foot: match self.foot_us {
+            range_hit: match self.range_hit_us {
                 0 => RangeHit::default(),
                 at => RangeHit {
                     age: seconds(at, self.at_us),
-                    ..self.foot
+                    ..self.range_hit
                 },
             },
         };

@@ -6,7 +6,7 @@ use crate::maths::vector::Vec3;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RangeHit {
     /// Point of the hit in the estimate's axes, m; `None` with no target in reach.
-    pub point: Option<Vec3>,
+    pub surface_point: Option<Vec3>,
     /// Counts the ranges.
     pub count: u8,
     /// Age of the measurement, s.
@@ -17,7 +17,7 @@ impl Default for RangeHit {
     /// No range yet.
     fn default() -> Self {
         Self {
-            point: None,
+            surface_point: None,
             count: 0,
             age: f32::MAX,
         }

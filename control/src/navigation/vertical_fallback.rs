@@ -81,7 +81,7 @@ impl VerticalFallback {
         };
         let off = e.velocity.z - self.speed;
         let learnt = self.age.step(true, dt) > LEARNING;
-        let (ranged, blind) = (e.foot.age < f32::MAX, blind(e));
+        let (ranged, blind) = (e.range_hit.age < f32::MAX, blind(e));
         let steady = core::mem::take(&mut self.steady);
         let limit = match (blind, learnt) {
             (true, _) => BENT,
@@ -111,7 +111,7 @@ impl VerticalFallback {
     pub fn apply(&self, mut e: Estimate) -> Estimate {
         e.position.z += self.lacks;
         e.reset_count = e.reset_count.wrapping_add(self.reset_count);
-        if let Some(point) = &mut e.foot.point {
+        if let Some(point) = &mut e.range_hit.surface_point {
             point.z += self.lacks;
         }
         if let Some(since) = self.since {
@@ -134,6 +134,6 @@ impl VerticalFallback {
 
 /// The height has no source.
 fn blind(e: &Estimate) -> bool {
-    let seen = e.foot.point.is_some() && e.foot.age <= FRESH_AGE;
+    let seen = e.range_hit.surface_point.is_some() && e.range_hit.age <= FRESH_AGE;
     !seen && e.age > BLIND_AGE
 }

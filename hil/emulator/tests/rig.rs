@@ -101,7 +101,7 @@ const TRIED: [Found; 8] = [
     (
         Defect::Watchdog,
         &[(
-            "t70_watchdog::it_bites_a_board_that_stands_still",
+            "t70_watchdog::it_resets_a_board_that_stands_still",
             "the watchdog never reset it",
         )],
     ),

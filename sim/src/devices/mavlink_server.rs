@@ -1,7 +1,7 @@
 //! The simulated board's MAVLink server on a line.
 
 use sophie_ports::chip::Chip;
-use sophie_tasks::ground_station::console_pipe::Shell;
+use sophie_tasks::ground_station::console_pipe::ConsolePipe;
 use sophie_tasks::ground_station::mavlink;
 use sophie_tasks::links::Links;
 
@@ -18,14 +18,14 @@ pub(crate) fn spawn(
     bytes_per_second: u32,
     memory: &'static Memory,
     chip: impl Chip + 'static,
-) -> &'static Shell {
+) -> &'static ConsolePipe {
     let port = LinePort(line);
     let lines = mavlink::Lines {
         inputs: [port],
         outputs: [port],
         bytes_per_second: [bytes_per_second],
     };
-    let shell: &'static Shell = Box::leak(Box::default());
+    let shell: &'static ConsolePipe = Box::leak(Box::default());
     time.spawn(mavlink::run(
         links,
         lines,

@@ -39,7 +39,7 @@ const VERBS: [(&str, &str); 11] = [
 
 /// The step that a verb requests; `None` for an unknown verb.
 fn step(what: &str, arguments: [Option<&str>; 3]) -> Option<Step> {
-    let one_of = |names: &[&str]| {
+    let either = |names: &[&str]| {
         let [name, None, _] = arguments else {
             return None;
         };
@@ -52,8 +52,8 @@ fn step(what: &str, arguments: [Option<&str>; 3]) -> Option<Step> {
     match (what, arguments) {
         ("gyro", [None, ..]) => whole(Calibration::Gyro, 1),
         ("level", [None, ..]) => whole(Calibration::Level, 1),
-        ("accel", _) => whole(Calibration::Accel, one_of(&Face::ALL.map(Face::name))?),
-        ("mounting", _) => whole(Calibration::Mounting, one_of(&MOUNTING_SIDES.map(Face::name))?),
+        ("accel", _) => whole(Calibration::Accel, either(&Face::ALL.map(Face::name))?),
+        ("mounting", _) => whole(Calibration::Mounting, either(&MOUNTING_SIDES.map(Face::name))?),
         ("battery", [volts, None, _]) => Step::new(Calibration::Battery, 0, 1, [number(volts)?, 0.0]),
         ("servo", [servo, release, full]) => {
             let pulses = [number(release)?, number(full)?];
@@ -65,7 +65,7 @@ fn step(what: &str, arguments: [Option<&str>; 3]) -> Option<Step> {
         }
         ("arm", [arm, Some("straight"), None]) => Step::new(Calibration::Arm, part(arm)?, 1, [0.0; 2]),
         ("arm", [arm, Some("up"), None]) => Step::new(Calibration::Arm, part(arm)?, 2, [0.0; 2]),
-        ("flow", _) => whole(Calibration::Flow, one_of(&["near", "far"])?),
+        ("flow", _) => whole(Calibration::Flow, either(&["near", "far"])?),
         _ => None,
     }
 }

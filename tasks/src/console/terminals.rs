@@ -14,27 +14,27 @@ use sophie_ports::serial::{SerialInput, SerialOutput};
 
 /// Index of the active terminal: the one with the latest input.
 #[derive(Debug, Default)]
-pub struct Served(Cell<usize>);
+pub struct ActiveTerminal(Cell<usize>);
 
 /// Input of all terminals. Input at an inactive terminal takes the console over and aborts the other's command or
 /// line, as Ctrl-C does.
-pub struct Keyboards<'a, I, const N: usize> {
-    served: &'a Served,
+pub struct TerminalInputs<'a, I, const N: usize> {
+    served: &'a ActiveTerminal,
     ports: [I; N],
     /// Terminal polled first if several have input (round robin).
     turn: usize,
 }
 
 /// Output to the active terminal.
-pub struct Screens<'a, O, const N: usize> {
-    served: &'a Served,
+pub struct TerminalOutputs<'a, O, const N: usize> {
+    served: &'a ActiveTerminal,
     ports: [O; N],
 }
 
-impl Served {
+impl ActiveTerminal {
     /// Combined input of `ports`.
-    pub const fn keyboards<I, const N: usize>(&self, ports: [I; N]) -> Keyboards<'_, I, N> {
-        Keyboards {
+    pub const fn inputs<I, const N: usize>(&self, ports: [I; N]) -> TerminalInputs<'_, I, N> {
+        TerminalInputs {
             served: self,
             ports,
             turn: 0,
@@ -42,12 +42,12 @@ impl Served {
     }
 
     /// Combined output of `ports`, in the same order.
-    pub const fn screens<O, const N: usize>(&self, ports: [O; N]) -> Screens<'_, O, N> {
-        Screens { served: self, ports }
+    pub const fn outputs<O, const N: usize>(&self, ports: [O; N]) -> TerminalOutputs<'_, O, N> {
+        TerminalOutputs { served: self, ports }
     }
 }
 
-impl<I: SerialInput, const N: usize> SerialInput for Keyboards<'_, I, N> {
+impl<I: SerialInput, const N: usize> SerialInput for TerminalInputs<'_, I, N> {
     async fn read(&mut self, buffer: &mut [u8]) -> Result<usize, PortError> {
         let share = buffer.len().checked_div(N).unwrap_or(0);
         // The first byte of each share is reserved for the CANCEL of a takeover.
@@ -104,7 +104,7 @@ const fn following(place: usize, count: usize) -> usize {
     if place >= count { place - count } else { place }
 }
 
-impl<O: SerialOutput, const N: usize> SerialOutput for Screens<'_, O, N> {
+impl<O: SerialOutput, const N: usize> SerialOutput for TerminalOutputs<'_, O, N> {
     async fn write(&mut self, bytes: &[u8]) -> Result<(), PortError> {
         match self.ports.get_mut(self.served.0.get()) {
             Some(port) => port.write(bytes).await,

@@ -13,18 +13,18 @@ const TYPED: usize = 256;
 const SAID: usize = 256;
 
 /// Both directions of the pipe.
-pub struct Shell {
+pub struct ConsolePipe {
     typed: Pipe<Raw, TYPED>,
     said: Pipe<Raw, SAID>,
 }
 
-impl Default for Shell {
+impl Default for ConsolePipe {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl Shell {
+impl ConsolePipe {
     /// An empty pipe.
     pub const fn new() -> Self {
         Self {
@@ -34,8 +34,8 @@ impl Shell {
     }
 
     /// The console's end.
-    pub const fn port(&self) -> ShellPort<'_> {
-        ShellPort(self)
+    pub const fn port(&self) -> ConsolePipePort<'_> {
+        ConsolePipePort(self)
     }
 
     /// Passes `bytes` to the console; bytes beyond the buffer are lost, as on a cable.
@@ -63,9 +63,9 @@ impl Shell {
 
 /// The console's end of a [`Shell`].
 #[derive(Clone, Copy)]
-pub struct ShellPort<'a>(&'a Shell);
+pub struct ConsolePipePort<'a>(&'a ConsolePipe);
 
-impl SerialInput for ShellPort<'_> {
+impl SerialInput for ConsolePipePort<'_> {
     async fn read(&mut self, buffer: &mut [u8]) -> Result<usize, PortError> {
         Ok(self.0.typed.read(buffer).await)
     }
@@ -75,7 +75,7 @@ impl SerialInput for ShellPort<'_> {
     }
 }
 
-impl SerialOutput for ShellPort<'_> {
+impl SerialOutput for ConsolePipePort<'_> {
     async fn write(&mut self, bytes: &[u8]) -> Result<(), PortError> {
         self.0.said.write_all(bytes).await;
         Ok(())

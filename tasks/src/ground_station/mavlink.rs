@@ -25,7 +25,7 @@ use sophie_mavlink::{Answers, CommanderRequests, Condition, Order, Report, Row, 
 use sophie_ports::signing::Stored;
 
 use crate::deadline::{FixedRate, Tick};
-use crate::ground_station::console_pipe::Shell;
+use crate::ground_station::console_pipe::ConsolePipe;
 use crate::links::Links;
 use crate::links::mavlink_line::LineState;
 use crate::schedule::TaskId;
@@ -81,7 +81,7 @@ struct Common {
 struct Link<'a, const N: usize> {
     shared: RefCell<Shared<N>>,
     /// Console reached over these lines, by one at a time.
-    shell: &'a Shell,
+    shell: &'a ConsolePipe,
     /// Line with the latest console input.
     at_the_shell: Cell<usize>,
     /// Wakes the sender of each line.
@@ -92,7 +92,7 @@ impl<'a, const N: usize> Link<'a, N> {
     /// Not inlined: the temporaries of the servers' construction, twice 3 KiB each, would enlarge the stack frame of
     /// every poll.
     #[inline(never)]
-    fn new(params: &Params, bytes_per_second: [u32; N], shell: &'a Shell, signing: Stored) -> Self {
+    fn new(params: &Params, bytes_per_second: [u32; N], shell: &'a ConsolePipe, signing: Stored) -> Self {
         let mut numbers = 0..;
         let servers = bytes_per_second.map(|bytes_per_second| {
             let number = numbers.next().unwrap_or_default();
@@ -174,7 +174,7 @@ impl<'a, const N: usize> Link<'a, N> {
 pub async fn run<I: SerialInput, O: SerialOutput, const N: usize>(
     links: &Links,
     lines: Lines<I, O, N>,
-    shell: &Shell,
+    shell: &ConsolePipe,
     mut storage: impl Storage,
     mut chip: impl Chip,
     signing: Stored,

@@ -60,7 +60,7 @@ fn a_stall_is_counted_and_never_made_up_for_by_a_burst() {
     let (ticks, links) = run(100, |n| if n == 10 { 4500 } else { 50 });
     let starts: Vec<u64> = ticks.iter().map(|t| t.started.as_micros()).collect();
     assert!(starts.windows(2).all(|w| w[1] - w[0] >= 500), "burst: {starts:?}");
-    // Served late at 14.5 ms, then in phase again.
+    // ActiveTerminal late at 14.5 ms, then in phase again.
     assert_eq!(&starts[10..13], &[10_000, 14_500, 15_000]);
     let timing = links.timing.task(TaskId::Analog);
     // The long run, three skipped releases, and the late run.

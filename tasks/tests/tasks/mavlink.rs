@@ -15,7 +15,7 @@ use sophie_ports::error::PortError;
 use sophie_ports::serial::SerialOutput;
 use sophie_ports::signing::{Key, Record, Stored};
 use sophie_tasks::console;
-use sophie_tasks::ground_station::console_pipe::Shell;
+use sophie_tasks::ground_station::console_pipe::ConsolePipe;
 use sophie_tasks::ground_station::mavlink::{self, Lines};
 use sophie_tasks::links::Links;
 use sophie_tasks::links::mavlink_line::{LineState, SigningState};
@@ -97,7 +97,7 @@ struct Bench {
     second: End,
     /// The signed frame that was said last.
     newest: Vec<u8>,
-    shell: &'static Shell,
+    shell: &'static ConsolePipe,
     board: Board,
     mode: Mode,
 }
@@ -118,7 +118,7 @@ impl Bench {
     fn of(mode: Mode, board: Board) -> Self {
         let rig = Rig::with(Params::DEFAULT);
         let (line, wire, second) = (FakeLine::default(), Wire::default(), End::default());
-        let shell: &'static Shell = Box::leak(Box::default());
+        let shell: &'static ConsolePipe = Box::leak(Box::default());
         rig.time.spawn(mavlink::run(
             rig.links,
             Lines {

@@ -32,7 +32,7 @@ fn to_do(warning: Warning) -> &'static str {
         }
         Warning::Restarted(StartCause::Watchdog) => "Do not fly before the log says which task stood still.",
         Warning::Restarted(StartCause::Fault) => {
-            "Do not fly before the log's `the run before ended with` is understood."
+            "Do not fly before the log's `previous run ended with` is understood."
         }
         Warning::Position(Fault::Pose(PoseFault::Frozen)) => "Steer it, land; start the pose's sender again.",
         Warning::Position(Fault::Pose(PoseFault::Jumps)) => {

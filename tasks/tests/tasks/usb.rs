@@ -7,9 +7,9 @@ use sophie_dialect::{HEARTBEAT_DATA, PARAM_REQUEST_LIST_DATA, PARAM_SET_DATA, SE
 use sophie_fakes::FakeLine;
 use sophie_ports::signing::Stored;
 use sophie_tasks::console;
-use sophie_tasks::console::one_of::OneOf;
-use sophie_tasks::console::terminals::Served;
-use sophie_tasks::ground_station::console_pipe::Shell;
+use sophie_tasks::console::either::Either;
+use sophie_tasks::console::terminals::ActiveTerminal;
+use sophie_tasks::ground_station::console_pipe::ConsolePipe;
 use sophie_tasks::ground_station::mavlink::{self, Lines};
 use sophie_tasks::links::Links;
 use sophie_tasks::links::messages::Status as Commander;
@@ -70,20 +70,20 @@ impl Bench {
         };
         rig.time.spawn(usb::run(bus.clone(), memory, port, identity));
         let (typed, screen) = (FakeLine::default(), Screen::default());
-        let served: &'static Served = Box::leak(Box::default());
-        let shell: &'static Shell = Box::leak(Box::default());
+        let served: &'static ActiveTerminal = Box::leak(Box::default());
+        let shell: &'static ConsolePipe = Box::leak(Box::default());
         let (input, output) = port.console();
         rig.time.spawn(console::run(
             rig.links,
-            served.keyboards([
-                OneOf::First(OneOf::First(typed.clone())),
-                OneOf::First(OneOf::Second(input)),
-                OneOf::Second(shell.port()),
+            served.inputs([
+                Either::First(Either::First(typed.clone())),
+                Either::First(Either::Second(input)),
+                Either::Second(shell.port()),
             ]),
-            served.screens([
-                OneOf::First(OneOf::First(screen.clone())),
-                OneOf::First(OneOf::Second(output)),
-                OneOf::Second(shell.port()),
+            served.outputs([
+                Either::First(Either::First(screen.clone())),
+                Either::First(Either::Second(output)),
+                Either::Second(shell.port()),
             ]),
             board.clone(),
             board.clone(),
@@ -93,8 +93,8 @@ impl Bench {
         rig.time.spawn(mavlink::run(
             rig.links,
             Lines {
-                inputs: [OneOf::First(radio.clone()), OneOf::Second(input)],
-                outputs: [OneOf::First(aired.clone()), OneOf::Second(output)],
+                inputs: [Either::First(radio.clone()), Either::Second(input)],
+                outputs: [Either::First(aired.clone()), Either::Second(output)],
                 bytes_per_second: [5000, 20_000],
             },
             shell,

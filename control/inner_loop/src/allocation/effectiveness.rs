@@ -40,7 +40,7 @@ impl Geometry {
     }
 
     /// With configuration B's drag sign: its yaw moments are these times the sign of this drag.
-    pub fn as_b(&self) -> Self {
+    pub fn in_configuration_b(&self) -> Self {
         if self.drag < 0.0 {
             Self {
                 b: -self.b,
@@ -338,7 +338,7 @@ mod tests {
             // The wrench uses micromath's sines.
             prop_assert!((want.front - got.front).abs() < 0.04 && (want.rear - got.rear).abs() < 0.04);
             prop_assert!((want.roll - got.roll).abs() < 1e-4 && (want.yaw - got.yaw).abs() < 0.01);
-            let b = Load::given(&g.as_b(), &thrusts, &tilt);
+            let b = Load::given(&g.in_configuration_b(), &thrusts, &tilt);
             prop_assert!((b.yaw - sign * got.yaw).abs() < 1e-6);
         }
     }

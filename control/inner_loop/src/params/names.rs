@@ -58,16 +58,16 @@ impl Renamed {
 /// Compiles only if each name has 1 to [`NAME_MAX`] characters and is unique.
 ///
 /// ```
-/// const _: () = sophie_control::params::check_names(&["sixteen_letters_", "another"]);
+/// const _: () = sophie_inner_loop::params::check_names(&["sixteen_letters_", "another"]);
 /// ```
 /// ```compile_fail,E0080
-/// const _: () = sophie_control::params::check_names(&["seventeen_letters"]);
+/// const _: () = sophie_inner_loop::params::check_names(&["seventeen_letters"]);
 /// ```
 /// ```compile_fail,E0080
-/// const _: () = sophie_control::params::check_names(&["twice", "once", "twice"]);
+/// const _: () = sophie_inner_loop::params::check_names(&["twice", "once", "twice"]);
 /// ```
 /// ```compile_fail,E0080
-/// const _: () = sophie_control::params::check_names(&["once", ""]);
+/// const _: () = sophie_inner_loop::params::check_names(&["once", ""]);
 /// ```
 pub const fn check_names(names: &[&str]) {
     let mut rest = names;

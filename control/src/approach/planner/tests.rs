@@ -73,7 +73,7 @@ fn flown(world: World, law: ApproachPlanner) -> (Result<(), ApproachAbort>, Vec3
     for i in 0..12_000 {
         if i % 2 == 0 {
             foot = RangeHit {
-                point: world.below_lens(held, law.lens).and_then(|point| {
+                surface_point: world.below_lens(held, law.lens).and_then(|point| {
                     let (from, until, scale) = world.scaled;
                     let wrong = (from..until).contains(&(i as f32 * DT));
                     let scale = if wrong { scale } else { 1.0 };
@@ -91,7 +91,7 @@ fn flown(world: World, law: ApproachPlanner) -> (Result<(), ApproachAbort>, Vec3
             heading: world.heading,
             held,
             age: 0.0,
-            foot,
+            range_hit: foot,
             target: None,
         };
         match law.step(&view, DT) {
@@ -127,7 +127,7 @@ fn begun_by(world: &World, p: &Params) -> ApproachPlanner {
         heading: world.heading,
         held: Vec3::ZERO,
         age: 0.0,
-        foot: RangeHit::default(),
+        range_hit: RangeHit::default(),
         target: None,
     };
     ApproachPlanner::begin(p, &view, world.heading, 0)
@@ -194,8 +194,8 @@ fn it_sinks_no_faster_than_it_may_and_only_over_the_crown() {
             heading: world.heading,
             held,
             age: 0.0,
-            foot: RangeHit {
-                point: world.below(held),
+            range_hit: RangeHit {
+                surface_point: world.below(held),
                 count: (i % 256) as u8,
                 age: 0.0,
             },
@@ -340,7 +340,7 @@ fn only_over_the_crown_and_near_it_nothing_but_the_pipes_back_is_below() {
     for (range, aside, near) in [(0.2, 0.0, true), (0.35, 0.0, false), (0.2, 0.08, false)] {
         let (mut law, mut view) = descending(range, 0.0, 0.02);
         law.look(&view);
-        view.foot.count = 2;
+        view.range_hit.count = 2;
         law.look(&view);
         view.position = about_down(Vec3::new(0.0, aside, 0.0), WORLD.heading) + view.position;
         assert_eq!(law.near_crown(&view), near, "{range} {aside}");
@@ -358,14 +358,14 @@ fn without_a_range_and_where_nothing_is_touched_it_gives_up() {
         heading: 0.4,
         held: Vec3::ZERO,
         age: 0.0,
-        foot: RangeHit {
+        range_hit: RangeHit {
             age: RANGE_AGE - 0.01,
             ..RangeHit::default()
         },
         target: None,
     };
     assert!(law.step(&view, DT).is_ok());
-    view.foot.age = RANGE_AGE + 0.01;
+    view.range_hit.age = RANGE_AGE + 0.01;
     assert_eq!(law.step(&view, DT), Err(ApproachAbort::RangeStale));
     law.phase = Phase::Commit;
     let steps = (0..1000).take_while(|_| law.step(&view, DT).is_ok()).count();
@@ -375,7 +375,7 @@ fn without_a_range_and_where_nothing_is_touched_it_gives_up() {
     assert_eq!(law.step(&view, DT), Err(ApproachAbort::NotCentred));
     // The wind keeps it from sweeping.
     let mut law = begun(&WORLD);
-    view.foot.age = 0.0;
+    view.range_hit.age = 0.0;
     let steps = (0..10_000).take_while(|_| law.step(&view, DT).is_ok()).count();
     assert!((steps as f32 * DT - SEARCH_TIME).abs() < 0.1, "{steps}");
     assert_eq!(law.step(&view, DT), Err(ApproachAbort::NoPipe));
@@ -390,7 +390,7 @@ fn another_try_climbs_before_it_searches_and_leaving_only_climbs() {
         heading: world.heading,
         held: Vec3::new(0.0, 0.0, 0.5),
         age: 0.0,
-        foot: RangeHit::default(),
+        range_hit: RangeHit::default(),
         target: None,
     };
     let law = ApproachPlanner::again(&Params::default(), &view, world.heading, 0, true);
@@ -419,8 +419,8 @@ fn another_try_from_a_search_climbs_no_higher_than_over_what_it_has_met() {
             heading: world.heading,
             held: Vec3::ZERO,
             age: 0.0,
-            foot: RangeHit {
-                point: world.below(Vec3::ZERO),
+            range_hit: RangeHit {
+                surface_point: world.below(Vec3::ZERO),
                 count: 1,
                 age: 0.0,
             },
@@ -428,9 +428,9 @@ fn another_try_from_a_search_climbs_no_higher_than_over_what_it_has_met() {
         };
         law.step(&view, DT).unwrap();
         // The ground is met at the side since.
-        view.foot.point = Some(Vec3::new(0.0, 0.0, 2.2));
+        view.range_hit.surface_point = Some(Vec3::new(0.0, 0.0, 2.2));
         for count in 2..5 {
-            view.foot.count = count;
+            view.range_hit.count = count;
             law.step(&view, DT).unwrap();
         }
         assert_eq!(law.phase, Phase::Search);
@@ -449,8 +449,8 @@ fn descending(range: f32, sinks: f32, age: f32) -> (ApproachPlanner, View) {
         heading: world.heading,
         held: place,
         age,
-        foot: RangeHit {
-            point: world.below(place),
+        range_hit: RangeHit {
+            surface_point: world.below(place),
             count: 1,
             age: 0.0,
         },
@@ -478,8 +478,8 @@ fn it_stops_at_the_gate_where_it_is_not_known_to_touch_on_the_crown() {
             let range = WORLD.crown - view.position.z;
             nearest = nearest.min(range);
             view.velocity.y = if range < gust { 2.0 * GATE_SPEED } else { 0.0 };
-            view.foot.count = (i % 256) as u8;
-            view.foot.point = Some(Vec3::new(0.0, 0.0, WORLD.crown));
+            view.range_hit.count = (i % 256) as u8;
+            view.range_hit.surface_point = Some(Vec3::new(0.0, 0.0, WORLD.crown));
             let wish = law.step(&view, DT).unwrap();
             if law.phase == Phase::Commit {
                 break;
@@ -548,7 +548,7 @@ fn a_search_about_where_the_pipe_was_finds_it_from_where_an_escape_ends() {
         heading: world.heading,
         held: Vec3::ZERO,
         age: 0.0,
-        foot: RangeHit::default(),
+        range_hit: RangeHit::default(),
         target: None,
     };
     let p = Params::default();

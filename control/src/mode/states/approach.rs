@@ -39,7 +39,7 @@ pub fn asked(step: &Step<'_>) -> bool {
 /// Reason for which the approach cannot begin.
 pub fn obstacle(step: &Step<'_>) -> Option<Reason> {
     let sticks = step.inputs.sticks.unwrap_or_default();
-    let ranged = |e: Estimate| e.foot.age <= RANGE_AGE;
+    let ranged = |e: Estimate| e.range_hit.age <= RANGE_AGE;
     if let Some(why) = step.inputs.servo_trouble() {
         Some(Reason::Check(why))
     } else if !centred(&sticks) {
@@ -193,7 +193,7 @@ fn view(law: &PositionHold, e: &Estimate, step: &Step<'_>) -> View {
         heading: heading + e.yaw_offset,
         held: law.held(),
         age: e.age,
-        foot: e.foot,
+        range_hit: e.range_hit,
         target: step.inputs.target,
     }
 }

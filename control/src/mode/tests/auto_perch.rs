@@ -101,7 +101,7 @@ impl World {
         let z = if on { flank - CROWN } else { 0.0 };
         self.count = self.count.wrapping_add(1);
         let foot = RangeHit {
-            point: Some(Vec3::new(self.at.x, self.at.y, z)),
+            surface_point: Some(Vec3::new(self.at.x, self.at.y, z)),
             count: self.count,
             age: 0.02,
         };
@@ -110,7 +110,7 @@ impl World {
             velocity: Vec3::new(0.0, 0.0, self.bent.map_or(0.0, |bent| self.r.falling + bent)),
             reset_count: self.jumps,
             age: 0.02,
-            foot: if self.ranged { foot } else { RangeHit::default() },
+            range_hit: if self.ranged { foot } else { RangeHit::default() },
             ..Estimate::default()
         });
     }
@@ -350,7 +350,7 @@ fn it_does_not_begin_without_a_range_a_position_or_centred_sticks_and_says_so() 
     w.r.sticks().perch_switch = true;
     let seen = w.r.inputs.position.unwrap();
     w.r.inputs.position = Some(Estimate {
-        foot: RangeHit::default(),
+        range_hit: RangeHit::default(),
         ..seen
     });
     w.r.expect(0.5, Mode::Hold);
@@ -488,9 +488,9 @@ fn without_a_pipe_or_a_range_it_is_handed_back_with_a_reason() {
     for (stale, why) in [
         (
             Estimate {
-                foot: RangeHit {
+                range_hit: RangeHit {
                     age: 0.4,
-                    ..seen.foot
+                    ..seen.range_hit
                 },
                 ..seen
             },
@@ -593,7 +593,7 @@ fn a_grab_and_a_release_by_order_do_it_with_the_pilots_switch_left_alone() {
     w.r.sticks().roll = 0.0;
     let seen = w.r.inputs.position;
     w.r.inputs.position = seen.map(|e| Estimate {
-        foot: RangeHit::default(),
+        range_hit: RangeHit::default(),
         ..e
     });
     assert_eq!(w.r.remote(Grab), Some(RemoteRefusal::NoWay));

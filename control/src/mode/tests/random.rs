@@ -105,8 +105,13 @@ fn position() -> impl Strategy<Value = Option<Estimate>> {
     let vector = |size: f32| [-size..size, -size..size, -size..size].prop_map(Vec3::from);
     let reset_count = prop_oneof![9 => Just(0u8), 1 => any::<u8>()];
     let point = prop_oneof![3 => vector(20.0).prop_map(Some), 1 => Just(None)];
-    let foot = (point, any::<u8>(), prop_oneof![3 => Just(0.02f32), 1 => number()])
-        .prop_map(|(point, count, age)| RangeHit { point, count, age });
+    let foot = (point, any::<u8>(), prop_oneof![3 => Just(0.02f32), 1 => number()]).prop_map(
+        |(point, count, age)| RangeHit {
+            surface_point: point,
+            count,
+            age,
+        },
+    );
     let age = (age, any::<bool>());
     let some = (
         vector(20.0),
@@ -127,7 +132,7 @@ fn position() -> impl Strategy<Value = Option<Estimate>> {
                     age,
                     by_pressure,
                     reset_count,
-                    foot,
+                    range_hit: foot,
                 })
             },
         );

@@ -19,7 +19,7 @@ struct World {
     off: f32,
     /// Error of the felt acceleration, m/s².
     bias: f32,
-    foot: RangeHit,
+    range_hit: RangeHit,
     age: f32,
     /// Over a crown, near it.
     steady: bool,
@@ -37,8 +37,8 @@ impl World {
             bent: 0.0,
             off: 0.0,
             bias: 0.05,
-            foot: RangeHit {
-                point: Some(Vec3::ZERO),
+            range_hit: RangeHit {
+                surface_point: Some(Vec3::ZERO),
                 age: 0.02,
                 ..RangeHit::default()
             },
@@ -66,7 +66,7 @@ impl World {
             let estimate = Estimate {
                 position: Vec3::new(0.0, 0.0, self.at + self.off),
                 velocity: Vec3::new(0.0, 0.0, speed + self.bent),
-                foot: self.foot,
+                range_hit: self.range_hit,
                 age: self.age,
                 ..Estimate::default()
             };
@@ -80,7 +80,7 @@ impl World {
 
     /// Nothing is within reach.
     fn blinded(mut self) -> Self {
-        (self.foot.point, self.age) = (None, 0.2);
+        (self.range_hit.surface_point, self.age) = (None, 0.2);
         self
     }
 
@@ -120,7 +120,7 @@ fn where_nothing_gives_the_height_a_bent_speed_is_not_flown_by() {
 #[test]
 fn where_poses_have_gone_their_bent_speed_is_not_flown_by() {
     let mut w = World::new();
-    w.foot = RangeHit::default();
+    w.range_hit = RangeHit::default();
     w.run(30.0);
     (w.age, w.bent) = (0.2, -0.2);
     w.run(1.0);
@@ -150,7 +150,7 @@ fn a_range_that_goes_another_way_is_named_once_its_bias_is_learnt() {
     }
     // What a pose says of the speed is judged elsewhere.
     let mut w = World::learnt();
-    (w.foot, w.bent) = (RangeHit::default(), 0.5);
+    (w.range_hit, w.bent) = (RangeHit::default(), 0.5);
     w.run(1.0);
     assert_eq!(Some(w.out()), w.estimate);
 }
@@ -181,7 +181,7 @@ fn what_was_flown_by_it_is_given_back_or_is_another_origin() {
         w.run(seconds);
         let before = w.out().position.z;
         // The foot stays as far below the vehicle.
-        let way = |e: &Estimate| e.foot.point.unwrap().z - e.position.z;
+        let way = |e: &Estimate| e.range_hit.surface_point.unwrap().z - e.position.z;
         assert!((way(&w.out()) - way(&w.estimate.unwrap())).abs() < 1e-5);
         (w.bent, w.off) = (0.0, 0.4 * seconds);
         w.run(0.03);

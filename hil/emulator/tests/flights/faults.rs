@@ -273,7 +273,7 @@ fn overflows(task: &'static str, small: bool) {
     assert!((0.0..0.1).contains(&after), "{after} {cause}");
     for text in [
         "start after Software",
-        "the run before ended with: stack overflow",
+        "previous run ended with: stack overflow",
         "restarted after a fault",
     ] {
         assert!(

@@ -168,12 +168,12 @@ fn clocks_that_outlive_a_reset_are_reset_once() {
 
 #[test]
 fn a_crystal_that_does_not_start_is_reported_and_resets_the_board() {
-    let message = "the run before ended with: the 8 MHz crystal does not start";
+    let message = "previous run ended with: the 8 MHz crystal does not start";
     never_starts("f405", BoardFault::NoCrystal, message, "IWDG");
 }
 
 #[test]
 fn a_pll_that_never_locks_is_reported_and_ends_by_the_watchdog() {
-    let message = "the run before ended with: the clocks did not start: a PLL does not lock";
+    let message = "previous run ended with: the clocks did not start: a PLL does not lock";
     never_starts("f405", BoardFault::NoPll, message, "IWDG");
 }

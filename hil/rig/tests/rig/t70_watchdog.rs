@@ -26,7 +26,7 @@ mod tests {
     use sophie_rig::resumable_test::{ResumableTest, leave};
 
     #[test]
-    async fn it_bites_a_board_that_stands_still() {
+    async fn it_resets_a_board_that_stands_still() {
         // Taking the board starts the watchdog at its longest count: a feed sets the board's period, some cycles of its
         // slow clock after the start.
         let mut board = sophie_boards::take().await;

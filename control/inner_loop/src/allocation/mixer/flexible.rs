@@ -22,7 +22,7 @@ pub const YAW_FLOOR: f32 = 0.35;
 pub struct Flexible {
     geometry: Geometry,
     /// Geometry of configuration B, and the sign towards it.
-    as_b: Geometry,
+    geometry_b: Geometry,
     chi: f32,
     tilt: TiltModel,
     limits: Limits,
@@ -38,7 +38,7 @@ impl Flexible {
         let geometry = Geometry::from_params(p, configuration);
         Self {
             geometry,
-            as_b: geometry.as_b(),
+            geometry_b: geometry.in_configuration_b(),
             chi: configuration.chi(),
             tilt: TiltModel::new(p),
             limits: Limits::new(p),
@@ -52,7 +52,7 @@ impl Flexible {
     fn quasi_static(&self, wrench: &Wrench, yaw_usable: bool) -> Split {
         let (thrusts, tilt) = (self.tilt.thrusts(), self.tilt.tilt());
         // In A yaw acts the other way: allocated as in B, with the moment reversed.
-        let geometry = self.as_b;
+        let geometry = self.geometry_b;
         let w = Wrench {
             yaw: self.chi * wrench.yaw,
             ..*wrench

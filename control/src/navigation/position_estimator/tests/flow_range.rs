@@ -585,7 +585,7 @@ fn the_bias_of_the_sensor_outlives_the_estimate() {
     assert!(v < 0.08 && z < 0.05, "{v} {z}");
 }
 
-/// More than any sensor's is what has misled the estimate.
+/// More than any sensor's is what has flow_inconsistent the estimate.
 #[test]
 fn a_bias_that_is_no_sensors_is_not_kept() {
     let mut r = perched(Vec3::new(0.6, 0.0, 0.0));

@@ -4,14 +4,14 @@ use sophie_ports::error::PortError;
 use sophie_ports::serial::{SerialInput, SerialOutput};
 
 /// Either of two types.
-pub enum OneOf<A, B> {
+pub enum Either<A, B> {
     /// The first type.
     First(A),
     /// The second type.
     Second(B),
 }
 
-impl<A: SerialInput, B: SerialInput> SerialInput for OneOf<A, B> {
+impl<A: SerialInput, B: SerialInput> SerialInput for Either<A, B> {
     async fn read(&mut self, buffer: &mut [u8]) -> Result<usize, PortError> {
         match self {
             Self::First(port) => port.read(buffer).await,
@@ -27,7 +27,7 @@ impl<A: SerialInput, B: SerialInput> SerialInput for OneOf<A, B> {
     }
 }
 
-impl<A: SerialOutput, B: SerialOutput> SerialOutput for OneOf<A, B> {
+impl<A: SerialOutput, B: SerialOutput> SerialOutput for Either<A, B> {
     async fn write(&mut self, bytes: &[u8]) -> Result<(), PortError> {
         match self {
             Self::First(port) => port.write(bytes).await,
