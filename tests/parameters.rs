@@ -8,7 +8,7 @@ use sophie_tasks::storage::parameters::Allowed;
 fn page() -> String {
     let mut page = String::from(
         "# Parameters\n\n\
-         The table of `control/src/params/table.rs`, as this firmware has it; a board may have other defaults for what is\n\
+         The table of `control/inner_loop/src/params/table.rs`, as this firmware has it; a board may have other defaults for what is\n\
          soldered to it. They are set at the [console](console.md), by `sophie params load FILE`\n\
          ([a file of them](console.md#parameters-as-a-file)) and in the `[params]` of a scenario file. What has names takes the\n\
          name or the number in front of it.\n\n\

@@ -26,6 +26,7 @@
 mod arm;
 mod bend_watch;
 mod ceiling_watch;
+pub mod clamp_command;
 mod config;
 pub mod contact_pressure;
 pub mod grip;

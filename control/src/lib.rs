@@ -15,18 +15,15 @@
 // Tests compare floats exactly where exactness is the point.
 #![cfg_attr(not(test), deny(clippy::float_cmp))]
 
-pub mod allocation;
+pub use sophie_inner_loop::{allocation, attitude, chain, maths, params};
+
 pub mod approach;
 pub mod arming;
-pub mod attitude;
 pub mod battery;
 pub mod calibration;
-pub mod chain;
 pub mod contact;
 pub mod gripper;
-pub mod maths;
 pub mod mode;
 pub mod navigation;
-pub mod params;
 pub mod pilot;
 pub mod position_hold;

@@ -1,12 +1,11 @@
 //! A mission flown by the tasks, replayed from its inputs in a [`FlightChain`], gives the same bits.
 
 use embassy_time::Instant;
+use sophie_chain::FlightChain;
 use sophie_control::allocation::mixer::Flexible;
 use sophie_control::allocation::wrench::PerArm;
 use sophie_control::chain::setpoint::Setpoint;
-use sophie_control::chain::{
-    ArmReading, Attitude, Command, Demand, FlightChain, ImuReading, MixOutput, Surroundings,
-};
+use sophie_control::chain::{ArmReading, Attitude, Command, Demand, ImuReading, MixOutput, Surroundings};
 use sophie_control::gripper::grip::GripState;
 use sophie_ports::retained::StartCause;
 use sophie_sim::flight::aircraft::{Aircraft, ReportedStatus, Reset, StackEstimate};

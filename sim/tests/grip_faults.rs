@@ -1,7 +1,7 @@
 //! Tasks analog, clamp and servos on four simple arms with faults: reactions, and no force beyond the limit.
 
 use embassy_time::Instant;
-use sophie_control::chain::setpoint::ClampCommand;
+use sophie_control::gripper::clamp_command::ClampCommand;
 mod links;
 
 use links::links_with;

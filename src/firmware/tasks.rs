@@ -1,5 +1,5 @@
-//! Every task is spawned here. Those of the background are static executor tasks here too, compiled for size; those of
-//! the other levels are in `sophie_flight`, compiled for speed.
+//! Every task is spawned here. Those of the background are static executor tasks here too; those of the flight level are
+//! in `sophie_flight`, compiled for speed, those of the steady level in `sophie_steady`.
 
 use embassy_executor::SpawnError;
 use sophie_boards::retained::Memory;
@@ -8,6 +8,7 @@ use sophie_flight::tasks as flight;
 use sophie_ports::chip_check::ChipCheck;
 use sophie_ports::sensors::Barometer;
 use sophie_ports::signing::Stored;
+use sophie_steady::tasks as steady;
 use sophie_tasks::console::one_of::OneOf;
 use sophie_tasks::console::terminals::{Keyboards, Screens, Served};
 use sophie_tasks::ground_station::console_pipe::{Shell, ShellPort};
@@ -54,15 +55,15 @@ pub fn spawn(
     levels.spawn(TaskId::Imu, flight::imu(links, board.imu, self_test)?);
     levels.spawn(
         TaskId::Supervisor,
-        flight::supervisor(links, board.watchdog, memory)?,
+        steady::supervisor(links, board.watchdog, memory)?,
     );
-    levels.spawn(TaskId::Commander, flight::commander(links)?);
-    levels.spawn(TaskId::Rc, flight::rc(links, board.receiver)?);
-    levels.spawn(TaskId::Ground, flight::ground(links, board.ground)?);
-    levels.spawn(TaskId::Analog, flight::analog(links, board.analog)?);
-    levels.spawn(TaskId::Clamp, flight::clamp(links)?);
-    levels.spawn(TaskId::Servos, flight::servos(links, board.servos)?);
-    levels.spawn(TaskId::Position, flight::position(links)?);
+    levels.spawn(TaskId::Commander, steady::commander(links)?);
+    levels.spawn(TaskId::Rc, steady::rc(links, board.receiver)?);
+    levels.spawn(TaskId::Ground, steady::ground(links, board.ground)?);
+    levels.spawn(TaskId::Analog, steady::analog(links, board.analog)?);
+    levels.spawn(TaskId::Clamp, steady::clamp(links)?);
+    levels.spawn(TaskId::Servos, steady::servos(links, board.servos)?);
+    levels.spawn(TaskId::Position, steady::position(links)?);
     levels.spawn(TaskId::Arms, arms(links, board.arms)?);
     if <BarometerPort as Barometer>::FITTED {
         levels.spawn(TaskId::Barometer, barometer(links, board.barometer)?);

@@ -26,7 +26,7 @@ pub fn note_run(links: &Links, task: TaskId, released: Instant, started: Instant
     );
 }
 
-/// Records a run whose deadline applies to `ended`, before what it waits for afterwards.
+/// Records a run whose deadline applies to `ended`, before its next wait.
 pub fn record_run_until(
     links: &Links,
     task: TaskId,

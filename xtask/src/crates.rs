@@ -1,7 +1,7 @@
 //! Flash of an image by crate, from its symbols.
 //!
-//! A function counts for the crate that its name begins with, a generic's instance for the instantiating one. Bytes
-//! without a crate are listed apart.
+//! A function counts for the crate that its name begins with, a generic's instance for the instantiating one. The linker
+//! merges texts and constants and drops their names: those bytes are told by what they are.
 
 use std::collections::BTreeMap;
 
@@ -12,9 +12,19 @@ use crate::sizes::Sizes;
 
 /// Crates below this on every board are summed, bytes.
 const SMALL: u64 = 2048;
-const NAMELESS: &str = "constants without a name";
-/// Bytes without a symbol or a crate.
-const REST: &str = "rest: vectors, assembly, C names, padding";
+/// Printable characters of constants without a crate, [`TEXT_MIN`] or more in a row.
+const TEXTS: &str = "texts: parameters, console, MAVLink, panics";
+/// Their other bytes.
+const TABLES: &str = "tables and constants without a name";
+/// Functions without a crate: the compiler's own, such as `memcpy`, and the start in assembly.
+const ROUTINES: &str = "routines of the compiler and of the start";
+const VECTORS: &str = "vector table";
+/// Bytes between functions.
+const PADDING: &str = "padding of code";
+/// What has no crate, in the order of the table.
+const WITHOUT_CRATE: [&str; 5] = [TEXTS, TABLES, ROUTINES, VECTORS, PADDING];
+/// Shortest run of printable characters that counts as text.
+const TEXT_MIN: usize = 4;
 
 /// Bytes of flash by crate.
 pub type Shares = BTreeMap<String, u64>;
@@ -30,7 +40,7 @@ pub fn shares(image: &Image, sizes: &Sizes) -> Result<Shares, Error> {
     symbols.sort_by_key(|symbol| (symbol.address, std::cmp::Reverse(symbol.size)));
     let mut shares = Shares::new();
     for section in image.sections.iter().filter(|section| section.in_image) {
-        share(section, &symbols, &mut shares);
+        share(image, section, &symbols, &mut shares);
     }
     let sum: u64 = shares.values().sum();
     if sum == sizes.flash {
@@ -44,32 +54,68 @@ pub fn shares(image: &Image, sizes: &Sizes) -> Result<Shares, Error> {
     }
 }
 
-fn share(section: &Section, symbols: &[&Static], shares: &mut Shares) {
-    let mut give = |owner: String, bytes: u64| {
+fn share(image: &Image, section: &Section, symbols: &[&Static], shares: &mut Shares) {
+    let mut give = |owner: &str, bytes: u64| {
         if bytes > 0 {
-            *shares.entry(owner).or_default() += bytes;
+            *shares.entry(owner.to_owned()).or_default() += bytes;
         }
     };
+    let mut give_nameless = |first: u64, beyond: u64| {
+        let bytes = beyond - first;
+        match section.name.as_str() {
+            ".text" => give(PADDING, bytes),
+            ".vector_table" => give(VECTORS, bytes),
+            _ => {
+                let texts = text_bytes(image.bytes(first, bytes)).min(bytes);
+                give(TEXTS, texts);
+                give(TABLES, bytes - texts);
+            }
+        }
+    };
+    let mut owned: Vec<(String, u64)> = Vec::new();
     let (mut next, end) = (section.address, section.address + section.size);
     for symbol in symbols {
         let first = symbol.address.clamp(next, end);
         let beyond = (symbol.address + symbol.size).clamp(first, end);
         if symbol.address >= section.address && beyond > first {
-            give(REST.into(), first - next);
-            give(owner(&symbol.name), beyond - first);
+            give_nameless(next, first);
+            match owner(&symbol.name) {
+                Owner::Crate(name) => owned.push((name, beyond - first)),
+                Owner::Constant => give_nameless(first, beyond),
+                Owner::Routine => owned.push((ROUTINES.to_owned(), beyond - first)),
+            }
             next = beyond;
         }
     }
-    give(REST.into(), end - next);
+    give_nameless(next, end);
+    for (name, bytes) in owned {
+        give(&name, bytes);
+    }
 }
 
-fn owner(symbol: &str) -> String {
+/// Bytes in runs of at least [`TEXT_MIN`] printable characters.
+fn text_bytes(bytes: &[u8]) -> u64 {
+    let runs = bytes.split(|byte| !matches!(byte, b' '..=b'~' | b'\n' | 0xC2..));
+    let texts = runs.filter(|run| run.len() >= TEXT_MIN);
+    texts.map(|run| run.len() as u64).sum()
+}
+
+/// Whom a symbol's bytes belong to.
+#[derive(Debug, PartialEq)]
+enum Owner {
+    Crate(String),
+    /// A constant whose name the compiler has made up.
+    Constant,
+    Routine,
+}
+
+fn owner(symbol: &str) -> Owner {
     if symbol.starts_with(".Lanon.") || symbol.starts_with("anon.") {
-        return NAMELESS.into();
+        return Owner::Constant;
     }
     let name = rustc_demangle::try_demangle(symbol).map(|name| format!("{name:#}"));
     let owner = name.ok().and_then(|name| first_crate(&name).map(str::to_string));
-    owner.unwrap_or_else(|| REST.into())
+    owner.map_or(Owner::Routine, Owner::Crate)
 }
 
 /// `<alpha::Type as beta::Trait>::function` is alpha's, `<u32 as beta::Trait>::function` is beta's.
@@ -104,7 +150,7 @@ fn table(boards: &[(&Board, Shares)]) -> String {
             crates.entry(name).or_insert_with(|| vec![0; boards.len()])[nth] = *bytes;
         }
     }
-    let last = [NAMELESS, REST].map(|name| (name.to_string(), crates.remove(name)));
+    let last = WITHOUT_CRATE.map(|name| (name.to_string(), crates.remove(name)));
     let mut rows: Vec<(String, Vec<u64>)> = Vec::new();
     let (mut small, mut sum) = (0, vec![0; boards.len()]);
     for (name, bytes) in crates {
@@ -135,6 +181,7 @@ fn table(boards: &[(&Board, Shares)]) -> String {
 mod tests {
     use super::*;
     use crate::boards::BOARDS;
+    use crate::image::Load;
 
     #[test]
     fn a_name_belongs_to_the_crate_that_it_begins_with() {
@@ -162,11 +209,15 @@ mod tests {
         }
         assert_eq!(
             owner("_ZN13sophie_boards5stm325start17h0123456789abcdefE"),
-            "sophie_boards"
+            Owner::Crate("sophie_boards".to_owned())
         );
-        assert_eq!(owner("_RNvNtCs1234_7mycrate3foo3bar"), "mycrate");
-        assert_eq!(owner(".Lanon.a78e62bea.1"), NAMELESS);
-        assert_eq!(owner("memcpy"), REST);
+        assert_eq!(
+            owner("_RNvNtCs1234_7mycrate3foo3bar"),
+            Owner::Crate("mycrate".to_owned())
+        );
+        assert_eq!(owner(".Lanon.a78e62bea.1"), Owner::Constant);
+        assert_eq!(owner("memcpy"), Owner::Routine);
+        assert_eq!(text_bytes(b"\0\0infill\0abc\x01level 1\n\x02"), 6 + 8);
     }
 
     /// Code at 0x100 and constants at 0x200, 64 bytes each, and RAM.
@@ -190,7 +241,10 @@ mod tests {
                 section(".rodata", 0x200, true),
                 section(".bss", 0x2000_0000, false),
             ],
-            loads: Vec::new(),
+            loads: vec![Load {
+                address: 0x200,
+                bytes: [&b"\0\0twelve bytes"[..], &[0; 50]].concat(),
+            }],
             statics: vec![
                 symbol(".Lanon.a78e62bea.1", 0x200, 24),
                 symbol("_ZN5alpha4NAME17h0123456789abcdefE", 0x210, 24),
@@ -199,7 +253,8 @@ mod tests {
             functions: vec![
                 symbol("_ZN5alpha3run17h0123456789abcdefE", 0x104, 20),
                 symbol("_ZN4beta5twice17h0123456789abcdefE", 0x104, 20),
-                symbol("_ZN4beta3run17h0123456789abcdefE", 0x130, 32),
+                symbol("_ZN4beta3run17h0123456789abcdefE", 0x130, 8),
+                symbol("memcpy", 0x138, 8),
             ],
             ..Image::default()
         }
@@ -212,12 +267,14 @@ mod tests {
             ..Sizes::default()
         };
         let shares = shares(&image(), &sizes(128)).unwrap();
-        // 4 before, 24 between, 16 up to the section's end; constants overlap by 8.
+        // 4 before, 24 between; constants overlap by 8, and 24 follow them.
         let expected = [
             ("alpha", 20 + 16),
-            ("beta", 16),
-            (NAMELESS, 24),
-            (REST, 4 + 24 + 24),
+            ("beta", 8),
+            (TEXTS, 12),
+            (TABLES, 12 + 24),
+            (ROUTINES, 8),
+            (PADDING, 4 + 24),
         ];
         assert_eq!(
             shares,
@@ -229,8 +286,8 @@ mod tests {
     #[test]
     fn small_crates_are_one_row_and_columns_add_up() {
         let shares = |list: &[(&str, u64)]| list.iter().map(|(n, b)| (n.to_string(), *b)).collect();
-        let one = shares(&[("tiny", 7), ("big", 5000), ("wee", SMALL - 1), (REST, 3)]);
-        let other = shares(&[("tiny", 1), ("bigger", 9000), (NAMELESS, 4)]);
+        let one = shares(&[("tiny", 7), ("big", 5000), ("wee", SMALL - 1), (PADDING, 3)]);
+        let other = shares(&[("tiny", 1), ("bigger", 9000), (TEXTS, 4)]);
         let table = table(&[(&BOARDS[0], one), (&BOARDS[2], other)]);
         let expected = "\
 | flash by crate, bytes | matek-h743 | f405 |
@@ -238,8 +295,8 @@ mod tests {
 | bigger | 0 | 9000 |
 | big | 5000 | 0 |
 | 2 smaller crates | 2054 | 1 |
-| constants without a name | 0 | 4 |
-| rest: vectors, assembly, C names, padding | 3 | 0 |
+| texts: parameters, console, MAVLink, panics | 0 | 4 |
+| padding of code | 3 | 0 |
 | image | 7057 | 9005 |";
         assert_eq!(table, expected);
     }

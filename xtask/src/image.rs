@@ -97,6 +97,17 @@ impl Symbols {
 }
 
 impl Image {
+    /// The image's bytes at a run-time address that is their load address too; fewer where it has none.
+    pub fn bytes(&self, address: u64, length: u64) -> &[u8] {
+        let load = self
+            .loads
+            .iter()
+            .find(|load| (load.address..load.address + load.bytes.len() as u64).contains(&address));
+        let bytes = load.and_then(|load| load.bytes.get((address - load.address) as usize..));
+        let bytes = bytes.unwrap_or_default();
+        bytes.get(..length as usize).unwrap_or(bytes)
+    }
+
     /// Reads the ELF at `path`.
     ///
     /// # Errors

@@ -9,9 +9,8 @@ use crate::boards::{Bank, Board};
 use crate::image::Image;
 use crate::{Error, build};
 
-/// Of any board, bytes: five eighths of the smallest chip's flash, the F405's 1 MiB. It was 512 KiB until the position, its
-/// sources' trust and the barometer had filled these.
-const FLASH_LIMIT: u64 = 640 * 1024;
+/// Of any board, bytes: half of the smallest chip's flash, the F405's 1 MiB.
+const FLASH_LIMIT: u64 = 512 * 1024;
 /// The stack may be used up to this share, parts of its size, as the firmware warns (`ports/src/stack_use.rs`).
 const STACK_LIMIT: [u64; 2] = [3, 4];
 

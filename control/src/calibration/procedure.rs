@@ -10,8 +10,8 @@ use super::flow::{FlowFit, FlowTurns, Round, flow_fit};
 use super::step::{Calibration, Step};
 use super::{AccelFit, ArmFit, BIAS, Face, FsrFit, SCALES, Samples, Unfit, thousandths, within};
 use crate::allocation::wrench::PerArm;
+use crate::attitude::messages::Attitude;
 use crate::attitude::mounting::{Direction, Mounting};
-use crate::chain::messages::Attitude;
 use crate::gripper::tendon::SPAN_MIN_US;
 use crate::maths::scalar::to_deg;
 use crate::maths::vector::Vec3;
@@ -48,7 +48,7 @@ const ARM: [[&str; 2]; 4] = [
     ["arm_sign_4", "arm_zero_4"],
 ];
 
-/// What the sensors show at one time; `None` where nothing fresh is known.
+/// Readings of the sensors at one time; `None` for a silent or stale sensor.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Readings {
     /// Attitude with its time, µs.
@@ -66,7 +66,7 @@ pub struct Readings {
 /// Names and values of the parameters that a calibration sets.
 pub type Changes = [Option<(&'static str, f32)>; CHANGES];
 
-/// What a step has given.
+/// Outcome of a step that has passed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Outcome {
     /// It is kept; another step follows.
@@ -82,7 +82,7 @@ pub struct Finding {
     pub step: Step,
     /// Its outcome, or the quantity that forbids it.
     pub result: Result<Outcome, Unfit>,
-    /// What was found beside the parameters, NaN where unused. Gyro: rates about x, y, z and noise, deg/s. Flow: height of
+    /// Results beside the parameters, NaN for unused ones. Gyro: rates about x, y, z and noise, deg/s. Flow: height of
     /// the turning point over the lens, m.
     pub figures: [f32; 4],
 }

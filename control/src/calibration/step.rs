@@ -1,4 +1,4 @@
-//! What a person or a host asks for: one step of one calibration.
+//! One step of one calibration, as a person or a host requests it.
 
 use crate::gripper::tendon::SPAN_MIN_US;
 
@@ -81,8 +81,8 @@ pub struct Step {
 }
 
 impl Step {
-    /// Step `number` of `calibration`; `part` from 1 to 4 where it is of one part, else 0. `None` if there is no such
-    /// step, or its values are missing.
+    /// Step `number` of `calibration`; `part` is 1 to 4 for a calibration of one part, else 0. `None` for an unknown step
+    /// or missing values.
     pub fn new(calibration: Calibration, part: u32, number: u32, values: [f32; 2]) -> Option<Self> {
         let part = match (calibration.is_of_one(), part) {
             (true, 1..=4) => part as usize - 1,

@@ -2,7 +2,7 @@
 //!
 //! The mode logic decides it at 100 Hz; the supervisor copies it into memory that a reset keeps.
 
-use crate::chain::setpoint::ClampCommand;
+use crate::gripper::clamp_command::ClampCommand;
 use crate::pilot::rc::ArmChoice;
 
 /// Action of the tendons on the pipe, retained.

@@ -6,7 +6,8 @@ use super::modes::Mode;
 use super::reason::Reason;
 use super::shared::collective::HAND_OVER_TIME;
 use crate::arming::ArmingInhibits;
-use crate::chain::setpoint::{ClampCommand, Setpoint};
+use crate::chain::setpoint::Setpoint;
+use crate::gripper::clamp_command::ClampCommand;
 use crate::gripper::retained_grip::GripMemory;
 
 /// One state with its fields.

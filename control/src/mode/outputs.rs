@@ -3,7 +3,8 @@
 use super::modes::Mode;
 use super::reason::Reason;
 use crate::arming::ArmingInhibits;
-use crate::chain::setpoint::{ClampCommand, Setpoint};
+use crate::chain::setpoint::Setpoint;
+use crate::gripper::clamp_command::ClampCommand;
 use crate::gripper::retained_grip::GripMemory;
 use crate::pilot::bench_orders::BenchAnswer;
 use crate::pilot::remote::RemoteAnswer;

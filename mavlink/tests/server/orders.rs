@@ -318,14 +318,14 @@ fn a_servo_takes_a_pulse_and_gives_it_back() {
     let mut craft = Craft::new();
     craft.accepted(SERVO, &[6.0, 1500.0]);
     assert!(
-        matches!(craft.out.tendons, sophie_control::chain::setpoint::ClampCommand::Place(p) if p.servo == 1),
+        matches!(craft.out.tendons, sophie_control::gripper::clamp_command::ClampCommand::Place(p) if p.servo == 1),
         "{:?}",
         craft.out.tendons
     );
     craft.accepted(SERVO, &[6.0, 0.0]);
     assert_eq!(
         craft.out.tendons,
-        sophie_control::chain::setpoint::ClampCommand::Release
+        sophie_control::gripper::clamp_command::ClampCommand::Release
     );
     craft.refused(SERVO, &[5.0, PULSE_MAX_US + 1.0], DENIED, "refused: out of range");
     for output in [1.0, 4.0, 9.0, f32::NAN] {

@@ -2,7 +2,8 @@
 
 use glam::{DVec2, DVec3};
 use sophie_control::attitude::motion::Motion;
-use sophie_control::chain::setpoint::{ClampCommand, Setpoint};
+use sophie_control::chain::setpoint::Setpoint;
+use sophie_control::gripper::clamp_command::ClampCommand;
 use sophie_control::gripper::grip::{ArmGrip, ArmState, GripState};
 use sophie_control::maths::scalar::GRAVITY;
 use sophie_control::maths::vector::{Quat, Vec3};

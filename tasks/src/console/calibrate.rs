@@ -1,4 +1,4 @@
-//! Calibrations, a verb for each step: it measures, and puts what it has found into the working copy, as `set` does.
+//! Calibrations, a verb for each step: it measures, and puts the results into the working copy, as `set` does.
 //!
 //! The procedure is [`sophie_control::calibration::procedure`], as over MAVLink. `sophie bringup` leads through all of
 //! them.
@@ -19,7 +19,7 @@ use sophie_ports::storage::Storage;
 /// Time between two samples.
 const SAMPLING: Duration = Duration::from_millis(10);
 
-/// The verbs and what they measure.
+/// The verbs, with the measured part.
 const VERBS: [(&str, &str); 11] = [
     ("gyro", "at rest; measured at each start, nothing to store"),
     ("level", "accelerometer's bias on a table that is level"),
@@ -37,7 +37,7 @@ const VERBS: [(&str, &str); 11] = [
     ("flow near|far", "turned for 8 s, 0.5 m, then 1.5 m over a floor"),
 ];
 
-/// The step that a verb asks for; `None` if there is none.
+/// The step that a verb requests; `None` for an unknown verb.
 fn step(what: &str, arguments: [Option<&str>; 3]) -> Option<Step> {
     let one_of = |names: &[&str]| {
         let [name, None, _] = arguments else {
@@ -103,7 +103,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         }
     }
 
-    /// Prints what a step has given, and puts parameters into the working copy.
+    /// Prints the outcome of a step, and puts parameters into the working copy.
     async fn found(&mut self, finding: Finding) {
         let [x, y, z, noise] = finding.figures.map(Decimal);
         match (finding.result, finding.step.calibration) {

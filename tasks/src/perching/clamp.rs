@@ -25,7 +25,7 @@ use crate::links::link::{Newest, Stamped};
 use crate::links::messages::Contact;
 use crate::links::tendon_order::{TendonForce, TendonForces, TendonOrder};
 use crate::schedule::TaskId;
-use sophie_control::chain::setpoint::ClampCommand;
+use sophie_control::gripper::clamp_command::ClampCommand;
 use sophie_control::gripper::grip::GripState;
 
 /// Runs the gripper; never returns.

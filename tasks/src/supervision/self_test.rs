@@ -1,4 +1,4 @@
-//! Self-test of all parts without motion, row by row: what was measured and what is allowed.
+//! Self-test of all parts without motion, row by row: measured value and allowed range.
 
 use core::fmt::{self, Write};
 

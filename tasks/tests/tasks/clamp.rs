@@ -3,7 +3,7 @@
 use embassy_time::Instant;
 use sophie_control::allocation::wrench::PerArm;
 use sophie_control::chain::MixOutput;
-use sophie_control::chain::setpoint::ClampCommand;
+use sophie_control::gripper::clamp_command::ClampCommand;
 use sophie_control::gripper::contact_pressure::FsrFault;
 use sophie_control::gripper::grip::ArmState;
 use sophie_control::gripper::grip_fault::GripFault;

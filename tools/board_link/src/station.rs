@@ -91,7 +91,7 @@ impl Write for Datagrams {
     }
 }
 
-/// What a station keeps of what it hears.
+/// A station's memory of received frames.
 pub trait Heard: Send + 'static {
     /// Takes a frame of the vehicle.
     fn hear(&mut self, frame: &Frame<'_>);
@@ -109,7 +109,7 @@ pub struct Station<H> {
     encoder: Encoder,
     signing: Signing,
     begun: Instant,
-    /// What was heard.
+    /// Received frames.
     pub heard: H,
     /// Error that ended the line.
     pub ended: Option<ErrorKind>,
@@ -162,7 +162,7 @@ impl<H: Heard> Station<H> {
 
 struct Shared<H> {
     station: Mutex<Station<H>>,
-    /// Signals what was heard, or the end of the line.
+    /// Signals a received frame, or the end of the line.
     came: Condvar,
 }
 

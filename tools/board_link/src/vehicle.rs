@@ -126,7 +126,7 @@ pub struct Vehicle {
     mode: Option<u32>,
     /// Texts that were not taken yet.
     texts: Vec<String>,
-    /// The board's time since its start by its newest message, ms, and how often it has begun again.
+    /// The board's time since its start by its newest message, ms, and the number of restarts seen in it.
     boot_ms: u32,
     boots: u32,
     /// Raised from outside, as by Ctrl-C. It is obeyed once, so that the caller can still tidy up.
@@ -181,7 +181,7 @@ impl Vehicle {
         };
         let mut came = bytes(self);
         if !has_prompt(&came) {
-            // A console says nothing by itself.
+            // A console is silent until something is typed.
             if let Some(line) = &self.line {
                 let _ = line.station().send_raw(b"\r");
             }
@@ -211,7 +211,7 @@ impl Vehicle {
         self.boots
     }
 
-    /// From here on Ctrl-C is ignored: what has begun must not be left half done.
+    /// From here on Ctrl-C is ignored: a begun operation must not be left half done.
     pub const fn see_it_through(&mut self) {
         self.heeds = false;
     }
@@ -574,7 +574,7 @@ impl Vehicle {
         })
     }
 
-    /// Sets `name` to `value`; returns the value that the vehicle has then, which differs where it refuses.
+    /// Sets `name` to `value`; returns the vehicle's value afterwards, which differs after a refusal.
     ///
     /// # Errors
     /// As [`Self::command`].
@@ -711,7 +711,7 @@ impl Vehicle {
         }
     }
 
-    /// Waits until the board has begun again, after `before` such begins. A port on USB disappears during the restart.
+    /// Waits until the board has restarted more than `before` times. A port on USB disappears during the restart.
     fn come_back(&mut self, before: u32) -> Result<(), Failure> {
         let begun = Instant::now();
         let mut last = self.failed("the board does not restart");
@@ -726,10 +726,10 @@ impl Vehicle {
                     }
                 }
             }
-            let has_begun = self.boots > before;
+            let restarted = self.boots > before;
             self.mode = None;
             match self.heartbeat(AGAIN) {
-                Ok(Some(())) if has_begun => return Ok(()),
+                Ok(Some(())) if restarted => return Ok(()),
                 Ok(_) => (),
                 Err(failure) => last = failure,
             }

@@ -10,7 +10,7 @@ use sophie_dialect::{MavMessage, SCALED_PRESSURE_DATA};
 
 /// Boards that carry a barometer (`BarometerPort` of each board): a silent one is broken. Other boards fly without.
 const CARRY: [&str; 2] = ["matek-h743", "cuav-v5"];
-/// Period of the samples, µs, and the silence after which there is no barometer.
+/// Period of the samples, µs, and the silence after which a barometer counts as missing.
 const PERIOD_US: f32 = 200_000.0;
 const SILENCE: Duration = Duration::from_secs(3);
 /// Samples, five a second: at rest, lifted, and put down, the last two after samples in which the vehicle still

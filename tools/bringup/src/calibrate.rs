@@ -1,4 +1,4 @@
-//! Steps that calibrate: the builder is led, the vehicle measures, and what it has found is stored.
+//! Steps that calibrate: the builder is led, the vehicle measures, and the results are stored.
 
 use sophie_control::calibration::Face;
 use sophie_control::calibration::procedure::MOUNTING_SIDES;
@@ -42,7 +42,7 @@ fn calibrated(
     ))
 }
 
-/// What was found beside the parameters.
+/// Results beside the parameters.
 fn found(calibration: Calibration, figures: &[f32; 4]) -> Option<String> {
     let [x, y, z, noise] = figures;
     match calibration {

@@ -134,7 +134,7 @@ impl<'a> Walk<'a> {
         Ok(self.vehicle.ready(waits)?)
     }
 
-    /// Tells the vehicle that the propellers are off, once for each start of the board; its complaint if it refuses.
+    /// Confirms to the vehicle that the propellers are off, once for each start of the board; its complaint if it refuses.
     pub(super) fn propellers_off(&mut self) -> Result<Option<String>, Stop> {
         self.vehicle.catch_up()?;
         if self.off_since == Some(self.vehicle.starts()) {
@@ -265,7 +265,7 @@ impl<'a> Walk<'a> {
         Ok(Ok(self.changed(name, old, now)))
     }
 
-    /// Stores what was set and restarts; returns it, read back after the restart.
+    /// Stores the set parameters and restarts; returns them, read back after the restart.
     pub(super) fn keep(&mut self) -> Result<BTreeMap<String, f64>, Stop> {
         let changed = std::mem::take(&mut self.changed);
         if changed.is_empty() {

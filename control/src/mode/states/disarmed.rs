@@ -1,7 +1,8 @@
 //! Motors stopped, ready to be armed.
 
 use crate::arming::ArmingInhibits;
-use crate::chain::setpoint::{ClampCommand, Setpoint};
+use crate::chain::setpoint::Setpoint;
+use crate::gripper::clamp_command::ClampCommand;
 use crate::gripper::retained_grip::GripMemory;
 use crate::mode::behaviour::Behaviour;
 use crate::mode::context::{Context, Step};

@@ -5,8 +5,9 @@
 //! reaches hover. If the stick never moves, the failsafe lands the vehicle.
 
 use crate::arming::ArmingInhibits;
-use crate::chain::setpoint::{ClampCommand, Setpoint};
+use crate::chain::setpoint::Setpoint;
 use crate::contact::contact_force::HINT_FORCE;
+use crate::gripper::clamp_command::ClampCommand;
 use crate::gripper::retained_grip::GripMemory;
 use crate::maths::scalar::{clamp, clamp_abs, deg};
 use crate::mode::behaviour::Behaviour;

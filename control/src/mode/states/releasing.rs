@@ -1,6 +1,7 @@
 //! Rotors spool up again, then tendons pay out until every arm is proven free.
 
-use crate::chain::setpoint::{ClampCommand, Setpoint};
+use crate::chain::setpoint::Setpoint;
+use crate::gripper::clamp_command::ClampCommand;
 use crate::gripper::retained_grip::GripMemory;
 use crate::maths::scalar::clamp;
 use crate::mode::behaviour::Behaviour;

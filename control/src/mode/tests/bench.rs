@@ -5,7 +5,8 @@ use proptest::prelude::*;
 use super::rig::{DT, Rig};
 use crate::arming::{ArmingInhibit, ArmingInhibits};
 use crate::attitude::motion::Motion;
-use crate::chain::setpoint::{ClampCommand, Setpoint};
+use crate::chain::setpoint::Setpoint;
+use crate::gripper::clamp_command::ClampCommand;
 use crate::gripper::retained_grip::GripMemory;
 use crate::mode::*;
 use crate::pilot::bench_orders::{

@@ -2,7 +2,8 @@
 
 use super::rig::{DT, Rig};
 use crate::attitude::motion::Motion;
-use crate::chain::setpoint::{ClampCommand, Setpoint};
+use crate::chain::setpoint::Setpoint;
+use crate::gripper::clamp_command::ClampCommand;
 use crate::gripper::grip::ArmState;
 use crate::gripper::retained_grip::GripMemory;
 use crate::maths::scalar::{GRAVITY, deg};

@@ -2,7 +2,7 @@
 
 use super::rig::Rig;
 use crate::arming::ArmingInhibit;
-use crate::chain::setpoint::ClampCommand;
+use crate::gripper::clamp_command::ClampCommand;
 use crate::gripper::grip::ArmState;
 use crate::gripper::retained_grip::GripMemory;
 use crate::mode::*;

@@ -3,7 +3,8 @@
 
 use super::rig::Rig;
 use crate::attitude::motion::Motion;
-use crate::chain::setpoint::{ClampCommand, Setpoint};
+use crate::chain::setpoint::Setpoint;
+use crate::gripper::clamp_command::ClampCommand;
 use crate::gripper::grip::ArmState;
 use crate::maths::vector::{Quat, Vec3};
 use crate::mode::states::clamping::HOPELESS_TIME;

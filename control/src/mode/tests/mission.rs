@@ -3,7 +3,8 @@
 use super::rig::{DT, Rig};
 use crate::allocation::wrench::Wrench;
 use crate::attitude::motion::Motion;
-use crate::chain::setpoint::{ClampCommand, Setpoint};
+use crate::chain::setpoint::Setpoint;
+use crate::gripper::clamp_command::ClampCommand;
 use crate::gripper::grip::ArmState;
 use crate::maths::scalar::deg;
 use crate::maths::vector::{Quat, Vec3};

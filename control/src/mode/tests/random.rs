@@ -2,7 +2,8 @@
 
 extern crate std;
 use crate::attitude::motion::Motion;
-use crate::chain::setpoint::{ClampCommand, Setpoint};
+use crate::chain::setpoint::Setpoint;
+use crate::gripper::clamp_command::ClampCommand;
 use crate::gripper::grip::{ArmGrip, GripState};
 use crate::gripper::grip_geometry::Misfit;
 use crate::gripper::retained_grip::GripMemory;

@@ -3,7 +3,8 @@
 use super::rig::Rig;
 use crate::arming::{ArmingInhibit, ArmingInhibits};
 use crate::attitude::motion::Motion;
-use crate::chain::setpoint::{ClampCommand, Setpoint};
+use crate::chain::setpoint::Setpoint;
+use crate::gripper::clamp_command::ClampCommand;
 use crate::gripper::grip::ArmState;
 use crate::gripper::retained_grip::GripMemory;
 use crate::maths::vector::Quat;

@@ -1,7 +1,8 @@
 //! The mode logic in a simple world that carries it or does not.
 
 use crate::attitude::motion::Motion;
-use crate::chain::setpoint::{ClampCommand, Setpoint};
+use crate::chain::setpoint::Setpoint;
+use crate::gripper::clamp_command::ClampCommand;
 use crate::gripper::grip::{ArmGrip, ArmState, GripState};
 use crate::maths::scalar::GRAVITY;
 use crate::maths::vector::Vec3;

@@ -2,10 +2,11 @@
 
 use core::fmt::Arguments;
 
+use sophie_chain::FlightChain;
 use sophie_conformance::fold::{Fold, Noise};
 use sophie_control::allocation::wrench::{Configuration, Wrench};
 use sophie_control::chain::setpoint::Setpoint;
-use sophie_control::chain::{ArmReading, Command, Demand, FlightChain, ImuReading, Surroundings};
+use sophie_control::chain::{ArmReading, Command, Demand, ImuReading, Surroundings};
 use sophie_control::maths::scalar;
 use sophie_control::maths::vector::Vec3;
 use sophie_control::params::Params;

@@ -3,13 +3,14 @@
 
 use core::hint::black_box;
 
+use sophie_chain::{FlightChain, Flow};
 use sophie_control::allocation::mixer::{Allocation, Conditions, Flexible, Mix};
 use sophie_control::allocation::thrust_curve::ThrustCurve;
 use sophie_control::allocation::wrench::{Configuration, PerArm};
 use sophie_control::attitude::attitude_loop::{AttitudeLoop, Target};
 use sophie_control::attitude::imu_filter::AxisFilter;
 use sophie_control::attitude::rate_loop::RateLoop;
-use sophie_control::chain::{Demand, FlightChain, Flow};
+use sophie_control::chain::Demand;
 use sophie_control::maths::vector::Vec3;
 use sophie_control::params::Params;
 

@@ -3,8 +3,9 @@
 use core::fmt::Arguments;
 use core::hint::black_box;
 
+use sophie_chain::FlightChain;
 use sophie_conformance::fold::Fold;
-use sophie_control::chain::{Demand, FlightChain};
+use sophie_control::chain::Demand;
 
 use crate::chain::{self, Laws};
 use crate::counter::{self, Tally, gross, line};

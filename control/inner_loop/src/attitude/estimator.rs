@@ -3,7 +3,7 @@
 //! In free flight the accelerometer feels thrust, not gravity, so the pull is weak (default time constant 10 s) and
 //! fades when the specific force is not 1 g. Without a compass, heading is integrated.
 
-use crate::chain::messages::{Attitude, ImuSample};
+use crate::attitude::messages::{Attitude, ImuSample};
 use crate::maths::scalar::{self, GRAVITY};
 use crate::maths::vector::{Quat, Vec3};
 use crate::params::Params;

@@ -3,7 +3,7 @@
 //! [`ImuFilter::batch`] runs at 1 kHz in the task `imu` with the samples of the last millisecond (4 kHz, or the part's
 //! nearest rate; rad/s and m/s² in body axes). A missed sample delays the rates by its period.
 
-use crate::chain::messages::ImuReading;
+use crate::attitude::messages::ImuReading;
 use crate::maths::filter::Coefficients;
 use crate::maths::vector::Vec3;
 

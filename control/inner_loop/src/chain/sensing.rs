@@ -1,8 +1,8 @@
 //! First stage: filters the inertial sensor at its own rate, outputs at 1 kHz.
 
-use super::messages::{ImuReading, ImuSample};
 use super::step_clock::{CONTROL_RATE_HZ, StepClock};
 use crate::attitude::imu_filter::ImuFilter;
+use crate::attitude::messages::{ImuReading, ImuSample};
 use crate::attitude::mounting::Mounting;
 use crate::maths::scalar::{self, GRAVITY};
 use crate::maths::vector::Vec3;

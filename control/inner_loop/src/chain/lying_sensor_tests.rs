@@ -4,9 +4,9 @@ extern crate std;
 
 use std::println;
 
-use super::messages::{Attitude, ImuReading, ImuSample};
 use super::sensing::Sensing;
 use crate::attitude::estimator::Estimator;
+use crate::attitude::messages::{Attitude, ImuReading, ImuSample};
 use crate::attitude::motion::Motion;
 use crate::maths::scalar::{GRAVITY, deg};
 use crate::maths::vector::{Quat, Vec3};

@@ -1,5 +1,5 @@
 use super::*;
-use crate::pilot::bench_orders::Spin;
+use crate::chain::spin::Spin;
 
 const THRUST: f32 = 10.0;
 const GIVEN: Feedback = Feedback {

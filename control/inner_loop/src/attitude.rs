@@ -3,6 +3,7 @@
 pub mod attitude_loop;
 pub mod estimator;
 pub mod imu_filter;
+pub mod messages;
 pub mod motion;
 pub mod mounting;
 pub mod rate_loop;

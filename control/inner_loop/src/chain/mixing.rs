@@ -9,8 +9,8 @@ use crate::allocation::arm_tilt::TiltModel;
 use crate::allocation::mixer::{Allocation, Conditions, Flexible};
 use crate::allocation::thrust_curve::ThrustCurve;
 use crate::allocation::wrench::PerArm;
+use crate::chain::spin::Spin;
 use crate::params::Params;
-use crate::pilot::bench_orders::Spin;
 
 /// Measurement of the arms' sensors.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -1,29 +1,18 @@
-//! Flight step, 1 kHz: from a batch of inertial samples to four motor commands.
-//!
-//! Four stages with their own state: [`Sensing`] filters, [`Estimator`] gives the attitude, [`Control`] the demand,
-//! [`Mixing`] the commands. On the vehicle each belongs to a task, joined by links; instruction counts, QEMU and
-//! replays run them as one [`FlightChain`], with identical bits for a recorded mission.
+//! The four stages of the flight step in series, without tasks and links between them: what counts their instructions
+//! and compares their bits runs this. What flies are the tasks that own the same stages ([`sophie_control::chain`]); a
+//! recorded mission gives the same bits both ways (`sim/tests/flight_step.rs`).
 
-mod control;
-#[cfg(test)]
-mod lying_sensor_tests;
-pub(crate) mod messages;
-pub(crate) mod mixing;
-mod sensing;
-pub mod setpoint;
-mod step_clock;
+#![no_std]
 
-pub use control::{Command, Control, RESTING_ROLL_GAIN};
-pub use messages::{Attitude, Demand, ImuReading, ImuSample, MixOutput, lift};
-pub use mixing::{ArmReading, Mixing, MixingStep, Surroundings};
-pub use sensing::Sensing;
-pub use step_clock::{CONTROL_RATE_HZ, StepClock};
-
-use crate::allocation::mixer::Flexible;
-use crate::attitude::attitude_loop::Target;
-use crate::attitude::estimator::Estimator;
-use crate::attitude::rate_loop::Feedback;
-use crate::params::Params;
+use sophie_control::allocation::mixer::Flexible;
+use sophie_control::attitude::attitude_loop::Target;
+use sophie_control::attitude::estimator::Estimator;
+use sophie_control::attitude::rate_loop::Feedback;
+use sophie_control::chain::{
+    Attitude, Command, Control, Demand, ImuReading, ImuSample, MixOutput, Mixing, MixingStep, Sensing,
+    Surroundings,
+};
+use sophie_control::params::Params;
 
 /// Messages of the last step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

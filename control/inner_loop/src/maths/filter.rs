@@ -130,7 +130,7 @@ impl Coefficients {
     }
 
     /// Gain, a1 and a2 of a low pass; its numerator is the gain times 1, 2, 1.
-    pub(crate) const fn as_low_pass(self) -> (f32, f32, f32) {
+    pub const fn as_low_pass(self) -> (f32, f32, f32) {
         (self.b0, self.a1, self.a2)
     }
 

@@ -3,10 +3,11 @@
 #[cfg(test)]
 mod tests;
 
-use super::messages::{Attitude, Demand};
+use super::messages::Demand;
 use super::step_clock::CONTROL_RATE_HZ;
 use crate::allocation::wrench::Wrench;
 use crate::attitude::attitude_loop::{AttitudeLoop, AttitudeSetpoint, Target};
+use crate::attitude::messages::Attitude;
 use crate::attitude::rate_loop::{Feedback, RateLoop};
 use crate::chain::setpoint::Setpoint;
 use crate::maths::scalar;

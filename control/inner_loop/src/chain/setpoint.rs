@@ -1,9 +1,8 @@
-//! Setpoints of rotors and tendons, from the mode logic.
+//! Setpoint of the rotors, from the mode logic.
 
 use crate::allocation::wrench::Wrench;
+use crate::chain::spin::Spin;
 use crate::maths::vector::Vec3;
-use crate::pilot::bench_orders::{Place, Spin};
-use crate::pilot::rc::ArmChoice;
 
 /// Wanted action of the rotors.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -103,34 +102,9 @@ impl Setpoint {
     }
 }
 
-/// Wanted action of the tendons.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum ClampCommand {
-    /// Slack, servos at their release position.
-    #[default]
-    Release,
-    /// Close these arms to the grip pressure.
-    Close {
-        /// Which arms.
-        arms: ArmChoice,
-    },
-    /// The same, beyond the grip pressure.
-    Tighten {
-        /// Which arms.
-        arms: ArmChoice,
-        /// How often they were tightened, 1 to [`TIGHTENINGS`](crate::gripper::TIGHTENINGS).
-        times: u8,
-    },
-    /// No pulses: the gears keep hold as at power-up.
-    Keep,
-    /// One servo at a bench pulse, the others as with [`Self::Release`].
-    Place(Place),
-}
-
-#[cfg(test)]
 impl Setpoint {
-    /// Its numbers, 0 where missing; independent of [`Self::is_finite`].
-    pub(crate) fn numbers(self) -> [f32; 4] {
+    /// Its numbers in their order, the thrust last, 0 where missing: for comparisons, independent of [`Self::is_finite`].
+    pub fn numbers(self) -> [f32; 4] {
         match self {
             Self::Stop | Self::Idle => [0.0; 4],
             Self::Spin(spin) => [spin.drive, 0.0, 0.0, 0.0],

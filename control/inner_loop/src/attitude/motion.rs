@@ -24,7 +24,7 @@ const RESTING_FORCE: core::ops::RangeInclusive<f32> = 0.8..=1.2;
 impl Motion {
     /// The accelerometer at rest contradicts the attitude: the gyro's bias has stepped, or the vehicle has turned faster than
     /// the gyro reads.
-    pub(crate) fn leans_unseen(&self) -> bool {
+    pub fn leans_unseen(&self) -> bool {
         let force = self.accel.norm();
         let along = -self.accel.dot(self.q.down_in_body());
         RESTING_FORCE.contains(&(force / GRAVITY)) && along < force * scalar::cos(UNSEEN_LEAN)
