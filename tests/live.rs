@@ -1,6 +1,7 @@
 //! `sophie fly --live` as a user and his MAVLink clients meet it.
 
 use sophie_test_support::clients;
+use std::io::Write;
 use std::net::{Ipv4Addr, UdpSocket};
 use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Output, Stdio};
@@ -181,6 +182,48 @@ fn without_a_pilot_it_waits_on_the_ground_and_leaves_no_report() {
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
     assert!(text(&output.stdout).ends_with("waits until Ctrl-C\n"));
     assert!(!temp.0.join("out").exists());
+}
+
+/// A builder who replies to `sophie bringup` with `replies`, then stops; what was said, and the exit status.
+fn led(temp: &Temp, address: &str, replies: &str) -> Output {
+    let port = format!("udpin:{address}");
+    let mut child = command(&temp.0, &["bringup", "--port", &port, "--patience", "20"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    child.stdin.take().unwrap().write_all(replies.as_bytes()).unwrap();
+    child.wait_with_output().unwrap()
+}
+
+#[test]
+fn a_bring_up_begins_at_the_simulated_vehicle() {
+    let temp = Temp::new("live-bringup");
+    let (socket, address) = station();
+    drop(socket);
+    let _flight = Flight::begin(&temp, &["--pilot", "none", "--speed", "5", "--mavlink", &address]);
+    // It has no chip: skipped. The capacity is changed, which stores and restarts; the sticks of a radio are not there.
+    let replies = "s\n\n\n\n5400\n\n\n\n\n\nq\n";
+    let output = led(&temp, &address, replies);
+    let said = text(&output.stdout);
+    assert_eq!(
+        (output.status.code(), text(&output.stderr).as_str()),
+        (Some(1), ""),
+        "{said}"
+    );
+    for line in [
+        "battery_capacity 6480 -> 5400 A s",
+        "the board restarts",
+        "pass  inertial sensor",
+        "(live-air)",
+    ] {
+        assert!(said.contains(line), "{line}: {said}");
+    }
+    assert!(
+        said.contains("\nStopped. skipped: chip; not done: live-air"),
+        "{said}"
+    );
 }
 
 #[test]

@@ -44,9 +44,9 @@ pub enum Task {
     /// A row each for thrust, throttle, yaw, the control loops, the arms, batteries, wind and grip: value, limit,
     /// verdict, and what to do if it fails. Exit status: 0 it can fly, 1 it cannot, 2 bad input.
     Check(CheckArgs),
-    /// Lead through the set-up of a vehicle over its board's console, and record it in a protocol.
+    /// Lead through the set-up of a vehicle over MAVLink, and record it in a protocol.
     ///
-    /// Each step names the work for the hands, asks, types the console's commands and judges the answers. Stopped by q,
+    /// Each step names the work for the hands, asks, has the vehicle measure and judges its numbers. Stopped by q,
     /// Ctrl-C or a lost line, it continues with the first step that has not passed. Answers may be piped in, a line
     /// each.
     /// Exit status: 0 all passed, 1 something failed, skipped or not done, 2 bad input, file or port.

@@ -18,7 +18,7 @@ use super::{FAILED, PROGRAM, REFUSED};
 /// Leads through the set-up of a vehicle.
 pub fn bringup(args: &BringupArgs) -> ExitCode {
     let walked = on_ctrl_c().map_err(Failure::Input).and_then(|stop| {
-        let mut vehicle = args.line.vehicle(Arc::clone(&stop))?;
+        let mut vehicle = args.line.vehicle(&args.port, Arc::clone(&stop))?;
         let mut user = Terminal::new(stop);
         sophie_bringup::run(&mut vehicle, &mut user, &args.protocol, &args.again)
     });
@@ -52,7 +52,8 @@ fn status(done: Result<bool, Failure>) -> ExitCode {
 }
 
 fn session(args: &ParamsArgs) -> Result<Session, Failure> {
-    args.line.session(on_ctrl_c().map_err(Failure::Input)?)
+    let stop = on_ctrl_c().map_err(Failure::Input)?;
+    args.line.session(&args.port, stop)
 }
 
 fn dump(args: &ParamsArgs) -> Result<(), Failure> {

@@ -566,13 +566,12 @@ struct Frames {
 }
 
 impl Frames {
-    /// What has been said, less each `drops`th of the console's.
+    /// What has been said, less each `drops`th frame.
     fn take(&self, drops: Option<usize>) -> Vec<u8> {
         let mut kept = Vec::new();
         for frame in self.said.take() {
-            let console = frame.get(7..10) == Some(&[126, 0, 0]);
-            self.count.set(self.count.get() + usize::from(console));
-            if !console || drops.is_none_or(|every| !self.count.get().is_multiple_of(every)) {
+            self.count.set(self.count.get() + 1);
+            if drops.is_none_or(|every| !self.count.get().is_multiple_of(every)) {
                 kept.extend(frame);
             }
         }

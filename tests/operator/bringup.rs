@@ -15,6 +15,7 @@ use sophie_sim::live::Key;
 
 use super::board::{Board, Hands};
 use super::run;
+use sophie_tasks::supervision::self_test::ROWS;
 use sophie_test_support::command::{Temp, command, refused};
 
 /// What the accelerometer reads beyond gravity.
@@ -314,6 +315,31 @@ fn a_vehicle_is_brought_up_over_four_sessions() {
         "{done:?}"
     );
     assert!(done.said.contains("not done: fsr-2, servo-2\n"), "{done:?}");
+}
+
+#[test]
+fn a_line_that_loses_frames_and_bytes_only_takes_longer() {
+    let temp = Temp::new("bringup-lossy");
+    let board = Board::on_mavlink(
+        Hands {
+            drops: Some(17),
+            loses: Some(701),
+            ..factory()
+        },
+        None,
+    );
+    let mut builder = Builder::begins(&temp, &board, &[]);
+    builder.hears("on table, chip 0x450 0x2003");
+    first_part(&mut builder, &board);
+    builder.at("(arm-1)", "q");
+    let (status, said, complaint) = builder.ends();
+    assert_eq!((status, &*complaint), (Some(1), ""), "{said}");
+    assert!(said.contains("\nStopped. not done: arm-1, arm-2"), "{said}");
+    let file = fs::read_to_string(temp.0.join("bringup.toml")).unwrap();
+    let rows = file.matches("pass  ").count() + file.matches("FAIL  ").count();
+    assert_eq!(rows, usize::from(ROWS), "{file}");
+    assert!((board.stored().accel_bias_x - 0.11).abs() < 1e-3);
+    assert!((board.stored().battery_capacity - 5400.0).abs() < 1.0);
 }
 
 #[test]

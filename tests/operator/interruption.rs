@@ -81,6 +81,51 @@ fn a_bring_up_is_left_in_order_wherever_it_is() {
 }
 
 #[test]
+fn a_running_measurement_ends_and_sets_nothing() {
+    let temp = Temp::new("interrupt-measurement");
+    let board = Board::on_mavlink(Hands::default(), None);
+    // A level that is not the stored one.
+    board.hands(|hands| {
+        hands.force.x += 0.2;
+        hands.real_time = true;
+    });
+    let mut builder = Builder::begins(&temp, &board, &[]);
+    skips_to(&mut builder, "level");
+    builder.at("Enter for the level table", "");
+    builder.at("Enter when it is so", "");
+    // It measures for 2.5 s.
+    board.pass(1.0);
+    builder.interrupts();
+    let (status, text, complaint) = builder.ends();
+    assert_eq!((status, &*complaint), (Some(1), ""), "{text}");
+    assert!(text.contains("not done: level"), "{text}");
+    board.hands(|hands| hands.real_time = false);
+    board.pass(5.0);
+    assert!(board.stored() == Params::DEFAULT);
+}
+
+#[test]
+fn a_skipped_step_leaves_no_motor_turning() {
+    let temp = Temp::new("interrupt-skip");
+    let board = &Board::on_mavlink(Hands::default(), None);
+    let mut builder = Builder::begins(&temp, board, &[]);
+    skips_to(&mut builder, "esc");
+    builder.at("Type off", "off");
+    board.hands(|hands| hands.real_time = true);
+    builder.hears("Did it turn");
+    until(board, |pins| pins.motors[0] > 0.0);
+    let from = board.seconds();
+    builder.types("s");
+    until(board, |pins| pins.motors == [0.0; 4]);
+    // Left to itself it turns for 2 s.
+    let took = board.seconds() - from;
+    assert!(took < 1.0, "{took} s");
+    // Skipped, not stopped: the next step is there.
+    builder.at("(rotors)", "q");
+    assert_eq!(builder.ends().0, Some(1));
+}
+
+#[test]
 fn a_motor_stops_at_once() {
     let temp = Temp::new("interrupt-motor");
     let board = &Board::on_mavlink(Hands::default(), None);

@@ -1,4 +1,4 @@
-//! Options of the subcommands that use a board's console.
+//! Options of the subcommands that use a board: `bringup` over MAVLink, `params` at its console.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -15,14 +15,9 @@ use super::values::within;
 use crate::cli::key;
 use sophie_sim::live::Key;
 
-/// Console of a board, and its longest silence.
+/// Key of a line to a board, and its longest silence.
 #[derive(Args, Debug)]
 pub struct LineArgs {
-    /// Console of the board: /dev/ttyUSB0, COM3 or tcp:HOST:PORT, serial ports at 115,200 baud; or over MAVLink
-    /// mavlink:/dev/ttyUSB0 (another rate behind a comma), mavlink:tcp:HOST:PORT, udpin:HOST:PORT (listens) or
-    /// udpout:HOST:PORT.
-    #[arg(long, value_name = "PORT")]
-    pub port: PortName,
     /// File with the key that signs MAVLink, 64 hexadecimal digits, where the board has one.
     #[arg(long, value_name = "FILE")]
     pub mavlink_key: Option<PathBuf>,
@@ -32,20 +27,20 @@ pub struct LineArgs {
 }
 
 impl LineArgs {
-    /// Opens a session at that console; raising `stop` ends it.
+    /// Opens a session at the console of `port`; raising `stop` ends it.
     ///
     /// # Errors
     /// One line: the port cannot be opened, no console answers there, or the key is invalid.
-    pub fn session(&self, stop: Arc<AtomicBool>) -> Result<Session, Failure> {
-        Session::open(&self.port, self.key()?, self.patience, stop)
+    pub fn session(&self, port: &PortName, stop: Arc<AtomicBool>) -> Result<Session, Failure> {
+        Session::open(port, self.key()?, self.patience, stop)
     }
 
-    /// Opens the port as MAVLink, whatever its name says it carries; raising `stop` ends it.
+    /// Opens `port` as MAVLink, whatever its name says it carries; raising `stop` ends it.
     ///
     /// # Errors
     /// One line: the port cannot be opened, no vehicle answers there, or the key is invalid.
-    pub fn vehicle(&self, stop: Arc<AtomicBool>) -> Result<Vehicle, Failure> {
-        Vehicle::open(&self.port, self.key()?, self.patience, stop)
+    pub fn vehicle(&self, port: &PortName, stop: Arc<AtomicBool>) -> Result<Vehicle, Failure> {
+        Vehicle::open(port, self.key()?, self.patience, stop)
     }
 
     fn key(&self) -> Result<Option<Key>, Failure> {
@@ -57,6 +52,11 @@ impl LineArgs {
 /// Vehicle and protocol of the set-up.
 #[derive(Args, Debug)]
 pub struct BringupArgs {
+    /// MAVLink of the vehicle: the board's USB socket as /dev/ttyACM0 or COM3; its MAVLink port as mavlink:/dev/ttyUSB0
+    /// (57,600 baud, another rate behind a comma), mavlink:tcp:HOST:PORT, udpin:HOST:PORT (listens) or
+    /// udpout:HOST:PORT. The pads of the serial console have no MAVLink.
+    #[arg(long, value_name = "PORT")]
+    pub port: PortName,
     #[command(flatten)]
     pub line: LineArgs,
     /// Protocol file: continued if it exists, otherwise begun.
@@ -85,6 +85,11 @@ pub struct ParamsArgs {
     pub verb: ParamsVerb,
     /// Parameter file; - is stdout for `dump`.
     pub file: PathBuf,
+    /// Console of the board: /dev/ttyUSB0, COM3 or tcp:HOST:PORT, serial ports at 115,200 baud; or over MAVLink
+    /// mavlink:/dev/ttyUSB0 (another rate behind a comma), mavlink:tcp:HOST:PORT, udpin:HOST:PORT (listens) or
+    /// udpout:HOST:PORT.
+    #[arg(long, value_name = "PORT")]
+    pub port: PortName,
     #[command(flatten)]
     pub line: LineArgs,
 }

@@ -15,8 +15,6 @@ use crate::Failure;
 use crate::port::{BAUD, PortName};
 use crate::wire::Wire;
 
-/// Default of the longest silence while an answer is due.
-pub const PATIENCE: Duration = Duration::from_secs(10);
 /// Longest restart of a board: erasing flash, self-tests, and an emulated board at half the speed.
 const RESTART: Duration = Duration::from_secs(30);
 /// Time between two attempts to reopen a lost port.
@@ -50,28 +48,15 @@ pub struct Session {
     /// The answering device, for messages.
     expected: String,
     patience: Duration,
-    /// Output since the last Enter or key: printable characters and line ends only.
+    /// Output since the last Enter: printable characters and line ends only.
     heard: String,
-    /// Pressed key, whose echo comes first.
-    pressed: Option<u8>,
     /// Number of probes so far.
     attempts: u32,
-    /// Restarts since the session began.
-    restarts: u32,
     /// Raised from outside, as by Ctrl-C. It is obeyed once, so that the caller can still tidy up.
     stop: Arc<AtomicBool>,
     heeds: bool,
     /// The port is gone, as on USB while the board restarts.
     lost: bool,
-}
-
-/// The console's output up to its prompt or question.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Turn {
-    /// Whole lines, without the echo of the typed text.
-    pub lines: Vec<String>,
-    /// The question that the console asks; `None` at the prompt.
-    pub question: Option<&'static str>,
 }
 
 impl Session {
@@ -98,9 +83,7 @@ impl Session {
             },
             patience,
             heard: String::new(),
-            pressed: None,
             attempts: 0,
-            restarts: 0,
             stop,
             heeds: true,
             lost: false,
@@ -117,11 +100,6 @@ impl Session {
         &self.port
     }
 
-    /// Restarts of the board since the session began.
-    pub fn restarts(&self) -> u32 {
-        self.restarts
-    }
-
     /// Types `text` and returns the answer.
     ///
     /// # Errors
@@ -134,9 +112,9 @@ impl Session {
         }
         for _ in 0..TRIES {
             self.begin(text)?;
-            let turn = self.turn(text, &[])?;
-            if !turn.lines.iter().any(|line| line.starts_with(DAMAGED)) {
-                return Ok(turn.lines);
+            let lines = self.answer(text)?;
+            if !lines.iter().any(|line| line.starts_with(DAMAGED)) {
+                return Ok(lines);
             }
         }
         Err(self.failed(&format!("'{text}' is damaged on its way each time")))
@@ -159,11 +137,8 @@ impl Session {
         self.command(text)
     }
 
-    /// Types `text` with its Enter; [`Self::turn`] returns the answer.
-    ///
-    /// # Errors
-    /// As [`Self::command`].
-    pub fn begin(&mut self, text: &str) -> Result<(), Failure> {
+    /// Types `text` with its Enter.
+    fn begin(&mut self, text: &str) -> Result<(), Failure> {
         for _ in 0..TRIES {
             self.heard.clear();
             self.send(text.as_bytes())?;
@@ -177,34 +152,12 @@ impl Session {
         Err(self.failed(&format!("'{text}' does not come back as it was typed")))
     }
 
-    /// Presses `key`.
-    ///
-    /// # Errors
-    /// The line is lost.
-    fn key(&mut self, key: u8) -> Result<(), Failure> {
-        self.heard.clear();
-        self.pressed = Some(key);
-        self.send(&[key])
-    }
-
-    /// Ends the running command and waits for the prompt.
-    ///
-    /// # Errors
-    /// As [`Self::command`].
-    pub fn cancel(&mut self) -> Result<Vec<String>, Failure> {
-        self.key(CANCEL)?;
-        // The end of the line before may have been read already.
-        self.heard.push('\n');
-        Ok(self.turn("what runs was ended", &[])?.lines)
-    }
-
     /// Ends the running command after Ctrl-C; further Ctrl-C is ignored.
     ///
     /// # Errors
     /// As [`Self::command`].
     pub fn calm(&mut self) -> Result<(), Failure> {
         self.see_it_through();
-        self.pressed = None;
         self.synchronise(self.patience)
     }
 
@@ -213,73 +166,13 @@ impl Session {
         self.heeds = false;
     }
 
-    /// Output until the console asks one of `questions` or shows its prompt; `what` names the typed text or key in a
-    /// failure.
-    ///
-    /// # Errors
-    /// As [`Self::command`].
-    pub fn turn(&mut self, what: &str, questions: &[&'static str]) -> Result<Turn, Failure> {
-        let asked = |heard: &str| {
-            questions
-                .iter()
-                .copied()
-                .find(|question| heard.ends_with(question))
-        };
-        if !self.wait(self.patience, |heard| {
-            heard.ends_with(PROMPT) || asked(heard).is_some()
-        })? {
-            return Err(self.silent(what));
+    /// The lines of the answer to the typed `text`, up to the prompt.
+    fn answer(&mut self, text: &str) -> Result<Vec<String>, Failure> {
+        if !self.wait(self.patience, |heard| heard.ends_with(PROMPT))? {
+            return Err(self.silent(text));
         }
-        let question = asked(&self.heard);
-        let end = match question {
-            None => "> ",
-            // A line of the answer.
-            Some(question) if question.ends_with('\n') => "",
-            Some(question) => question,
-        };
-        let text = self.heard.strip_suffix(end).unwrap_or(&self.heard);
-        let mut lines: Vec<String> = whole_lines(text).collect();
-        if let Some(key) = self.pressed.take()
-            && lines.first().is_some_and(|line| line.as_bytes() == [key])
-        {
-            lines.remove(0);
-        }
-        Ok(Turn { lines, question })
-    }
-
-    /// The next whole line of the running `command`.
-    ///
-    /// # Errors
-    /// As [`Self::command`].
-    pub fn line(&mut self, command: &str) -> Result<String, Failure> {
-        if !self.wait(self.patience, |heard| heard.contains('\n'))? {
-            return Err(self.silent(command));
-        }
-        let rest = self
-            .heard
-            .split_once('\n')
-            .map(|(line, rest)| (line.trim_end().to_owned(), rest.to_owned()));
-        let (line, rest) = rest.unwrap_or_default();
-        self.heard = rest;
-        Ok(line)
-    }
-
-    /// Presses `key` if the console waits for a key; false if its command has ended meanwhile.
-    ///
-    /// # Errors
-    /// The line is lost.
-    pub fn press(&mut self, key: u8) -> Result<bool, Failure> {
-        self.heard.clear();
-        if self.wait(Duration::ZERO, |heard| !heard.is_empty())? {
-            return Ok(false);
-        }
-        self.key(key)?;
-        Ok(true)
-    }
-
-    /// Longest start, from the restart to `DISARMED`.
-    pub fn longest_start(&self) -> Duration {
-        RESTART.max(self.patience)
+        let said = self.heard.strip_suffix("> ").unwrap_or(&self.heard);
+        Ok(whole_lines(said).collect())
     }
 
     /// Types `text`, which restarts the board, and waits until it answers again; returns its last output. If the last
@@ -305,7 +198,6 @@ impl Session {
         let lines: Vec<String> = whole_lines(&self.heard).filter(|line| line != ">").collect();
         if restarts(&lines) {
             self.come_back(RESTART.max(self.patience))?;
-            self.restarts += 1;
         }
         Ok(lines)
     }

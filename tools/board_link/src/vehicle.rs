@@ -21,8 +21,16 @@ use crate::Failure;
 use crate::port::PortName;
 use crate::station::{Heard, Line, STATION, STATION_COMPONENT};
 
-/// Time from the first attempt at a request to the second; each further one waits twice as long.
-const ATTEMPT: Duration = Duration::from_secs(1);
+/// Time from the first attempt at a request to the second; each further one waits half as long again: six in ten seconds.
+const ATTEMPT: Duration = Duration::from_millis(500);
+/// Silence that ends a list of parameters, and a look at a line that says nothing.
+const QUIET: Duration = Duration::from_secs(1);
+/// Longest silence after a report of progress, one a second, before the acknowledgement counts as lost on its way.
+const PROGRESS: Duration = Duration::from_secs(3);
+/// Longest wait for the text behind a refusal.
+const REASON: Duration = Duration::from_millis(500);
+/// Vendor of a vehicle that this program knows.
+const VENDOR: &str = "SOPHIE";
 /// Longest restart of a board: erasing flash, self-tests, and an emulated board at half the speed.
 const RESTART: Duration = Duration::from_secs(30);
 /// Time between two attempts to reopen a lost port, and between two looks at a state that changes.
@@ -37,6 +45,9 @@ const TRIES: u32 = 4;
 const REORDERED_MS: u32 = 50;
 /// The console's prompt, by which it is known where MAVLink was expected.
 const PROMPT: &[u8] = b"\n> ";
+
+/// Complaint about a vehicle that lacks the messages of the set-up.
+const FOREIGN: &str = "this is no vehicle of this program's release: it does not know the set-up's messages";
 
 /// Who a vehicle is.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -111,11 +122,10 @@ pub struct Vehicle {
     key: Option<Key>,
     /// Longest silence while an answer is due.
     patience: Duration,
-    /// Its mode by its newest heartbeat, and when that came.
-    mode: Option<(u32, Instant)>,
+    /// Its mode by its newest heartbeat.
+    mode: Option<u32>,
     /// Texts that were not taken yet.
     texts: Vec<String>,
-    restarts: u32,
     /// The board's time since its start by its newest message, ms, and the number of restarts seen in it.
     boot_ms: u32,
     boots: u32,
@@ -143,7 +153,6 @@ impl Vehicle {
             patience,
             mode: None,
             texts: Vec::new(),
-            restarts: 0,
             boot_ms: 0,
             boots: 0,
             stop,
@@ -160,6 +169,7 @@ impl Vehicle {
         let ends = self.name.open_mavlink()?;
         let line = Line::open(ends, self.key, Inbox::default());
         self.line = Some(line.map_err(|error| Failure::Input(format!("{}: {error}", self.name)))?);
+        self.boot_ms = 0;
         Ok(())
     }
 
@@ -175,7 +185,7 @@ impl Vehicle {
             if let Some(line) = &self.line {
                 let _ = line.station().send_raw(b"\r");
             }
-            self.wait(ATTEMPT, |_| None::<()>)?;
+            self.wait(QUIET, |_| None::<()>)?;
             came = bytes(self);
         }
         let (port, time) = (&self.name, self.patience.as_secs_f32());
@@ -196,9 +206,9 @@ impl Vehicle {
         self.name.to_string()
     }
 
-    /// Restarts of the board since the session began.
-    pub const fn restarts(&self) -> u32 {
-        self.restarts
+    /// Number of starts of the board that were noticed since the session began, those that nobody asked for among them.
+    pub const fn starts(&self) -> u32 {
+        self.boots
     }
 
     /// From here on Ctrl-C is ignored: a begun operation must not be left half done.
@@ -215,8 +225,17 @@ impl Vehicle {
         Failure::Board(format!("{}: {why}", self.name))
     }
 
-    /// The next message; `None` after 20 ms without one.
-    fn next(&mut self) -> Result<Option<MavMessage>, Failure> {
+    /// Takes in all that has come so far: what came before a request is no answer to it, and no movement of now.
+    ///
+    /// # Errors
+    /// The line is lost, or Ctrl-C.
+    pub fn catch_up(&mut self) -> Result<(), Failure> {
+        while self.next(false)?.is_some() {}
+        Ok(())
+    }
+
+    /// The next message; `None` without one, after 20 ms if it `waits`.
+    fn next(&mut self, waits: bool) -> Result<Option<MavMessage>, Failure> {
         if self.heeds && self.stop.load(Ordering::Relaxed) {
             self.heeds = false;
             return Err(Failure::Stopped(format!("{}: stopped by Ctrl-C", self.name)));
@@ -224,12 +243,12 @@ impl Vehicle {
         let Some(line) = &self.line else {
             return Err(self.failed("the line is lost"));
         };
-        let mut station = line.wait();
+        let mut station = if waits { line.wait() } else { line.station() };
         let message = station.heard.messages.pop_front();
         let ended = station.ended;
         drop(station);
         if let Some(ms) = message.as_ref().and_then(boot_ms) {
-            if ms.saturating_add(REORDERED_MS) < self.boot_ms {
+            if is_earlier(ms, self.boot_ms) {
                 self.boots += 1;
             }
             self.boot_ms = ms;
@@ -244,7 +263,7 @@ impl Vehicle {
                     }));
                 }
             }
-            Some(MavMessage::HEARTBEAT(beat)) => self.mode = Some((beat.custom_mode, Instant::now())),
+            Some(MavMessage::HEARTBEAT(beat)) => self.mode = Some(beat.custom_mode),
             Some(MavMessage::STATUSTEXT(text)) => {
                 self.texts.extend(text.text.to_str().ok().map(ToOwned::to_owned));
             }
@@ -264,7 +283,7 @@ impl Vehicle {
     ) -> Result<Option<T>, Failure> {
         let begun = Instant::now();
         loop {
-            if let Some(found) = self.next()?.as_ref().and_then(&mut wanted) {
+            if let Some(found) = self.next(true)?.as_ref().and_then(&mut wanted) {
                 return Ok(Some(found));
             }
             if begun.elapsed() >= time {
@@ -294,6 +313,7 @@ impl Vehicle {
         message: &M,
         mut wanted: impl FnMut(&MavMessage) -> Option<T>,
     ) -> Result<T, Failure> {
+        self.catch_up()?;
         let begun = Instant::now();
         let mut attempt = ATTEMPT.min(self.patience);
         loop {
@@ -304,7 +324,7 @@ impl Vehicle {
             if begun.elapsed() >= self.patience {
                 return Err(self.silent(what));
             }
-            attempt *= 2;
+            attempt += attempt / 2;
         }
     }
 
@@ -313,7 +333,8 @@ impl Vehicle {
         self.failed(&format!("the vehicle fell silent for {time} s after {what}"))
     }
 
-    /// Gives `command` and returns its result; `seen` looks at the messages meanwhile.
+    /// Gives `command` and returns its result; `seen` looks at the messages meanwhile. A vehicle that is at work on it
+    /// takes a repetition for the same command.
     ///
     /// # Errors
     /// The line is lost, the vehicle falls silent, or Ctrl-C.
@@ -342,24 +363,37 @@ impl Vehicle {
         };
         let name = format!("{command:?}");
         let what = name.trim_start_matches("MAV_CMD_").to_owned();
-        let begun = Instant::now();
+        self.catch_up()?;
+        let mut up_ms = self.boot_ms;
+        let mut answered = Instant::now();
         let mut attempt = ATTEMPT.min(self.patience);
         loop {
             self.send(&message)?;
             let mut time = attempt;
             while let Some(result) = self.wait(time, |message| {
                 seen(message);
-                acknowledged(message, number)
-            })? {
-                if result != MavResult::MAV_RESULT_IN_PROGRESS {
-                    return Ok(result);
+                let was = up_ms;
+                up_ms = boot_ms(message).unwrap_or(was);
+                let restarted = is_earlier(up_ms, was);
+                match acknowledged(message, number) {
+                    None if restarted => Some(None),
+                    None => None,
+                    result => Some(result),
                 }
-                time = self.patience;
+            })? {
+                match result {
+                    // What was to be acknowledged is gone.
+                    None => return Err(self.failed(&format!("the board has restarted after {what}"))),
+                    Some(MavResult::MAV_RESULT_IN_PROGRESS) => (),
+                    Some(result) => return Ok(result),
+                }
+                answered = Instant::now();
+                time = PROGRESS.min(self.patience / 2);
             }
-            if time > attempt || begun.elapsed() >= self.patience {
+            if answered.elapsed() >= self.patience {
                 return Err(self.silent(&what));
             }
-            attempt *= 2;
+            attempt += attempt / 2;
             message.confirmation = message.confirmation.saturating_add(1);
         }
     }
@@ -377,16 +411,24 @@ impl Vehicle {
         &mut self,
         id: u32,
         what: &str,
-        wanted: impl FnMut(&MavMessage) -> Option<T>,
+        mut wanted: impl FnMut(&MavMessage) -> Option<T>,
     ) -> Result<T, Failure> {
+        let command = MavCmd::MAV_CMD_REQUEST_MESSAGE as u16;
         let message = COMMAND_LONG_DATA {
             param1: id as f32,
-            command: MavCmd::MAV_CMD_REQUEST_MESSAGE as u16,
+            command,
             target_system: SYSTEM,
             target_component: COMPONENT,
             ..COMMAND_LONG_DATA::DEFAULT
         };
-        self.asked(what, &message, wanted)
+        let answer = self.asked(what, &message, |message| {
+            match (wanted(message), acknowledged(message, command)) {
+                (Some(found), _) => Some(Some(found)),
+                (None, None | Some(MavResult::MAV_RESULT_ACCEPTED)) => None,
+                (None, Some(_)) => Some(None),
+            }
+        })?;
+        answer.ok_or_else(|| Failure::Input(format!("{}: {FOREIGN}", self.name)))
     }
 
     /// Who it is.
@@ -398,13 +440,14 @@ impl Vehicle {
         let id = COMPONENT_INFORMATION_BASIC_DATA::ID;
         let asked = self.request(id, "its identity was asked for", |message| match message {
             MavMessage::COMPONENT_INFORMATION_BASIC(basic) => Some((
+                text(basic.vendor_name.to_str()),
                 text(basic.model_name.to_str()),
                 text(basic.software_version.to_str()),
                 text(basic.hardware_version.to_str()),
             )),
             _ => None,
         });
-        let (board, version, chip) = asked.map_err(|failure| match failure {
+        let (vendor, board, version, chip) = asked.map_err(|failure| match failure {
             Failure::Board(line) => {
                 let key = match self.key {
                     None => "it may want signed frames: --mavlink-key FILE",
@@ -414,6 +457,9 @@ impl Vehicle {
             }
             other => other,
         })?;
+        if vendor != VENDOR {
+            return Err(Failure::Input(format!("{}: {FOREIGN}", self.name)));
+        }
         let bytes = self.request(
             AUTOPILOT_VERSION_DATA::ID,
             "its version was asked for",
@@ -466,11 +512,12 @@ impl Vehicle {
     pub fn values(&mut self) -> Result<Values, Failure> {
         let mut values = Values::default();
         let mut seen = Vec::new();
+        self.catch_up()?;
         self.send(&PARAM_REQUEST_LIST_DATA {
             target_system: SYSTEM,
             target_component: COMPONENT,
         })?;
-        let quiet = ATTEMPT.min(self.patience);
+        let quiet = QUIET.min(self.patience);
         while let Some((index, count, name, value)) = self.wait(quiet, param_value)? {
             seen.resize(usize::from(count).max(seen.len()), false);
             if let Some(seen) = seen.get_mut(usize::from(index)) {
@@ -562,12 +609,11 @@ impl Vehicle {
     /// # Errors
     /// It does not within the longest start, or as [`Self::command`].
     pub fn ready(&mut self, mut waits: impl FnMut(&str)) -> Result<(), Failure> {
+        self.catch_up()?;
         let begun = Instant::now();
         let mut said = false;
         loop {
-            let mode = Mode::ALL
-                .into_iter()
-                .find(|mode| self.mode.is_some_and(|(number, _)| number == *mode as u32));
+            let mode = Mode::ALL.into_iter().find(|mode| self.mode == Some(*mode as u32));
             if mode == Some(Mode::Disarmed) {
                 return Ok(());
             }
@@ -598,7 +644,7 @@ impl Vehicle {
     fn store(&mut self) -> Result<(), Failure> {
         let result = self.command(MavCmd::MAV_CMD_PREFLIGHT_STORAGE, &[1.0])?;
         if result != MavResult::MAV_RESULT_ACCEPTED {
-            return Err(self.refused("storing"));
+            return Err(self.refused("not stored"));
         }
         let begun = Instant::now();
         loop {
@@ -622,7 +668,7 @@ impl Vehicle {
     ///
     /// # Errors
     /// The board refuses, or does not come back.
-    pub fn restart(&mut self) -> Result<(), Failure> {
+    fn restart(&mut self) -> Result<(), Failure> {
         self.restarting(MavCmd::MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN)
     }
 
@@ -631,21 +677,38 @@ impl Vehicle {
     /// # Errors
     /// The board refuses, or does not come back.
     pub fn restarting(&mut self, command: MavCmd) -> Result<(), Failure> {
+        self.catch_up()?;
         let heeds = std::mem::replace(&mut self.heeds, false);
         let before = self.boots;
-        let result = self.command(command, &[1.0])?;
-        let done = match result {
-            MavResult::MAV_RESULT_ACCEPTED => self.come_back(before),
-            _ => Err(self.refused("the restart")),
+        let done = match self.command(command, &[1.0]) {
+            Ok(MavResult::MAV_RESULT_ACCEPTED) => self.come_back(before),
+            // The restart was faster than its acknowledgement, which it may have taken away with the port.
+            _ if self.line.is_none() || self.boots > before => self.come_back(before),
+            Ok(_) => Err(self.refused("not restarted")),
+            Err(failure) => Err(failure),
         };
         self.heeds = heeds;
         done
     }
 
+    /// The vehicle's newest text, which gives the reason of a refusal and follows its acknowledgement.
+    ///
+    /// # Errors
+    /// The line is lost, or Ctrl-C.
+    pub fn reason(&mut self) -> Result<String, Failure> {
+        self.wait(REASON, |message| {
+            matches!(message, MavMessage::STATUSTEXT(_)).then_some(())
+        })?;
+        let newest = self.texts().pop();
+        Ok(newest.unwrap_or_else(|| "refused without a reason".to_owned()))
+    }
+
     /// One line of a refusal, with the vehicle's reason.
     pub fn refused(&mut self, what: &str) -> Failure {
-        let reason = self.texts.pop().unwrap_or_else(|| "no reason came".to_owned());
-        self.failed(&format!("{what} was refused: {reason}"))
+        match self.reason() {
+            Ok(reason) => self.failed(&format!("{what}: {reason}")),
+            Err(failure) => failure,
+        }
     }
 
     /// Waits until the board has restarted more than `before` times. A port on USB disappears during the restart.
@@ -666,10 +729,7 @@ impl Vehicle {
             let restarted = self.boots > before;
             self.mode = None;
             match self.heartbeat(AGAIN) {
-                Ok(Some(())) if restarted => {
-                    self.restarts += 1;
-                    return Ok(());
-                }
+                Ok(Some(())) if restarted => return Ok(()),
                 Ok(_) => (),
                 Err(failure) => last = failure,
             }
@@ -682,9 +742,11 @@ impl Vehicle {
     /// # Errors
     /// As [`Self::command`].
     pub fn calm(&mut self) -> Result<(), Failure> {
-        self.see_it_through();
         self.command(MavCmd::MAV_CMD_SOPHIE_CALIBRATE, &[0.0])?;
-        self.command(MavCmd::MAV_CMD_DO_MOTOR_TEST, &[1.0, 0.0, 0.0])?;
+        // Twice: while a motor test is not acknowledged yet, the first counts as its repetition.
+        for _ in 0..2 {
+            self.command(MavCmd::MAV_CMD_DO_MOTOR_TEST, &[1.0, 0.0, 0.0])?;
+        }
         Ok(())
     }
 }
@@ -724,6 +786,11 @@ fn boot_ms(message: &MavMessage) -> Option<u32> {
         MavMessage::SOPHIE_ARMING(arming) => Some(arming.time_boot_ms),
         _ => None,
     }
+}
+
+/// The board's time `ms` is that of a later start than `was`.
+const fn is_earlier(ms: u32, was: u32) -> bool {
+    ms.saturating_add(REORDERED_MS) < was
 }
 
 /// Index, count, name and value.

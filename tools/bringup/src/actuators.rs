@@ -55,18 +55,17 @@ pub(super) fn servo(walk: &mut Walk<'_>, step: &Step) -> Judged {
     for (at, name) in ["release", "full"].into_iter().enumerate() {
         let begin = marks.and_then(|marks| marks.get(at).copied()).unwrap_or(from);
         walk.say(&format!("  | {name} mark of servo {}", step.number));
-        let moved = move_servo(walk, servo, begin);
-        if !matches!(moved, Err(Stop::Failed(_))) && !matches!(moved, Ok(Ok(_))) {
-            give_back(walk, servo)?;
-        }
-        match moved? {
+        match move_servo(walk, servo, begin)? {
             Ok(pulse) => {
                 from = pulse;
                 if let Some(slot) = pulses.get_mut(at) {
                     *slot = pulse;
                 }
             }
-            Err(refused) => return Ok(Verdict::of(false, vec![refused])),
+            Err(refused) => {
+                give_back(walk, servo)?;
+                return Ok(Verdict::of(false, vec![refused]));
+            }
         }
     }
     give_back(walk, servo)?;

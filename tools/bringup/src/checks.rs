@@ -1,12 +1,14 @@
 //! Chip, setup, self-tests, and the final check.
 
+use std::collections::BTreeMap;
+
 use sophie_board_link::Failure;
 use sophie_board_link::vehicle::{Identity, Vehicle, inhibits};
 use sophie_control::allocation::motor_pulses::by_pulses;
 use sophie_control::arming::ArmingInhibit;
 use sophie_control::maths::decimal;
 use sophie_control::params::Params;
-use sophie_dialect::{MavCmd, MavMessage, MavResult, SophieReport};
+use sophie_dialect::{MavCmd, MavMessage, MavResult, SOPHIE_CHECK_DATA, SophieReport};
 use sophie_tasks::storage::parameters::{Allowed, Shown, Unit, table_id};
 
 use super::protocol;
@@ -38,7 +40,7 @@ const STILL_OFF: [ArmingInhibit; 3] = [
     ArmingInhibit::BatterySilent,
     ArmingInhibit::BatteryLow,
 ];
-/// Number of attempts at a report that lost rows on its way.
+/// Number of attempts at a report that loses rows on its way.
 const TRIES: u32 = 3;
 
 /// A row of a report.
@@ -51,6 +53,15 @@ struct Row {
 }
 
 impl Row {
+    fn of(row: &SOPHIE_CHECK_DATA) -> Self {
+        Self {
+            name: row.name.to_str().unwrap_or_default().to_owned(),
+            found: row.found.to_str().unwrap_or_default().to_owned(),
+            passed: row.passed != 0,
+            inhibits: inhibits(row.inhibits),
+        }
+    }
+
     /// One of `these` belongs to it.
     fn concerns(&self, these: &[ArmingInhibit]) -> bool {
         self.inhibits.iter().any(|inhibit| these.contains(inhibit))
@@ -62,42 +73,39 @@ impl Row {
     }
 }
 
-/// All rows of a report; the vehicle's reason if it refuses.
+/// All rows of a report; the vehicle's reason if it refuses. Rows that are lost on their way are taken from its
+/// repetition.
 fn report(walk: &mut Walk<'_>, report: SophieReport) -> Result<Result<Vec<Row>, String>, Stop> {
     let which = report as u8;
-    let mut tries = 1..TRIES;
-    loop {
-        let mut rows = Vec::new();
+    let mut rows = BTreeMap::new();
+    let mut count = None;
+    for _ in 0..TRIES {
         let params = [f32::from(which)];
         let result = walk
             .vehicle
             .command_with(MavCmd::MAV_CMD_SOPHIE_REPORT, &params, |message| {
                 if let MavMessage::SOPHIE_CHECK(row) = message
                     && row.report == which
-                    && usize::from(row.row) == rows.len()
                 {
-                    rows.push((
-                        row.rows,
-                        Row {
-                            name: row.name.to_str().unwrap_or_default().to_owned(),
-                            found: row.found.to_str().unwrap_or_default().to_owned(),
-                            passed: row.passed != 0,
-                            inhibits: inhibits(row.inhibits),
-                        },
-                    ));
+                    count = Some(usize::from(row.rows));
+                    rows.insert(row.row, Row::of(row));
                 }
             })?;
         if result != MavResult::MAV_RESULT_ACCEPTED {
-            let refused = walk.vehicle.refused("the report");
-            return Ok(Err(refused.to_string()));
+            let reason = walk.vehicle.reason()?;
+            return Ok(Err(format!("no report: {reason}")));
         }
-        let whole = rows
-            .first()
-            .is_none_or(|(count, _)| usize::from(*count) == rows.len());
-        if whole || tries.next().is_none() {
-            return Ok(Ok(rows.into_iter().map(|(_, row)| row).collect()));
+        if count == Some(rows.len()) {
+            return Ok(Ok(rows.into_values().collect()));
         }
     }
+    Ok(match count {
+        None => Ok(Vec::new()),
+        Some(count) => Err(format!(
+            "of {count} rows of the report {} have come: the line loses too much",
+            rows.len()
+        )),
+    })
 }
 
 /// Firmware and chip of the board, and a warning where its parameters are not those of this program.
@@ -247,6 +255,8 @@ pub(super) fn selftest(walk: &mut Walk<'_>, _: &Step) -> Judged {
 }
 
 pub(super) fn everything(walk: &mut Walk<'_>, _: &Step) -> Judged {
+    // A value that was set in a step without a verdict is in force from now on.
+    let kept = walk.keep()?;
     let rows = match tested(walk)? {
         Ok(rows) => rows,
         Err(refused) => return Ok(Verdict::of(false, vec![refused])),
@@ -270,5 +280,7 @@ pub(super) fn everything(walk: &mut Walk<'_>, _: &Step) -> Judged {
             figures.push(format!("not the default: {} {}", row.name, number(value)));
         }
     }
-    Ok(Verdict::of(sound && failing.is_empty(), figures))
+    let mut verdict = Verdict::of(sound && failing.is_empty(), figures);
+    verdict.parameters = kept;
+    Ok(verdict)
 }

@@ -235,7 +235,8 @@ pub fn run(
     match done {
         Ok(()) => user.say(&protocol.state()),
         Err(Stop::Skip | Stop::Quit | Stop::Failed(Failure::Stopped(_))) => {
-            // Nothing is left running at the board.
+            // Nothing is left running at the board, whatever comes.
+            vehicle.see_it_through();
             vehicle.calm()?;
             user.say(&format!("Stopped. {}", protocol.state()));
         }
@@ -314,7 +315,13 @@ fn steps(walk: &mut Walk<'_>, protocol: &mut Protocol) -> Result<(), Stop> {
 /// One attempt at a step, written into the protocol; false if the builder wants to repeat it.
 fn one(walk: &mut Walk<'_>, protocol: &mut Protocol, step: &Step) -> Result<bool, Stop> {
     let begun = walk.ask("Enter begins, s skips, q stops:");
-    let judged = begun.and_then(|_| (step.run)(walk, step));
+    let judged = begun.and_then(|_| {
+        let judged = (step.run)(walk, step);
+        if matches!(judged, Err(Stop::Skip)) {
+            walk.vehicle.calm()?;
+        }
+        judged
+    });
     let (ended, verdict) = match judged {
         Ok(verdict) if verdict.passed => (Ended::Passed, verdict),
         Ok(verdict) => (Ended::Failed, verdict),

@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use super::walk::{Stop, Verdict, Walk, understood};
 use super::{Judged, Step};
 use mavlink_core::MessageData;
+use sophie_board_link::Failure;
 use sophie_control::arming::ArmingInhibit;
 use sophie_dialect::{ATTITUDE_DATA, MavMessage, RC_CHANNELS_DATA, SCALED_IMU_DATA, SOPHIE_ARMS_DATA};
 
@@ -308,14 +309,17 @@ fn watch(walk: &mut Walk<'_>, group: &Group) -> Result<Vec<Seen>, Stop> {
     let mut seen: Vec<Seen> = group.columns.iter().map(|name| Seen::new(name)).collect();
     let mut rows = 0;
     let ended = loop {
-        walk.vehicle.wait(ROW, |message| {
+        let row = walk.vehicle.wait(ROW, |message| {
             for (column, number) in (group.read)(message) {
                 if let Some(seen) = seen.get_mut(column) {
                     seen.see(number, group.places);
                 }
             }
             None::<()>
-        })?;
+        });
+        if let Err(failure) = row {
+            break Err(Stop::Failed(failure));
+        }
         rows += 1;
         let row: String = seen.iter().map(|seen| seen.shown(group.places)).collect();
         walk.user.live(&row);
@@ -325,13 +329,18 @@ fn watch(walk: &mut Walk<'_>, group: &Group) -> Result<Vec<Seen>, Stop> {
             break understood(reply);
         }
     };
-    walk.vehicle.stream(group.messages, 0.0)?;
-    ended?;
-    Ok(seen)
+    match ended {
+        Err(lost @ Stop::Failed(Failure::Board(_))) => Err(lost),
+        ended => {
+            walk.vehicle.stream(group.messages, 0.0)?;
+            ended.map(|_| seen)
+        }
+    }
 }
 
 /// Voltage of the flight battery, V; `None` if it is not measured.
 pub(super) fn battery(walk: &mut Walk<'_>) -> Result<Option<f32>, Stop> {
+    walk.vehicle.catch_up()?;
     let volts = walk.vehicle.wait(MESSAGE, |message| match message {
         MavMessage::BATTERY_STATUS(battery) if battery.id == 0 => Some(battery.voltages[0]),
         _ => None,

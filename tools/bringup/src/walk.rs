@@ -71,8 +71,8 @@ impl Verdict {
 
 /// What one step of a calibration has given.
 pub(super) enum Measured {
-    /// Taken, or complete.
-    Good(SOPHIE_CALIBRATION_RESULT_DATA),
+    /// Taken, or complete; `None` if its result was lost on its way, as its acknowledgement was not.
+    Good(Option<SOPHIE_CALIBRATION_RESULT_DATA>),
     /// Why not, in a line.
     Bad(String),
 }
@@ -81,7 +81,7 @@ pub(super) enum Measured {
 pub(super) struct Walk<'a> {
     pub vehicle: &'a mut Vehicle,
     pub user: &'a mut dyn User,
-    /// Count of the board's restarts when the builder last confirmed that the propellers are off.
+    /// Count of the board's starts when the builder last confirmed that the propellers are off.
     off_since: Option<u32>,
     /// Weight of the last pressure sensor, N.
     pub weight: String,
@@ -136,13 +136,14 @@ impl<'a> Walk<'a> {
 
     /// Confirms to the vehicle that the propellers are off, once for each start of the board; its complaint if it refuses.
     pub(super) fn propellers_off(&mut self) -> Result<Option<String>, Stop> {
-        if self.off_since == Some(self.vehicle.restarts()) {
+        self.vehicle.catch_up()?;
+        if self.off_since == Some(self.vehicle.starts()) {
             return Ok(None);
         }
         while self.ask("Type off once all four propellers are off:")? != "off" {}
         match self.order(MavCmd::MAV_CMD_USER_1, &[1.0])? {
             None => {
-                self.off_since = Some(self.vehicle.restarts());
+                self.off_since = Some(self.vehicle.starts());
                 Ok(None)
             }
             refused => Ok(refused),
@@ -157,21 +158,7 @@ impl<'a> Walk<'a> {
         if result == MavResult::MAV_RESULT_ACCEPTED {
             return Ok(None);
         }
-        Ok(Some(self.reason()?))
-    }
-
-    /// The vehicle's newest text, which gives the reason of a refusal and follows its acknowledgement.
-    fn reason(&mut self) -> Result<String, Stop> {
-        let text = self.vehicle.wait(REASON, |message| match message {
-            MavMessage::STATUSTEXT(_) => Some(()),
-            _ => None,
-        });
-        text?;
-        let texts = self.vehicle.texts();
-        Ok(texts
-            .last()
-            .cloned()
-            .unwrap_or_else(|| "refused without a reason".to_owned()))
+        Ok(Some(self.vehicle.reason()?))
     }
 
     /// Measures one step of a calibration and shows its result.
@@ -201,18 +188,15 @@ impl<'a> Walk<'a> {
                     found = Some(result.clone());
                 }
             })?;
-        let bad = match (result, found) {
-            (MavResult::MAV_RESULT_ACCEPTED, Some(result)) => return Ok(Measured::Good(result)),
-            (MavResult::MAV_RESULT_FAILED, Some(result)) => unfit(&result),
-            // The result is lost on its way: the step is measured again by the builder.
-            (MavResult::MAV_RESULT_ACCEPTED | MavResult::MAV_RESULT_FAILED, None) => {
-                "not taken: its result was lost on its way".to_owned()
-            }
-            _ => format!("not taken: {}", self.reason()?),
-        };
-        // The reason is shown once.
-        self.vehicle.texts();
-        Ok(Measured::Bad(bad))
+        if result == MavResult::MAV_RESULT_ACCEPTED {
+            return Ok(Measured::Good(found));
+        }
+        // The vehicle gives the reason as a text as well.
+        let reason = self.vehicle.reason()?;
+        Ok(Measured::Bad(match found {
+            Some(found) if result == MavResult::MAV_RESULT_FAILED => unfit(&found),
+            _ => format!("not taken: {reason}"),
+        }))
     }
 
     /// Notes the parameters that a calibration of `part` (0 to 3) has set, given their values before; a line for each.
@@ -276,7 +260,7 @@ impl<'a> Walk<'a> {
         let old = self.vehicle.value(name)?;
         let now = self.vehicle.set(name, value)?;
         if now.to_bits() != value.to_bits() {
-            return Ok(Err(self.reason()?));
+            return Ok(Err(self.vehicle.reason()?));
         }
         Ok(Ok(self.changed(name, old, now)))
     }
@@ -313,9 +297,6 @@ impl<'a> Walk<'a> {
         self.ready()
     }
 }
-
-/// Longest wait for the text behind a refusal.
-const REASON: std::time::Duration = std::time::Duration::from_millis(500);
 
 /// The number as it is written: a float's shortest decimal.
 pub(super) fn number(value: f32) -> f64 {
