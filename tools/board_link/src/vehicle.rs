@@ -659,12 +659,12 @@ impl Vehicle {
             // Storing begins with the task's next run.
             self.wait(AGAIN, |_| None::<()>)?;
             let failing = self.arming()?;
-            let bad = [ArmingInhibit::StorageFull, ArmingInhibit::StorageUnreadable];
-            if let Some(why) = failing.iter().find(|why| bad.contains(why)) {
-                return Err(self.failed(&format!("not stored: {}", why.text())));
-            }
             if !failing.contains(&ArmingInhibit::Storing) {
-                return Ok(());
+                let bad = [ArmingInhibit::StorageFull, ArmingInhibit::StorageUnreadable];
+                return match failing.iter().find(|why| bad.contains(why)) {
+                    Some(why) => Err(self.failed(&format!("not stored: {}", why.text()))),
+                    None => Ok(()),
+                };
             }
             if begun.elapsed() > STORED {
                 return Err(self.failed("the board does not end storing"));
