@@ -72,6 +72,8 @@ pub struct Hands {
     pub drops: Option<usize>,
     /// The storage keeps nothing.
     pub broken: bool,
+    /// The start could not read the storage; what is stored next repairs it.
+    pub unreadable: bool,
     /// The storage takes a set and keeps the old one.
     pub forgets: bool,
     /// The chip has its brown-out level.
@@ -115,6 +117,7 @@ impl Default for Hands {
             loses: None,
             drops: None,
             broken: false,
+            unreadable: false,
             forgets: false,
             brown_out_set: true,
             unplugged_at: None,
@@ -383,6 +386,7 @@ impl Run {
             },
         };
         links.report(ArmingInhibit::BrownOutLevel, !now.brown_out_set);
+        links.report(ArmingInhibit::StorageUnreadable, now.unreadable);
         run.spawn(protocol);
         run
     }
@@ -605,10 +609,11 @@ impl Storage for ThisChip {
     }
 
     async fn save(&mut self, params: &Params) -> Result<(), StorageError> {
-        let hands = self.hands.lock().unwrap();
+        let mut hands = self.hands.lock().unwrap();
         if hands.broken {
             return Err(StorageError::Broken);
         }
+        hands.unreadable = false;
         if !hands.forgets {
             *self.stored.lock().unwrap() = *params;
         }

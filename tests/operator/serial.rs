@@ -49,6 +49,7 @@ fn a_bring_up_goes_over_a_serial_port_and_has_it_alone() {
     let temp = Temp::new("serial-bringup");
     let board = Board::on_serial_mavlink(Hands {
         brown_out_set: false,
+        unreadable: true,
         ..Hands::default()
     });
     let mut builder = Builder::begins(&temp, &board, &[]);
@@ -69,6 +70,23 @@ fn a_bring_up_goes_over_a_serial_port_and_has_it_alone() {
     ] {
         builder.at(&format!("Enter keeps {name}"), "");
     }
+    builder.hears("stored parameters unreadable");
+    // The storage breaks: the failure is one line, and the next run repeats the step.
+    board.hands(|hands| hands.broken = true);
+    builder.at("Enter erases what cannot be read", "");
+    let (status, _, complaint) = builder.ends();
+    assert_eq!(status, Some(1));
+    assert!(
+        complaint.ends_with("not stored: stored parameters unreadable\n"),
+        "{complaint}"
+    );
+    board.hands(|hands| hands.broken = false);
+    let mut builder = Builder::begins(&temp, &board, &[]);
+    builder.step("setup");
+    for _ in 0..7 {
+        builder.at("Enter keeps ", "");
+    }
+    builder.at("Enter erases what cannot be read", "");
     builder.step("selftest");
     builder.step("live-air");
     builder.hears("no barometer on table");

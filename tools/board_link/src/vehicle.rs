@@ -21,8 +21,11 @@ use crate::Failure;
 use crate::port::PortName;
 use crate::station::{Heard, Line, STATION, STATION_COMPONENT};
 
-/// Time from the first attempt at a request to the second; each further one waits half as long again: six in ten seconds.
+/// Least time from the first attempt at a request to the second; each further one waits half as long again, which makes
+/// six in ten seconds.
 const ATTEMPT: Duration = Duration::from_millis(500);
+/// Share of the patience that the first attempt waits: a board that is slow gets no order twice.
+const SHARE: u32 = 20;
 /// Silence that ends a list of parameters, and a look at a line that says nothing.
 const QUIET: Duration = Duration::from_secs(1);
 /// Longest silence after a report of progress, one a second, before the acknowledgement counts as lost on its way.
@@ -315,7 +318,7 @@ impl Vehicle {
     ) -> Result<T, Failure> {
         self.catch_up()?;
         let begun = Instant::now();
-        let mut attempt = ATTEMPT.min(self.patience);
+        let mut attempt = self.attempt();
         loop {
             self.send(message)?;
             if let Some(found) = self.wait(attempt, &mut wanted)? {
@@ -326,6 +329,11 @@ impl Vehicle {
             }
             attempt += attempt / 2;
         }
+    }
+
+    /// Time from the first attempt at a request to the second.
+    fn attempt(&self) -> Duration {
+        ATTEMPT.max(self.patience / SHARE).min(self.patience)
     }
 
     fn silent(&self, what: &str) -> Failure {
@@ -366,7 +374,7 @@ impl Vehicle {
         self.catch_up()?;
         let mut up_ms = self.boot_ms;
         let mut answered = Instant::now();
-        let mut attempt = ATTEMPT.min(self.patience);
+        let mut attempt = self.attempt();
         loop {
             self.send(&message)?;
             let mut time = attempt;
@@ -517,7 +525,7 @@ impl Vehicle {
             target_system: SYSTEM,
             target_component: COMPONENT,
         })?;
-        let quiet = QUIET.min(self.patience);
+        let quiet = QUIET.max(self.attempt());
         while let Some((index, count, name, value)) = self.wait(quiet, param_value)? {
             seen.resize(usize::from(count).max(seen.len()), false);
             if let Some(seen) = seen.get_mut(usize::from(index)) {
@@ -651,12 +659,12 @@ impl Vehicle {
             // Storing begins with the task's next run.
             self.wait(AGAIN, |_| None::<()>)?;
             let failing = self.arming()?;
-            let bad = [ArmingInhibit::StorageFull, ArmingInhibit::StorageUnreadable];
-            if let Some(why) = failing.iter().find(|why| bad.contains(why)) {
-                return Err(self.failed(&format!("not stored: {}", why.text())));
-            }
             if !failing.contains(&ArmingInhibit::Storing) {
-                return Ok(());
+                let bad = [ArmingInhibit::StorageFull, ArmingInhibit::StorageUnreadable];
+                return match failing.iter().find(|why| bad.contains(why)) {
+                    Some(why) => Err(self.failed(&format!("not stored: {}", why.text()))),
+                    None => Ok(()),
+                };
             }
             if begun.elapsed() > STORED {
                 return Err(self.failed("the board does not end storing"));

@@ -174,6 +174,8 @@ impl Builder {
     }
 
     fn which_turned(&mut self) -> String {
+        // The order is acknowledged before the motor has speed.
+        self.settles();
         let turned = self.operator.observe().turned;
         self.turned.push(turned);
         turned.map_or(0, |rotor| rotor + 1).to_string()
@@ -204,6 +206,7 @@ impl Builder {
         } else if begins("Volts") {
             format!("{:.2}", self.operator.observe().volts)
         } else if begins("Did it turn") {
+            self.settles();
             if self.operator.observe().turned.is_some() {
                 "y"
             } else {
