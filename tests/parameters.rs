@@ -15,7 +15,7 @@ fn page() -> String {
          | name | takes | default | what it is |\n|---|---|---|---|\n",
     );
     for row in Params::TABLE {
-        let (name, allowed, default, doc) = (row.name, Allowed(row), row.default, row.doc.trim());
+        let (name, allowed, default, doc) = (row.name, Allowed(row), row.default, row.doc().trim());
         let _ = writeln!(page, "| `{name}` | {allowed} | {default} | {doc} |");
     }
     page += "\n## Earlier names\n\n\

@@ -41,7 +41,7 @@ fn boards_own() -> Vec<String> {
 }
 
 fn described(row: &ParamInfo, own: &[String]) -> Value {
-    let words: Vec<_> = row.doc.split_whitespace().collect();
+    let words: Vec<_> = row.doc().split_whitespace().collect();
     let text = words.join(" ");
     let short = text
         .split_once(". ")

@@ -12,7 +12,7 @@ pub use self::choices::{
 };
 pub use self::names::{NAME_MAX, RENAMED, Renamed, check_names};
 pub use self::table::Params;
-use self::table::ROWS;
+use self::table::{DOCS, ROWS};
 use crate::maths::vector::Vec3;
 
 /// One row of the parameter table.
@@ -30,8 +30,6 @@ pub struct ParamInfo {
     pub choices: &'static [Choice],
     /// Value of a fresh board, where the board itself has no other.
     pub default: f32,
-    /// What it is and where the default comes from.
-    pub doc: &'static str,
 }
 
 /// One value of an enumerated parameter.
@@ -60,6 +58,12 @@ pub enum ParamError {
 }
 
 impl ParamInfo {
+    /// Its meaning and the source of its default, for documentation; an image does not use it.
+    pub fn doc(&self) -> &'static str {
+        let place = ROWS.iter().position(|row| row.name == self.name);
+        place.and_then(|place| DOCS.get(place)).copied().unwrap_or_default()
+    }
+
     /// True for a finite value of the range, and where there are choices for one of them.
     pub fn allows(&self, value: f32) -> bool {
         (self.min..=self.max).contains(&value) && (self.choices.is_empty() || self.choice(value).is_some())

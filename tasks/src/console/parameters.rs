@@ -45,9 +45,6 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         self.row(row).await;
         let default = Shown(row, self.default(row));
         self.out.line(format_args!("  default {default}")).await;
-        self.out.bytes(b"  ").await;
-        self.out.bytes(row.doc.trim().as_bytes()).await;
-        self.out.line(format_args!("")).await;
     }
 
     pub(super) async fn set(&mut self, name: &str, text: &str) {

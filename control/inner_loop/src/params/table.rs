@@ -49,9 +49,11 @@ macro_rules! params {
                 max: params!(@max $($max)? $(, $type)?),
                 choices: params!(@choices $($type)?),
                 default: params!(@number $default $(, $type)?),
-                doc: concat!($($doc),+),
             }, )+
         ];
+
+        /// The descriptions, apart from the rows: an image has them in its parameter file alone.
+        pub(super) static DOCS: [&str; ROWS.len()] = [$( concat!($($doc),+) ),+];
 
         impl Params {
             /// The table's defaults; a board may have others for what is soldered to it.
