@@ -61,7 +61,10 @@ impl ParamInfo {
     /// Its meaning and the source of its default, for documentation; an image does not use it.
     pub fn doc(&self) -> &'static str {
         let place = ROWS.iter().position(|row| row.name == self.name);
-        place.and_then(|place| DOCS.get(place)).copied().unwrap_or_default()
+        place
+            .and_then(|place| DOCS.get(place))
+            .copied()
+            .unwrap_or_default()
     }
 
     /// True for a finite value of the range, and where there are choices for one of them.
