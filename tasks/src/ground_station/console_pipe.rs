@@ -61,7 +61,7 @@ impl ConsolePipe {
     }
 }
 
-/// The console's end of a [`Shell`].
+/// The console's end of a [`ConsolePipe`].
 #[derive(Clone, Copy)]
 pub struct ConsolePipePort<'a>(&'a ConsolePipe);
 
