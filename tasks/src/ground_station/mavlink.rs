@@ -188,15 +188,18 @@ pub async fn run<I: SerialInput, O: SerialOutput, const N: usize>(
     let senders = (lines.outputs).map(|output| send(&link, numbers.next().unwrap_or_default(), output));
     let serve = async {
         let reels = Reel::all(&links.params);
+        // Read once: the image's identity is computed from all of its bytes, which takes milliseconds.
+        let (board, revision) = (chip.board(), chip_rows::revision(&chip));
+        let build = [chip.build(), table_id()];
         let mut self_tests = [None; N];
         let mut rate = FixedRate::of(links, TaskId::Mavlink);
         loop {
             let started = listen(links, &mut rate, &mut readers, &link).await.started;
             let now = started.as_micros();
             let seen = Vehicle {
-                board: chip.board(),
-                chip: chip_rows::revision(&chip),
-                build: [chip.build(), table_id()],
+                board,
+                chip: revision,
+                build,
                 ..picture(links, &reels)
             };
             link.with(|shared| {
