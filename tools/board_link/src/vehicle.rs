@@ -16,6 +16,7 @@ use sophie_control::params::Params;
 use sophie_dialect::*;
 use sophie_mavlink::wire::frame::{COMPONENT, Frame, SYSTEM};
 use sophie_ports::signing::Key;
+use sophie_tasks::perching::arms;
 
 use crate::Failure;
 use crate::port::PortName;
@@ -612,7 +613,7 @@ impl Vehicle {
         RESTART.max(self.patience)
     }
 
-    /// Waits until the board reports DISARMED.
+    /// Waits until the board reports DISARMED and its slowest sensors, those of the arms, have started.
     ///
     /// # Errors
     /// It does not within the longest start, or as [`Self::command`].
@@ -622,10 +623,12 @@ impl Vehicle {
         let mut said = false;
         loop {
             let mode = Mode::ALL.into_iter().find(|mode| self.mode == Some(*mode as u32));
-            if mode == Some(Mode::Disarmed) {
-                return Ok(());
-            }
-            let name = mode.map_or("no mode", Mode::name);
+            let started = u64::from(self.boot_ms) >= arms::START.as_millis();
+            let name = match mode {
+                Some(Mode::Disarmed) if started => return Ok(()),
+                Some(Mode::Disarmed) => "the arms' sensors start",
+                mode => mode.map_or("no mode", Mode::name),
+            };
             if !said {
                 said = true;
                 waits(name);
@@ -633,7 +636,7 @@ impl Vehicle {
             if begun.elapsed() > self.longest_start() {
                 return Err(self.failed(&format!("the board does not come to DISARMED: {name}")));
             }
-            self.heartbeat(AGAIN)?;
+            self.wait(AGAIN, |_| None::<()>)?;
         }
     }
 

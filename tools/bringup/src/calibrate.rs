@@ -98,6 +98,7 @@ pub(super) fn level(walk: &mut Walk<'_>, _: &Step) -> Judged {
 }
 
 pub(super) fn arm(walk: &mut Walk<'_>, step: &Step) -> Judged {
+    walk.ready()?;
     let instructions = [
         "Hold the arm straight, by a ruler along it.",
         "Bend its tip up by a hand's breadth, and hold.",
