@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 
 use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
 use sophie_control::battery::Battery;
+use sophie_control::calibration::procedure::Procedure;
 use sophie_control::chain::Attitude;
 use sophie_control::gripper::grip::{ArmGrip, ArmState, GripState};
 use sophie_control::maths::vector::{Quat, Vec3};
@@ -110,6 +111,7 @@ fn main() -> std::io::Result<()> {
     let mut server = Server::new(Params::DEFAULT, BUDGET);
     let mut signing = Signing::new(Stored::None);
     let mut inputs = Inputs::new(&Params::DEFAULT);
+    let mut procedure = Procedure::new();
     let start = Instant::now();
     let mut bytes = [0; 512];
     while start.elapsed() < LONGEST {
@@ -122,6 +124,7 @@ fn main() -> std::io::Result<()> {
                 &vehicle,
                 &mut signing,
                 &mut inputs,
+                &mut procedure,
             ),
             Err(error) if error.kind() == ErrorKind::WouldBlock => (),
             Err(_) => break,
@@ -129,7 +132,7 @@ fn main() -> std::io::Result<()> {
         while let Some(frame) = server.send(now, &vehicle, &mut signing, &mut inputs) {
             line.write_all(frame)?;
         }
-        match server.order(now, &vehicle, &Params::DEFAULT) {
+        match server.order(now, &vehicle, &Params::DEFAULT, &mut procedure) {
             // Nothing is kept here: what matters is that it is asked for.
             Some(Order::Store) => server.stored(Ok(())),
             Some(Order::Restart) => break,

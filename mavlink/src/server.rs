@@ -3,6 +3,7 @@
 mod send;
 
 use mavlink_core::MessageData;
+use sophie_control::calibration::procedure::Procedure;
 use sophie_control::mode::Mode;
 use sophie_control::params::Params;
 
@@ -77,7 +78,7 @@ impl Server {
     }
 
     /// Takes `bytes` that arrived at `now`, µs since the start. `signing` decides which frames are obeyed. Measurements
-    /// go into `inputs`, which all lines share.
+    /// go into `inputs`, calibrations run in `procedure`; all lines share both.
     pub fn receive(
         &mut self,
         bytes: &[u8],
@@ -85,6 +86,7 @@ impl Server {
         vehicle: &Vehicle,
         signing: &mut Signing,
         inputs: &mut Inputs,
+        procedure: &mut Procedure,
     ) {
         for &byte in bytes {
             let Some(frame) = self.parser.push(byte, now) else {
@@ -95,14 +97,21 @@ impl Server {
                 && signing.takes(&frame, now)
             {
                 let peer = peer(&frame);
-                self.obey(&asked, peer, now, vehicle, inputs);
+                self.obey(&asked, peer, now, vehicle, inputs, procedure);
             }
         }
     }
 
     /// The order to the board that is due at `now`, µs since the start; the parameters `in_force` are those of the start.
-    pub fn order(&mut self, now: u64, vehicle: &Vehicle, in_force: &Params) -> Option<Order> {
-        self.services.continue_calibration(now, vehicle, in_force);
+    pub fn order(
+        &mut self,
+        now: u64,
+        vehicle: &Vehicle,
+        in_force: &Params,
+        procedure: &mut Procedure,
+    ) -> Option<Order> {
+        self.services
+            .continue_calibration(now, vehicle, in_force, procedure);
         self.services.shell.expire(now);
         if self.services.restart_at.is_some_and(|at| now >= at) {
             self.services.restart_at = None;
@@ -162,7 +171,15 @@ impl Server {
         &mut self.services.shell
     }
 
-    fn obey(&mut self, asked: &Request, from: Peer, now: u64, vehicle: &Vehicle, inputs: &mut Inputs) {
+    fn obey(
+        &mut self,
+        asked: &Request,
+        from: Peer,
+        now: u64,
+        vehicle: &Vehicle,
+        inputs: &mut Inputs,
+        procedure: &mut Procedure,
+    ) {
         if measured(inputs, asked, from, now) {
             self.services.answer(Answer::AskTime(from));
         }
@@ -204,7 +221,7 @@ impl Server {
             | Request::Range(_)
             | Request::PipeTarget(_) => (),
             Request::Command(command) => {
-                if let Some(reply) = self.services.command(command, from, now, vehicle) {
+                if let Some(reply) = self.services.command(command, from, now, vehicle, procedure) {
                     self.services.acknowledge(command.number, from, reply.result, 0);
                     if let Some(answer) = reply.then {
                         self.services.answer(answer);

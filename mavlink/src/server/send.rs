@@ -102,8 +102,11 @@ impl Server {
             Answer::Arming => Some(encoder.encode(&make::arming(vehicle, (now / 1000) as u32)?)),
             Answer::Component => Some(encoder.encode(&make::component(vehicle, (now / 1000) as u32))),
             Answer::CalibrationResult => {
-                let finding = self.services.calibrations.finding.as_ref()?;
-                Some(encoder.encode(&make::calibration_result(finding, (now / 1000) as u32)))
+                let result = self.services.calibrations.result.take()?;
+                Some(encoder.encode(&SOPHIE_CALIBRATION_RESULT_DATA {
+                    time_boot_ms: (now / 1000) as u32,
+                    ..result
+                }))
             }
             Answer::Stream(id) => {
                 let sent = stream(encoder, id, now, vehicle);

@@ -12,6 +12,7 @@ use super::answer::Answer;
 use crate::services::Services;
 use crate::vehicle::Vehicle;
 use crate::wire::requests::{Command, Peer};
+use sophie_control::calibration::procedure::Procedure;
 use sophie_dialect::*;
 
 /// The answer to a command.
@@ -44,6 +45,7 @@ impl Services {
         from: Peer,
         now: u64,
         vehicle: &Vehicle,
+        procedure: &mut Procedure,
     ) -> Option<Reply> {
         let [first, second, ..] = command.params;
         let reply: Reply = match u32::from(command.number) {
@@ -58,7 +60,7 @@ impl Services {
             n if n == MavCmd::MAV_CMD_PREFLIGHT_STORAGE as u32 => self.storage(first, vehicle).into(),
             n if n == MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION as u32 => {
                 return self
-                    .guide_calibration(command, from, now, vehicle)
+                    .guide_calibration(command, from, now, vehicle, procedure)
                     .map(Reply::from);
             }
             n if n == MavCmd::MAV_CMD_SOPHIE_REPORT as u32 => {
@@ -66,9 +68,15 @@ impl Services {
             }
             n if n == MavCmd::MAV_CMD_SOPHIE_SET_BROWN_OUT as u32 => self.brown_out(first, vehicle).into(),
             n if n == MavCmd::MAV_CMD_SOPHIE_CALIBRATE as u32 => {
-                return self.calibrate(command, from, now, vehicle).map(Reply::from);
+                return self
+                    .calibrate(command, from, now, vehicle, procedure)
+                    .map(Reply::from);
             }
-            _ => return self.order_by(command, from, now, vehicle).map(Reply::from),
+            _ => {
+                return self
+                    .order_by(command, from, now, vehicle, procedure)
+                    .map(Reply::from);
+            }
         };
         Some(reply)
     }

@@ -512,8 +512,8 @@ const fn number(text: &str) -> u32 {
     value
 }
 
-/// The end of a calibration step.
-pub fn calibration_result(finding: &Finding, ms: u32) -> SOPHIE_CALIBRATION_RESULT_DATA {
+/// The end of a calibration step; its time is set when it is sent.
+pub fn calibration_result(finding: &Finding) -> SOPHIE_CALIBRATION_RESULT_DATA {
     let outcome = match finding.result {
         Ok(Outcome::Taken) => SophieCalibrationOutcome::SOPHIE_CALIBRATION_OUTCOME_TAKEN,
         Ok(Outcome::Done(_)) => SophieCalibrationOutcome::SOPHIE_CALIBRATION_OUTCOME_DONE,
@@ -527,7 +527,7 @@ pub fn calibration_result(finding: &Finding, ms: u32) -> SOPHIE_CALIBRATION_RESU
     });
     let [least, most] = unfit.allowed;
     SOPHIE_CALIBRATION_RESULT_DATA {
-        time_boot_ms: ms,
+        time_boot_ms: 0,
         value: unfit.value,
         least,
         most,

@@ -2,7 +2,7 @@
 
 use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
 use sophie_control::calibration::Face;
-use sophie_control::calibration::step::Calibration;
+use sophie_control::calibration::step::{Calibration, Step};
 use sophie_control::maths::vector::Vec3;
 use sophie_control::mode::Mode;
 use sophie_control::navigation::air_pressure::AirPressure;
@@ -117,6 +117,27 @@ fn a_running_step_ends_by_command_by_arming_and_by_a_kill() {
 }
 
 #[test]
+fn one_line_calibrates_at_a_time() {
+    let mut station = station();
+    let step = Step::new(Calibration::Gyro, 0, 1, [0.0; 2]).unwrap();
+    // Another line's step is running.
+    station.procedure.begin(step, station.now).unwrap();
+    calibrate(&mut station, Calibration::Level, [0.0, 1.0, 0.0, 0.0]);
+    ask(&mut station, MavCmd::MAV_CMD_SOPHIE_CALIBRATE, [0.0; 5]);
+    station.run(200);
+    assert_eq!(acks(&station), [(1, 0), (0, 0)]);
+    assert!(
+        station
+            .texts()
+            .contains(&"refused: another line calibrates".into())
+    );
+    assert!(
+        station.procedure.running().is_some(),
+        "ended by its own line alone"
+    );
+}
+
+#[test]
 fn a_report_comes_row_by_row_each_when_the_board_has_made_it() {
     let mut station = station();
     ask(
@@ -146,7 +167,8 @@ fn a_report_comes_row_by_row_each_when_the_board_has_made_it() {
             station.server.order(
                 station.now,
                 &station.vehicle,
-                &sophie_control::params::Params::DEFAULT
+                &sophie_control::params::Params::DEFAULT,
+                &mut station.procedure
             ),
             None
         );

@@ -1,7 +1,7 @@
 //! A ground station beside a server.
 
 use mavlink_core::{MAVLinkV2MessageRaw, MavHeader, MavlinkVersion, MessageData};
-use sophie_control::calibration::procedure::Readings;
+use sophie_control::calibration::procedure::{Procedure, Readings};
 use sophie_control::chain::Attitude;
 use sophie_control::maths::vector::{Quat, Vec3};
 use sophie_control::mode::Mode;
@@ -80,6 +80,7 @@ pub struct Station {
     pub server: Server,
     pub signing: Signing,
     pub inputs: Inputs,
+    pub procedure: Procedure,
     pub vehicle: Vehicle,
     pub now: u64,
     pub sent: Vec<Sent>,
@@ -96,6 +97,7 @@ impl Station {
             server: Server::new(Params::DEFAULT, bytes_per_second),
             signing: Signing::new(Stored::None),
             inputs: Inputs::new(&Params::DEFAULT),
+            procedure: Procedure::new(),
             vehicle: vehicle(Mode::Disarmed),
             now: 0,
             sent: Vec::new(),
@@ -121,8 +123,12 @@ impl Station {
                     signed,
                 });
             }
-            self.orders
-                .extend(self.server.order(self.now, &self.vehicle, &Params::DEFAULT));
+            self.orders.extend(self.server.order(
+                self.now,
+                &self.vehicle,
+                &Params::DEFAULT,
+                &mut self.procedure,
+            ));
         }
     }
 
@@ -133,6 +139,7 @@ impl Station {
             &self.vehicle,
             &mut self.signing,
             &mut self.inputs,
+            &mut self.procedure,
         );
     }
 

@@ -16,6 +16,7 @@ use heapless::Vec;
 use sophie_control::allocation::motor_pulses::MotorPulses;
 use sophie_control::allocation::wrench::PerArm;
 use sophie_control::arming::ArmingInhibit;
+use sophie_control::calibration::procedure::Procedure;
 use sophie_control::gripper::tendon::Reel;
 use sophie_control::params::Params;
 use sophie_mavlink::inputs::Inputs;
@@ -75,6 +76,8 @@ struct Common {
     signing: Signing,
     /// External measurements and commands; each input has one source, on any line.
     inputs: Inputs,
+    /// The calibrations, of one line at a time.
+    procedure: Procedure,
 }
 
 /// State shared by receiver and sender within one task; never borrowed across an await.
@@ -105,6 +108,7 @@ impl<'a, const N: usize> Link<'a, N> {
                     vehicle: Vehicle::default(),
                     signing: Signing::new(signing),
                     inputs: Inputs::new(params),
+                    procedure: Procedure::new(),
                 },
             }),
             shell,
@@ -207,6 +211,7 @@ pub async fn run<I: SerialInput, O: SerialOutput, const N: usize>(
                     vehicle,
                     signing,
                     inputs,
+                    ..
                 } = &mut shared.common;
                 *vehicle = seen;
                 links
@@ -214,11 +219,14 @@ pub async fn run<I: SerialInput, O: SerialOutput, const N: usize>(
                     .send(started, LineState::of(signing, inputs.counts()));
             });
             for at in 0..N {
-                let order = link.with_server(at, |server, Common { vehicle, .. }| {
+                let order = link.with_server(at, |server, common| {
+                    let Common {
+                        vehicle, procedure, ..
+                    } = common;
                     // Read again for each line: the line before may have sent an order.
                     vehicle.answers = answers(links);
                     give(links, started, server.requests(now, vehicle));
-                    server.order(now, vehicle, &links.params)
+                    server.order(now, vehicle, &links.params, procedure)
                 });
                 // A calibration may have set parameters.
                 link.share_parameters(at);
@@ -332,6 +340,7 @@ async fn send<const N: usize>(link: &Link<'_, N>, at: usize, mut output: impl Se
                     vehicle,
                     signing,
                     inputs,
+                    ..
                 } = common;
                 if server.shell().takes() {
                     server.shell().say(&link.shell.said());
@@ -388,8 +397,16 @@ async fn listen<I: SerialInput, const N: usize>(
                         vehicle,
                         signing,
                         inputs,
+                        procedure,
                     } = common;
-                    server.receive(arrived.unwrap_or_default(), now, vehicle, signing, inputs);
+                    server.receive(
+                        arrived.unwrap_or_default(),
+                        now,
+                        vehicle,
+                        signing,
+                        inputs,
+                        procedure,
+                    );
                     publish(links, inputs, now);
                 });
                 link.type_in(at);

@@ -13,6 +13,7 @@ use sophie_control::params::Params;
 use super::{or_zero, whole};
 use crate::services::Services;
 use crate::services::answer::Answer;
+use crate::services::telemetry::calibration_result;
 use crate::vehicle::Vehicle;
 use crate::wire::requests::{Command, Peer};
 use sophie_dialect::*;
@@ -22,32 +23,33 @@ const PATIENCE_US: u64 = 60_000_000;
 /// Time between two reports of progress, µs.
 const PROGRESS_US: u64 = 1_000_000;
 
-/// The calibrations of one line.
+/// A line's part in the procedure, which all lines share.
 #[derive(Clone, Debug)]
 pub(crate) struct Calibrations {
-    procedure: Procedure,
+    /// The running step was begun on this line.
+    owned: bool,
     /// Time at which the texts asked for the present side, µs; `None` where a host leads.
     asked_us: Option<u64>,
     /// Time of the next report of progress, µs.
     report_us: u64,
     /// The end of the newest step.
-    pub(crate) finding: Option<Finding>,
+    pub(crate) result: Option<SOPHIE_CALIBRATION_RESULT_DATA>,
 }
 
 impl Calibrations {
     pub(crate) const fn new() -> Self {
         Self {
-            procedure: Procedure::new(),
+            owned: false,
             asked_us: None,
             report_us: 0,
-            finding: None,
+            result: None,
         }
     }
 
-    /// Ends the running step without a result; true if one ran.
-    pub(super) fn cancel(&mut self) -> bool {
+    /// Ends this line's running step without a result; true if one ran.
+    pub(super) fn cancel(&mut self, procedure: &mut Procedure) -> bool {
         self.asked_us = None;
-        self.procedure.cancel()
+        core::mem::take(&mut self.owned) && procedure.cancel()
     }
 }
 
@@ -59,11 +61,12 @@ impl Services {
         from: Peer,
         now: u64,
         vehicle: &Vehicle,
+        procedure: &mut Procedure,
     ) -> Option<MavResult> {
         let [which, part, number, first, second, ..] = command.params;
         let [which, part, number] = [which, part, number].map(or_zero).map(whole);
         if which == Some(0) {
-            return Some(self.end_calibration());
+            return Some(self.end_calibration(procedure));
         }
         if !vehicle.at_rest() {
             return Some(self.refuse_armed());
@@ -77,7 +80,7 @@ impl Services {
         let Some(step) = step else {
             return Some(self.deny("no such step of a calibration"));
         };
-        self.begin_calibration(command, from, now, vehicle, step, None)
+        self.begin_calibration(command, from, now, procedure, step, None)
     }
 
     /// Leads through a calibration by texts, or ends the running one; `None` if the acknowledgement comes later.
@@ -87,10 +90,11 @@ impl Services {
         from: Peer,
         now: u64,
         vehicle: &Vehicle,
+        procedure: &mut Procedure,
     ) -> Option<MavResult> {
         let (calibration, text) = match command.params.map(or_zero).map(whole) {
             [Some(0), Some(0), Some(0), Some(0), Some(0), Some(0), Some(0)] => {
-                return Some(self.end_calibration());
+                return Some(self.end_calibration(procedure));
             }
             [Some(1), Some(0), Some(0), Some(0), Some(0), Some(0), Some(0)] => {
                 (Calibration::Gyro, "leave the vehicle at rest")
@@ -103,18 +107,21 @@ impl Services {
             }
             _ => return Some(self.unsupported("others: MAV_CMD_SOPHIE_CALIBRATE")),
         };
+        if !vehicle.at_rest() {
+            return Some(self.refuse_armed());
+        }
         let Some(step) = Step::new(calibration, 0, 1, [0.0; 2]) else {
             return Some(MavResult::MAV_RESULT_UNSUPPORTED);
         };
-        let answer = self.begin_calibration(command, from, now, vehicle, step, Some(now));
+        let answer = self.begin_calibration(command, from, now, procedure, step, Some(now));
         if answer.is_none() && self.calibrations.asked_us == Some(now) {
             self.guide(text);
         }
         answer
     }
 
-    fn end_calibration(&mut self) -> MavResult {
-        if self.calibrations.cancel() {
+    fn end_calibration(&mut self, procedure: &mut Procedure) -> MavResult {
+        if self.calibrations.cancel(procedure) {
             self.settle(MavResult::MAV_RESULT_CANCELLED);
         }
         MavResult::MAV_RESULT_ACCEPTED
@@ -125,20 +132,21 @@ impl Services {
         command: &Command,
         from: Peer,
         now: u64,
-        vehicle: &Vehicle,
+        procedure: &mut Procedure,
         step: Step,
         asked_us: Option<u64>,
     ) -> Option<MavResult> {
-        if !vehicle.at_rest() {
-            return Some(self.refuse_armed());
+        if procedure.running().is_some() && !self.calibrations.owned {
+            return Some(self.refuse("another line calibrates"));
         }
         if let Err(answer) = self.begin(command.number, from, now) {
             return answer;
         }
-        if self.calibrations.procedure.begin(step, now).is_err() {
+        if procedure.begin(step, now).is_err() {
             self.settle_refused("the step before it first");
             return None;
         }
+        self.calibrations.owned = true;
         self.calibrations.asked_us = asked_us;
         self.calibrations.report_us = now.saturating_add(PROGRESS_US);
         self.progress(0);
@@ -153,36 +161,43 @@ impl Services {
     }
 
     /// Samples the running step; the sensors are read with the parameters `in_force`.
-    pub(crate) fn continue_calibration(&mut self, now: u64, vehicle: &Vehicle, in_force: &Params) {
-        if self.calibrations.procedure.running().is_none() {
+    pub(crate) fn continue_calibration(
+        &mut self,
+        now: u64,
+        vehicle: &Vehicle,
+        in_force: &Params,
+        procedure: &mut Procedure,
+    ) {
+        if !self.calibrations.owned {
             return;
         }
         if !vehicle.at_rest() {
-            self.calibrations.cancel();
+            self.calibrations.cancel(procedure);
             let result = self.refuse_armed();
             return self.settle(result);
         }
         let working = self.parameters.copy();
-        let found = (self.calibrations.procedure).sample(now, &vehicle.readings, in_force, working);
+        let found = procedure.sample(now, &vehicle.readings, in_force, working);
         match found {
-            Some(finding) => self.take(finding, now),
+            Some(finding) => self.take(&finding, now, procedure),
             None if self.calibrations.asked_us.is_none() && now >= self.calibrations.report_us => {
                 self.calibrations.report_us = now.saturating_add(PROGRESS_US);
-                self.progress(self.calibrations.procedure.progress(now));
+                self.progress(procedure.progress(now));
             }
             None => (),
         }
     }
 
     /// Takes the end of a step.
-    fn take(&mut self, finding: Finding, now: u64) {
+    fn take(&mut self, finding: &Finding, now: u64, procedure: &mut Procedure) {
         if let Some(asked_us) = self.calibrations.asked_us
-            && self.guide_on(&finding, asked_us, now)
+            && self.guide_on(finding, asked_us, now, procedure)
         {
             return;
         }
+        self.calibrations.owned = false;
         self.calibrations.asked_us = None;
-        self.calibrations.finding = Some(finding);
+        self.calibrations.result = Some(calibration_result(finding));
         match finding.result {
             Ok(outcome) => {
                 if let Outcome::Done(changes) = outcome {
@@ -205,7 +220,7 @@ impl Services {
     }
 
     /// Where texts lead: asks for the next side, or waits on for this one; false at the end.
-    fn guide_on(&mut self, finding: &Finding, asked_us: u64, now: u64) -> bool {
+    fn guide_on(&mut self, finding: &Finding, asked_us: u64, now: u64, procedure: &mut Procedure) -> bool {
         let step = finding.step;
         let next = match finding.result {
             Ok(Outcome::Taken) => step.number.saturating_add(1),
@@ -218,7 +233,7 @@ impl Services {
             _ => return false,
         };
         let again = Step { number: next, ..step };
-        if self.calibrations.procedure.begin(again, now).is_err() {
+        if procedure.begin(again, now).is_err() {
             return false;
         }
         if next > step.number {

@@ -5,6 +5,8 @@ use sophie_control::pilot::bench_orders::{
 };
 use sophie_control::pilot::remote::{RemoteOrder, RemoteRefusal, RemoteRequest};
 
+use sophie_control::calibration::procedure::Procedure;
+
 use super::{or_zero, whole};
 use crate::services::Services;
 use crate::vehicle::Vehicle;
@@ -84,12 +86,13 @@ impl Services {
         from: Peer,
         now: u64,
         vehicle: &Vehicle,
+        procedure: &mut Procedure,
     ) -> Option<MavResult> {
         let number = u32::from(command.number);
         if number == MavCmd::MAV_CMD_COMPONENT_ARM_DISARM as u32 {
-            self.arm_disarm(command, from, now)
+            self.arm_disarm(command, from, now, procedure)
         } else if number == MavCmd::MAV_CMD_DO_GRIPPER as u32 {
-            self.gripper(command, from, now)
+            self.gripper(command, from, now, procedure)
         } else if number == MavCmd::MAV_CMD_DO_MOTOR_TEST as u32 {
             self.motor_test(command, from, now, vehicle)
         } else if number == MavCmd::MAV_CMD_DO_SET_SERVO as u32 {
@@ -110,7 +113,13 @@ impl Services {
         }
     }
 
-    fn arm_disarm(&mut self, command: &Command, from: Peer, now: u64) -> Option<MavResult> {
+    fn arm_disarm(
+        &mut self,
+        command: &Command,
+        from: Peer,
+        now: u64,
+        procedure: &mut Procedure,
+    ) -> Option<MavResult> {
         let [what, force, ..] = command.params;
         let order = match (whole(what), whole(or_zero(force)) == Some(FORCED)) {
             (Some(1), false) => RemoteOrder::Arm,
@@ -119,17 +128,23 @@ impl Services {
             (Some(0), true) => RemoteOrder::Kill,
             _ => return Some(self.deny("0 disarms, 1 arms")),
         };
-        self.give(command, from, now, order)
+        self.give(command, from, now, order, procedure)
     }
 
-    fn gripper(&mut self, command: &Command, from: Peer, now: u64) -> Option<MavResult> {
+    fn gripper(
+        &mut self,
+        command: &Command,
+        from: Peer,
+        now: u64,
+        procedure: &mut Procedure,
+    ) -> Option<MavResult> {
         let [gripper, action, ..] = command.params;
         let order = match (whole(or_zero(gripper)), whole(action)) {
             (Some(0 | 1), Some(0)) => RemoteOrder::Release,
             (Some(0 | 1), Some(1)) => RemoteOrder::Grab,
             _ => return Some(self.deny("gripper 1: 0 releases, 1 grabs")),
         };
-        self.give(command, from, now, order)
+        self.give(command, from, now, order, procedure)
     }
 
     fn motor_test(
@@ -184,11 +199,18 @@ impl Services {
         self.try_on_bench(command, from, now, Trial::new(order, now, PLACE_TIME))
     }
 
-    fn give(&mut self, command: &Command, from: Peer, now: u64, order: RemoteOrder) -> Option<MavResult> {
+    fn give(
+        &mut self,
+        command: &Command,
+        from: Peer,
+        now: u64,
+        order: RemoteOrder,
+        procedure: &mut Procedure,
+    ) -> Option<MavResult> {
         if order == RemoteOrder::Kill {
             // A kill does not wait for another command.
             self.settle(MavResult::MAV_RESULT_TEMPORARILY_REJECTED);
-            self.calibrations.cancel();
+            self.calibrations.cancel(procedure);
         }
         self.begin(command.number, from, now).err().unwrap_or_else(|| {
             self.orders.remote = Some(RemoteRequest { number: 0, order });
