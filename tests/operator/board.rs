@@ -88,6 +88,8 @@ pub struct Hands {
     pub wiring: MotorMap,
     /// Its time is that of the wall.
     pub real_time: bool,
+    /// It is powered off and on.
+    pub power_cycle: bool,
 }
 
 /// What the board's pins do.
@@ -125,6 +127,7 @@ impl Default for Hands {
             build: 0x1234_ABCD,
             wiring: MotorMap::STRAIGHT,
             real_time: false,
+            power_cycle: false,
         }
     }
 }
@@ -427,6 +430,10 @@ impl Run {
         while !stop.load(Ordering::Relaxed) {
             let begun = Instant::now();
             let hands = self.hands.lock().unwrap().clone();
+            if hands.power_cycle {
+                self.hands.lock().unwrap().power_cycle = false;
+                break;
+            }
             self.apply(&hands, ms);
             ms += ROUND_MS;
             seen.ms.fetch_add(ROUND_MS, Ordering::Relaxed);

@@ -449,7 +449,7 @@ fn brought_up(temp: &Temp, board: &Board, more: &[&str]) {
     assert_eq!(file().matches(build).count(), 1 + 28, "{}", file());
     let name = board.name();
     // Another image: said in one line, and nothing is asked again.
-    board.hands(|hands| hands.build = 0xC0DE);
+    board.hands(|hands| (hands.build, hands.power_cycle) = (0xC0DE, true));
     let done = run(temp, &[&["bringup", "--port", &name], more].concat());
     assert!(
         done.status == Some(0)
