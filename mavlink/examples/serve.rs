@@ -137,7 +137,7 @@ fn main() -> std::io::Result<()> {
             Some(Order::Store) => server.stored(Ok(())),
             Some(Order::Restart) => break,
             Some(Order::Row(..)) => server.row(None, 0),
-            Some(Order::SetBrownOut) => server.brown_out_failed("no chip here"),
+            Some(Order::SetBrownOut) => server.brown_out_done(Err("no chip here")),
             None => (),
         }
         sleep(PERIOD);

@@ -34,7 +34,7 @@ pub enum Order {
     Restart,
     /// Make the row of the report with this number, from 0, for [`Server::row`].
     Row(Report, u8),
-    /// Set the chip's brown-out level, then restart; report a failure to [`Server::brown_out_failed`].
+    /// Set the chip's brown-out level and give the result to [`Server::brown_out_done`].
     SetBrownOut,
 }
 
@@ -122,7 +122,7 @@ impl Server {
             return Some(Order::Store);
         }
         if core::mem::take(&mut self.services.set_brown_out) {
-            return vehicle.at_rest().then_some(Order::SetBrownOut);
+            return Some(Order::SetBrownOut);
         }
         let row = self.services.next_row();
         row.map(|(report, number)| Order::Row(report, number))
@@ -133,12 +133,9 @@ impl Server {
         self.services.take_row(row, rows);
     }
 
-    /// Reports that the brown-out level was not set: `why`.
-    pub fn brown_out_failed(&mut self, why: &'static str) {
-        self.services.texts.say(
-            MavSeverity::MAV_SEVERITY_ERROR,
-            format_args!("brown-out level not set: {why}"),
-        );
+    /// Takes the result of [`Order::SetBrownOut`]. After a success the board restarts once the acknowledgement is sent.
+    pub fn brown_out_done(&mut self, result: Result<(), &'static str>) {
+        self.services.brown_out_done(result);
     }
 
     /// The requests to the commander at `now`, µs since the start. Each is repeated until the commander answers it in

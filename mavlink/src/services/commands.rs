@@ -66,7 +66,9 @@ impl Services {
             n if n == MavCmd::MAV_CMD_SOPHIE_REPORT as u32 => {
                 return self.report(command, from, now, vehicle).map(Reply::from);
             }
-            n if n == MavCmd::MAV_CMD_SOPHIE_SET_BROWN_OUT as u32 => self.brown_out(first, vehicle).into(),
+            n if n == MavCmd::MAV_CMD_SOPHIE_SET_BROWN_OUT as u32 => {
+                return self.brown_out(command, from, now, vehicle).map(Reply::from);
+            }
             n if n == MavCmd::MAV_CMD_SOPHIE_CALIBRATE as u32 => {
                 return self
                     .calibrate(command, from, now, vehicle, procedure)

@@ -5,7 +5,9 @@ use sophie_control::chain::setpoint::Setpoint;
 use sophie_control::gripper::grip::GripState;
 use sophie_control::mode::{Inputs, Mode, ModeLogic, Outputs};
 use sophie_control::params::Params;
-use sophie_control::pilot::bench_orders::{BenchRequest, BenchView, PULSE_MAX_US, SPIN_TIME};
+use sophie_control::pilot::bench_orders::{
+    BenchAnswer, BenchRequest, BenchState, BenchView, PULSE_MAX_US, SPIN_TIME,
+};
 use sophie_control::pilot::rc::Sticks;
 use sophie_control::pilot::remote::RemoteRequest;
 use sophie_dialect::*;
@@ -221,6 +223,69 @@ fn force_waits_for_no_other_command_and_the_others_do() {
     let [arm, gripper] = [ARM, GRIPPER].map(|c| c as u16);
     assert_eq!(acks, [(arm, REJECTED), (gripper, REJECTED), (arm, ACCEPTED)]);
     assert_eq!(craft.out.mode, Mode::Disarmed);
+}
+
+#[test]
+fn force_is_acknowledged_by_the_commander_alone_whatever_ran_before() {
+    let begun = [
+        (MavCmd::MAV_CMD_SOPHIE_REPORT, [2.0, 0.0, 0.0]),
+        (PROPELLERS_OFF, [1.0, 0.0, 0.0]),
+    ];
+    for (command, params) in begun {
+        let mut craft = Craft::new();
+        craft.listens = false;
+        (craft.inputs.remote, craft.inputs.bench) = (None, None);
+        craft.station.sent.clear();
+        craft.station.say(&long(command, &params));
+        craft.run(40);
+        craft.station.say(&long(ARM, &[0.0, FORCED]));
+        craft.run(40);
+        // The report ends, and the commander answers the bench order that it took before; it has not seen the force.
+        craft.station.server.row(None, 0);
+        craft.station.vehicle.answers.bench.answer = BenchAnswer {
+            number: craft.bench.map_or(0, |bench| bench.number),
+            state: BenchState::Done,
+        };
+        let station = &mut craft.station;
+        let _ = station.server.requests(station.now, &station.vehicle);
+        station.run(40);
+        let acks = craft.station.got::<COMMAND_ACK_DATA>();
+        let force = |ack: &&COMMAND_ACK_DATA| ack.command == ARM as u16;
+        assert_eq!(acks.iter().filter(force).count(), 0, "{command:?}");
+        craft.listens = true;
+        craft.run(200);
+        let acks = craft.station.got::<COMMAND_ACK_DATA>();
+        let results: Vec<_> = acks.iter().filter(force).map(|ack| ack.result).collect();
+        assert_eq!(results, [ACCEPTED], "{command:?}");
+    }
+}
+
+#[test]
+fn a_running_motor_acknowledges_no_other_command() {
+    let mut craft = Craft::new();
+    craft.accepted(PROPELLERS_OFF, &[1.0]);
+    for _ in 0..2 {
+        craft.station.sent.clear();
+        craft.station.say(&long(MOTOR, &[1.0, 0.0, 8.0]));
+        craft.run(200);
+        assert!(matches!(craft.out.rotors, Setpoint::Spin(_)));
+        // Lasts longer than the motor turns.
+        let gyro = [1.0, 0.0, 1.0];
+        craft.station.say(&long(MavCmd::MAV_CMD_SOPHIE_CALIBRATE, &gyro));
+        craft.run(2400);
+        assert_eq!(craft.out.rotors, Setpoint::Stop);
+        craft.run(400);
+        let acks = craft.station.got::<COMMAND_ACK_DATA>();
+        let of = |command: MavCmd| -> Vec<u8> {
+            let acks = acks.iter().filter(|ack| ack.command == command as u16);
+            acks.map(|ack| ack.result).collect()
+        };
+        assert_eq!(of(MOTOR), [ACCEPTED]);
+        let calibration = of(MavCmd::MAV_CMD_SOPHIE_CALIBRATE);
+        let (end, progress) = calibration.split_last().unwrap();
+        assert!(*end == ACCEPTED && progress == [5; 3], "{calibration:?}");
+        assert_eq!(craft.station.got::<SOPHIE_CALIBRATION_RESULT_DATA>().len(), 1);
+    }
 }
 
 #[test]

@@ -247,8 +247,10 @@ fn the_brown_out_level_is_an_order_to_the_board_at_rest_alone() {
     );
     station.run(40);
     assert_eq!(station.orders, [Order::SetBrownOut]);
-    station.server.brown_out_failed("nothing to do");
+    assert_eq!(acks(&station), []);
+    station.server.brown_out_done(Err("nothing to do"));
     station.run(40);
+    assert_eq!(acks(&station), [(4, 0)]);
     assert!(
         station
             .texts()
@@ -262,4 +264,32 @@ fn the_brown_out_level_is_an_order_to_the_board_at_rest_alone() {
     );
     station.run(40);
     assert_eq!(station.orders.len(), 1);
+    assert_eq!(acks(&station), [(4, 0), (1, 0)]);
+}
+
+#[test]
+fn a_report_that_lost_its_command_keeps_others_out_until_its_end() {
+    let mut station = station();
+    let chip = [2.0, 0.0, 0.0, 0.0, 0.0];
+    ask(&mut station, MavCmd::MAV_CMD_SOPHIE_REPORT, chip);
+    station.run(40);
+    // A forced disarming, which waits for no other command; the commander does not answer.
+    ask(
+        &mut station,
+        MavCmd::MAV_CMD_COMPONENT_ARM_DISARM,
+        [0.0, 21_196.0, 0.0, 0.0, 0.0],
+    );
+    station.run(1000);
+    let _ = station.server.requests(station.now, &station.vehicle);
+    station.run(40);
+    assert_eq!(acks(&station), [(5, 0), (1, 0), (4, 0)]);
+    station.sent.clear();
+    ask(&mut station, MavCmd::MAV_CMD_SOPHIE_REPORT, chip);
+    station.run(40);
+    station.server.row(None, 0);
+    ask(&mut station, MavCmd::MAV_CMD_SOPHIE_REPORT, chip);
+    station.run(40);
+    station.server.row(None, 0);
+    station.run(40);
+    assert_eq!(acks(&station), [(1, 0), (5, 0), (0, 0)]);
 }

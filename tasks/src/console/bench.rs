@@ -86,7 +86,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         let Some(rotor) = self.one_of_four("motor", number).await else {
             return;
         };
-        let pulses = MotorPulses::from_params(&self.links.params).unwrap_or(MotorPulses::DIGITAL);
+        let pulses = MotorPulses::shown(&self.links.params).unwrap_or(MotorPulses::DIGITAL);
         let drive = decimal::parse(pulse).map(|pulse_us| pulses.command(pulse_us));
         let Some(drive) = drive.filter(|drive| (SPIN_DRIVE_MIN..=SPIN_DRIVE_MAX).contains(drive)) else {
             let [least, most] = [SPIN_DRIVE_MIN, SPIN_DRIVE_MAX].map(|drive| Decimal(pulses.pulse_us(drive)));

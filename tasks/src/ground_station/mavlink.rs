@@ -45,6 +45,8 @@ const CHUNK: usize = 64;
 const BURST: u32 = 8;
 /// Pause after a line error or an empty read, so that a dead line cannot take the processor.
 const PAUSE: Duration = Duration::from_millis(1);
+/// Delay of the restart with a new brown-out level: the acknowledgement is sent first.
+const LAST_WORDS: Duration = Duration::from_millis(300);
 
 /// The serial lines that carry MAVLink.
 pub struct Lines<I, O, const N: usize> {
@@ -273,15 +275,22 @@ async fn obey<const N: usize>(
         }
         Some(Order::Restart) if storing::hold_arming(links).await.is_ok() => chip.restart(),
         Some(Order::SetBrownOut) => {
-            if let Err(why) = set_brown_out(links, chip).await {
-                link.with_server(at, |server, _| server.brown_out_failed(why));
+            let set = set_brown_out(links, chip).await;
+            link.with_server(at, |server, _| server.brown_out_done(set));
+            if set.is_ok() {
+                if let Some(due) = link.due.get(at) {
+                    due.signal(());
+                }
+                Timer::after(LAST_WORDS).await;
+                chip.restart();
             }
         }
         Some(Order::Restart | Order::Row(..)) | None => (),
     }
 }
 
-/// Sets the chip's brown-out level and restarts. Arming is refused meanwhile: the write may stall the processor.
+/// Sets the chip's brown-out level. Arming is refused meanwhile, since the write may stall the processor, and after a
+/// success until the restart.
 async fn set_brown_out(links: &Links, chip: &mut impl Chip) -> Result<(), &'static str> {
     let mut checks = chip.checks().iter();
     let level = checks.find(|check| check.inhibits == Some(ArmingInhibit::BrownOutLevel));
@@ -293,7 +302,6 @@ async fn set_brown_out(links: &Links, chip: &mut impl Chip) -> Result<(), &'stat
         links.report(ArmingInhibit::Storing, false);
         return Err("the chip's option bytes did not take it");
     }
-    chip.restart();
     Ok(())
 }
 

@@ -8,9 +8,14 @@ use sophie_control::arming::ArmingInhibit;
 use sophie_control::mode::Mode;
 use sophie_control::params::Params;
 use sophie_control::pilot::remote::{RemoteAnswer, RemoteOrder, RemoteRequest};
-use sophie_dialect::{COMMAND_LONG_DATA, HEARTBEAT_DATA, ODOMETRY_DATA, PARAM_SET_DATA, SERIAL_CONTROL_DATA};
-use sophie_fakes::FakeLine;
+use sophie_dialect::{
+    COMMAND_ACK_DATA, COMMAND_LONG_DATA, HEARTBEAT_DATA, ODOMETRY_DATA, PARAM_SET_DATA, SERIAL_CONTROL_DATA,
+    SOPHIE_CHECK_DATA,
+};
+use sophie_fakes::{FakeChip, FakeLine};
 use sophie_mavlink::wire::signing::{Refused, Signing};
+use sophie_ports::chip::Chip;
+use sophie_ports::chip_check::ChipCheck;
 use sophie_ports::error::PortError;
 use sophie_ports::serial::SerialOutput;
 use sophie_ports::signing::{Key, Record, Stored};
@@ -116,6 +121,12 @@ impl Bench {
 
     /// With what `board` has stored.
     fn of(mode: Mode, board: Board) -> Self {
+        let chip = board.clone();
+        Self::on(mode, board, chip)
+    }
+
+    /// The same on `chip`.
+    fn on(mode: Mode, board: Board, chip: impl Chip + 'static) -> Self {
         let rig = Rig::with(Params::DEFAULT);
         let (line, wire, second) = (FakeLine::default(), Wire::default(), End::default());
         let shell: &'static ConsolePipe = Box::leak(Box::default());
@@ -128,7 +139,7 @@ impl Bench {
             },
             shell,
             board.clone(),
-            board.clone(),
+            chip,
             board.signing.get().map_or(Stored::None, Stored::Key),
         ));
         Self {
@@ -181,6 +192,31 @@ impl Bench {
 
     fn say<M: MessageData>(&mut self, message: &M) {
         self.line.put(&frame_by(255, 190, message));
+    }
+
+    /// Sends command `number` with `first` and runs for `ms`; gives its acknowledgements.
+    fn commands(&mut self, number: u16, first: f32, ms: u64) -> Vec<u8> {
+        self.wire.clear();
+        self.say(&COMMAND_LONG_DATA {
+            param1: first,
+            command: number,
+            target_system: 1,
+            target_component: 1,
+            ..Default::default()
+        });
+        self.run(ms);
+        let acks = self.got::<COMMAND_ACK_DATA>();
+        assert!(acks.iter().all(|ack| ack.command == number));
+        acks.iter().map(|ack| ack.result).collect()
+    }
+
+    /// The messages of this kind so far.
+    fn got<M: MessageData>(&self) -> Vec<M> {
+        let frames = self.wire.frames().into_iter();
+        let of_it = frames.filter(|(id, _)| *id == M::ID);
+        of_it
+            .map(|(_, frame)| M::deser(MavlinkVersion::V2, &frame[10..10 + usize::from(frame[1])]).unwrap())
+            .collect()
     }
 
     fn set_infill(&mut self, param_value: f32) {
@@ -268,6 +304,125 @@ fn a_restart_comes_after_its_acknowledgement_with_arming_held() {
     bench.run(800);
     assert_eq!(bench.board.restarts.get(), 1);
     assert!(bench.arming_is_held());
+}
+
+#[test]
+fn storing_by_command_repairs_what_could_not_be_read() {
+    let mut bench = Bench::in_mode(Mode::Disarmed);
+    bench.run(100);
+    let reasons = [
+        ArmingInhibit::StorageUnreadable,
+        ArmingInhibit::StorageForeign,
+        ArmingInhibit::StorageFull,
+    ];
+    reasons
+        .iter()
+        .for_each(|reason| bench.rig.links.report(*reason, true));
+    assert_eq!(bench.commands(245, 1.0, 500), [0]);
+    assert_eq!(
+        bench.board.stored.get().map(|p| p.infill),
+        Some(Params::DEFAULT.infill)
+    );
+    let hardware = bench.rig.links.hardware();
+    assert!(reasons.iter().all(|reason| !hardware.contains(*reason)));
+    assert!(!bench.arming_is_held() && !bench.arming_waits());
+}
+
+/// A chip whose brown-out level is 0.
+fn new_chip() -> FakeChip {
+    let check = |name, ok, inhibits| ChipCheck {
+        name,
+        read: "0".try_into().unwrap(),
+        expected: "3",
+        ok,
+        inhibits,
+    };
+    FakeChip {
+        checks: vec![
+            check("flash wait states", true, Some(ArmingInhibit::Silicon)),
+            check("brown-out level", false, Some(ArmingInhibit::BrownOutLevel)),
+        ],
+        ..FakeChip::default()
+    }
+}
+
+#[test]
+fn the_brown_out_level_is_acknowledged_once_it_is_set_and_the_restart_waits_for_that() {
+    let chip = new_chip();
+    let mut bench = Bench::on(Mode::Disarmed, Board::default(), chip.clone());
+    bench.run(100);
+    assert_eq!(bench.commands(53002, 1.0, 200), [0]);
+    assert_eq!((chip.level.get(), chip.restarts.get()), (3, 0));
+    bench.run(300);
+    assert_eq!(chip.restarts.get(), 1);
+    assert!(bench.arming_is_held());
+    for (mode, chip, result) in [
+        (
+            Mode::Disarmed,
+            FakeChip {
+                refuses: true,
+                ..new_chip()
+            },
+            4,
+        ),
+        (Mode::Disarmed, FakeChip::default(), 4),
+        (Mode::Armed, new_chip(), 1),
+    ] {
+        let mut bench = Bench::on(mode, Board::default(), chip.clone());
+        bench.run(100);
+        assert_eq!(bench.commands(53002, 1.0, 1000), [result]);
+        assert_eq!((chip.level.get(), chip.restarts.get()), (0, 0));
+        assert!(!bench.arming_is_held());
+    }
+}
+
+#[test]
+fn reports_come_row_by_row_with_the_arming_checks_that_belong_to_them() {
+    let mut bench = Bench::on(Mode::Disarmed, Board::default(), new_chip());
+    bench.run(100);
+    // The self-test counts rates for a second, each time anew.
+    for _ in 0..2 {
+        assert_eq!(bench.commands(53001, 1.0, 900), [5]);
+        bench.run(1500);
+        let rows = bench.got::<SOPHIE_CHECK_DATA>();
+        let numbers: Vec<u8> = rows.iter().map(|row| row.row).collect();
+        assert!(numbers.into_iter().eq(0..17) && rows.iter().all(|row| (row.report, row.rows) == (1, 17)));
+        let radio = 1_u64 << ArmingInhibit::RcLost as u8;
+        let receiver = rows.iter().find(|row| row.inhibits == radio).unwrap();
+        assert_eq!(
+            (receiver.name.to_str(), receiver.found.to_str(), receiver.passed),
+            (Ok("receiver"), Ok("silent: 0 frames, 0 errors"), 0)
+        );
+        let results: Vec<u8> = bench
+            .got::<COMMAND_ACK_DATA>()
+            .iter()
+            .map(|ack| ack.result)
+            .collect();
+        assert_eq!(results, [5, 0]);
+    }
+    assert_eq!(bench.commands(53001, 2.0, 500), [5, 0]);
+    let rows = bench.got::<SOPHIE_CHECK_DATA>();
+    let found: Vec<_> = rows
+        .iter()
+        .map(|row| {
+            (
+                row.report,
+                row.rows,
+                row.inhibits,
+                row.passed,
+                row.found.to_str().unwrap(),
+            )
+        })
+        .collect();
+    let [silicon, level] =
+        [ArmingInhibit::Silicon, ArmingInhibit::BrownOutLevel].map(|why| 1_u64 << why as u8);
+    assert_eq!(
+        found,
+        [
+            (2, 2, silicon, 1, "0; expected 3"),
+            (2, 2, level, 0, "0; expected 3")
+        ]
+    );
 }
 
 /// In units of 10 µs since 2015: 2026.

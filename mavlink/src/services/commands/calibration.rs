@@ -10,6 +10,7 @@ use sophie_control::calibration::{Face, Unfit};
 use sophie_control::maths::decimal::Decimal;
 use sophie_control::params::Params;
 
+use super::orders::Answerer;
 use super::{or_zero, whole};
 use crate::services::Services;
 use crate::services::answer::Answer;
@@ -122,7 +123,7 @@ impl Services {
 
     fn end_calibration(&mut self, procedure: &mut Procedure) -> MavResult {
         if self.calibrations.cancel(procedure) {
-            self.settle(MavResult::MAV_RESULT_CANCELLED);
+            self.settle(Answerer::Calibration, MavResult::MAV_RESULT_CANCELLED);
         }
         MavResult::MAV_RESULT_ACCEPTED
     }
@@ -139,11 +140,11 @@ impl Services {
         if procedure.running().is_some() && !self.calibrations.owned {
             return Some(self.refuse("another line calibrates"));
         }
-        if let Err(answer) = self.begin(command.number, from, now) {
+        if let Err(answer) = self.begin(command.number, from, now, Answerer::Calibration) {
             return answer;
         }
         if procedure.begin(step, now).is_err() {
-            self.settle_refused("the step before it first");
+            self.settle_refused(Answerer::Calibration, "the step before it first");
             return None;
         }
         self.calibrations.owned = true;
@@ -174,7 +175,7 @@ impl Services {
         if !vehicle.at_rest() {
             self.calibrations.cancel(procedure);
             let result = self.refuse_armed();
-            return self.settle(result);
+            return self.settle(Answerer::Calibration, result);
         }
         let working = self.parameters.copy();
         let found = procedure.sample(now, &vehicle.readings, in_force, working);
@@ -209,12 +210,12 @@ impl Services {
                     self.guide("done");
                 }
                 self.answer(Answer::CalibrationResult);
-                self.settle(MavResult::MAV_RESULT_ACCEPTED);
+                self.settle(Answerer::Calibration, MavResult::MAV_RESULT_ACCEPTED);
             }
             Err(unfit) => {
                 self.say_unfit(unfit);
                 self.answer(Answer::CalibrationResult);
-                self.settle(MavResult::MAV_RESULT_FAILED);
+                self.settle(Answerer::Calibration, MavResult::MAV_RESULT_FAILED);
             }
         }
     }

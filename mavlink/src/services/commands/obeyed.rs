@@ -29,7 +29,7 @@ const fn obeyed(command: MavCmd, form: &'static str, when: When) -> Obeyed {
 }
 
 /// Every supported command. These texts are not in the image.
-pub const OBEYED: [Obeyed; 18] = [
+pub const OBEYED: [Obeyed; 19] = [
     obeyed(
         MavCmd::MAV_CMD_REQUEST_MESSAGE,
         "message (of the modes: which, 0 all)",
@@ -108,11 +108,8 @@ pub const OBEYED: [Obeyed; 18] = [
         "calibration (0 ends), part, step, values",
         When::AtRest,
     ),
-    obeyed(
-        MavCmd::MAV_CMD_SOPHIE_REPORT,
-        "1 (self-test) or 2 (chip)",
-        When::AtRest,
-    ),
+    obeyed(MavCmd::MAV_CMD_SOPHIE_REPORT, "1 (self-test)", When::AtRest),
+    obeyed(MavCmd::MAV_CMD_SOPHIE_REPORT, "2 (chip)", When::Always),
     obeyed(
         MavCmd::MAV_CMD_SOPHIE_SET_BROWN_OUT,
         "1 (set the chip's brown-out level and restart)",

@@ -29,10 +29,25 @@ pub struct CommanderRequests {
     pub bench: Option<BenchRequest>,
 }
 
+/// The part of the server that acknowledges a waiting command. What another part ends does not acknowledge it: a motor
+/// test lasts longer than its command waits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Answerer {
+    /// Arming and gripper, by the commander.
+    Remote,
+    /// Bench tests, by the commander.
+    Bench,
+    /// The procedure of calibrations.
+    Calibration,
+    /// The board: rows of a report, brown-out level.
+    Board,
+}
+
 /// A command whose answer comes later.
 #[derive(Clone, Copy, Debug)]
 struct Pending {
     command: u16,
+    by: Answerer,
     to: Peer,
     since: u64,
 }
@@ -209,39 +224,58 @@ impl Services {
     ) -> Option<MavResult> {
         if order == RemoteOrder::Kill {
             // A kill does not wait for another command.
-            self.settle(MavResult::MAV_RESULT_TEMPORARILY_REJECTED);
+            self.acknowledge_pending(MavResult::MAV_RESULT_TEMPORARILY_REJECTED);
             self.calibrations.cancel(procedure);
         }
-        self.begin(command.number, from, now).err().unwrap_or_else(|| {
+        let begun = self.begin(command.number, from, now, Answerer::Remote);
+        begun.err().unwrap_or_else(|| {
             self.orders.remote = Some(RemoteRequest { number: 0, order });
             None
         })
     }
 
     fn try_on_bench(&mut self, command: &Command, from: Peer, now: u64, trial: Trial) -> Option<MavResult> {
-        self.begin(command.number, from, now).err().unwrap_or_else(|| {
+        let begun = self.begin(command.number, from, now, Answerer::Bench);
+        begun.err().unwrap_or_else(|| {
             self.orders.trial = Some(trial);
             None
         })
     }
 
-    /// Notes that `command` is acknowledged later.
+    /// Notes that `command` is acknowledged later, `by` one part of the server.
     ///
     /// # Errors
     /// The acknowledgement to send now; `None` if `command` is a repetition of the one that waits.
-    pub(super) fn begin(&mut self, command: u16, to: Peer, since: u64) -> Result<(), Option<MavResult>> {
+    pub(super) fn begin(
+        &mut self,
+        command: u16,
+        to: Peer,
+        since: u64,
+        by: Answerer,
+    ) -> Result<(), Option<MavResult>> {
         match self.orders.pending {
             Some(p) if p.command == command && p.to == to => Err(None),
             Some(_) => Err(Some(self.refuse("another command is under way"))),
             None => {
-                self.orders.pending = Some(Pending { command, to, since });
+                self.orders.pending = Some(Pending {
+                    command,
+                    by,
+                    to,
+                    since,
+                });
                 Ok(())
             }
         }
     }
 
-    /// Acknowledges the waiting command.
-    pub(super) fn settle(&mut self, result: MavResult) {
+    /// Acknowledges the waiting command, if its answer comes `by` this part.
+    pub(super) fn settle(&mut self, by: Answerer, result: MavResult) {
+        if self.orders.pending.is_some_and(|pending| pending.by == by) {
+            self.acknowledge_pending(result);
+        }
+    }
+
+    fn acknowledge_pending(&mut self, result: MavResult) {
         if let Some(Pending { command, to, .. }) = self.orders.pending.take() {
             self.acknowledge(command, to, result, 0);
         }
@@ -254,13 +288,14 @@ impl Services {
         }
     }
 
-    pub(super) fn settle_refused(&mut self, why: &str) {
+    pub(super) fn settle_refused(&mut self, by: Answerer, why: &str) {
         let result = self.refuse(why);
-        self.settle(result);
+        self.settle(by, result);
     }
 
-    fn is_late(&self, now: u64) -> bool {
-        (self.orders.pending).is_some_and(|p| now.saturating_sub(p.since) > COMMANDER)
+    fn is_late(&self, by: Answerer, now: u64) -> bool {
+        let pending = self.orders.pending.filter(|pending| pending.by == by);
+        pending.is_some_and(|p| now.saturating_sub(p.since) > COMMANDER)
     }
 
     /// The requests to the commander at `now`, µs since the start, given its answers in `vehicle`.
@@ -272,7 +307,7 @@ impl Services {
     }
 
     fn remote(&mut self, now: u64, vehicle: &Vehicle) -> Option<RemoteRequest> {
-        let late = self.is_late(now);
+        let late = self.is_late(Answerer::Remote, now);
         let request = self.orders.remote.as_mut()?;
         if request.number == 0 {
             match vehicle.answers.next() {
@@ -280,7 +315,7 @@ impl Services {
                 None if !late => return None,
                 None => {
                     self.orders.remote = None;
-                    self.say_silent();
+                    self.say_silent(Answerer::Remote);
                     return None;
                 }
             }
@@ -292,19 +327,19 @@ impl Services {
         }
         self.orders.remote = None;
         match answer.refusal {
-            _ if answer.number != request.number => self.say_silent(),
-            None => self.settle(MavResult::MAV_RESULT_ACCEPTED),
+            _ if answer.number != request.number => self.say_silent(Answerer::Remote),
+            None => self.settle(Answerer::Remote, MavResult::MAV_RESULT_ACCEPTED),
             Some(RemoteRefusal::Checks) => {
                 self.texts.name_checks();
-                self.settle(MavResult::MAV_RESULT_TEMPORARILY_REJECTED);
+                self.settle(Answerer::Remote, MavResult::MAV_RESULT_TEMPORARILY_REJECTED);
             }
-            Some(why) => self.settle_refused(why.text()),
+            Some(why) => self.settle_refused(Answerer::Remote, why.text()),
         }
         None
     }
 
     fn bench(&mut self, now: u64, vehicle: &Vehicle) -> Option<BenchRequest> {
-        let (view, late) = (vehicle.answers.bench, self.is_late(now));
+        let (view, late) = (vehicle.answers.bench, self.is_late(Answerer::Bench, now));
         let trial = self.orders.trial.as_mut()?;
         if trial.request.number == 0 {
             match view.next(self.orders.own) {
@@ -314,7 +349,7 @@ impl Services {
                 }
                 Err(why) => {
                     self.orders.trial = None;
-                    self.settle_refused(why.text());
+                    self.settle_refused(Answerer::Bench, why.text());
                     return None;
                 }
             }
@@ -330,23 +365,25 @@ impl Services {
                         order: BenchOrder::End,
                     };
                 }
-                self.settle(MavResult::MAV_RESULT_ACCEPTED);
+                self.settle(Answerer::Bench, MavResult::MAV_RESULT_ACCEPTED);
                 return Some(request);
             }
-            None => self.say_silent(),
-            Some(BenchState::Done) => self.settle(MavResult::MAV_RESULT_ACCEPTED),
+            None => self.say_silent(Answerer::Bench),
+            Some(BenchState::Done) => self.settle(Answerer::Bench, MavResult::MAV_RESULT_ACCEPTED),
             Some(BenchState::Refused(BenchRefusal::OutOfRange)) => {
                 let result = self.deny(BenchRefusal::OutOfRange.text());
-                self.settle(result);
+                self.settle(Answerer::Bench, result);
             }
-            Some(BenchState::Refused(why) | BenchState::Ended(why)) => self.settle_refused(why.text()),
+            Some(BenchState::Refused(why) | BenchState::Ended(why)) => {
+                self.settle_refused(Answerer::Bench, why.text())
+            }
         }
         self.orders.trial = None;
         None
     }
 
-    fn say_silent(&mut self) {
+    fn say_silent(&mut self, by: Answerer) {
         self.refuse("the commander is silent");
-        self.settle(MavResult::MAV_RESULT_FAILED);
+        self.settle(by, MavResult::MAV_RESULT_FAILED);
     }
 }

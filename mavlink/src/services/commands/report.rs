@@ -1,5 +1,6 @@
 //! Reports row by row: the self-test and the settings of the chip. The board makes the rows; one waits for the line at a time.
 
+use super::orders::Answerer;
 use super::{or_zero, whole};
 use crate::services::Services;
 use crate::services::answer::Answer;
@@ -62,8 +63,13 @@ impl Services {
         if report == Report::SelfTest && !vehicle.at_rest() {
             return Some(self.refuse_armed());
         }
-        if let Err(answer) = self.begin(command.number, from, now) {
+        if let Err(answer) = self.begin(command.number, from, now, Answerer::Board) {
             return answer;
+        }
+        if self.report.is_some() {
+            // Its command was withdrawn by a forced disarming, its rows still come.
+            self.settle_refused(Answerer::Board, "another report is under way");
+            return None;
         }
         self.report = Some(Running {
             report,
@@ -94,7 +100,7 @@ impl Services {
             }
             None => {
                 self.report = None;
-                self.settle(MavResult::MAV_RESULT_ACCEPTED);
+                self.settle(Answerer::Board, MavResult::MAV_RESULT_ACCEPTED);
             }
         }
     }

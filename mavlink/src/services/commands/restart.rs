@@ -1,8 +1,10 @@
 //! Restart of the board, storing of the parameters, and the brown-out level of the chip.
 
+use super::orders::Answerer;
 use super::whole;
 use crate::services::Services;
 use crate::vehicle::Vehicle;
+use crate::wire::requests::{Command, Peer};
 use sophie_dialect::*;
 
 /// Delay of a restart, µs: the acknowledgement is sent first.
@@ -20,14 +22,39 @@ impl Services {
         }
     }
 
-    pub(super) fn brown_out(&mut self, confirmed: f32, vehicle: &Vehicle) -> MavResult {
+    /// Has the brown-out level set; `None` if the acknowledgement comes later.
+    pub(super) fn brown_out(
+        &mut self,
+        command: &Command,
+        from: Peer,
+        now: u64,
+        vehicle: &Vehicle,
+    ) -> Option<MavResult> {
+        let [confirmed, ..] = command.params;
         match whole(confirmed) {
             Some(1) if vehicle.at_rest() => {
+                if let Err(answer) = self.begin(command.number, from, now, Answerer::Board) {
+                    return answer;
+                }
                 self.set_brown_out = true;
-                MavResult::MAV_RESULT_ACCEPTED
+                None
             }
-            Some(1) => self.refuse_armed(),
-            _ => self.unsupported("1 sets it, nothing else"),
+            Some(1) => Some(self.refuse_armed()),
+            _ => Some(self.unsupported("1 sets it, nothing else")),
+        }
+    }
+
+    /// Acknowledges that the brown-out level is set, or why it is not.
+    pub(crate) fn brown_out_done(&mut self, result: Result<(), &'static str>) {
+        match result {
+            Ok(()) => self.settle(Answerer::Board, MavResult::MAV_RESULT_ACCEPTED),
+            Err(why) => {
+                self.texts.say(
+                    MavSeverity::MAV_SEVERITY_ERROR,
+                    format_args!("brown-out level not set: {why}"),
+                );
+                self.settle(Answerer::Board, MavResult::MAV_RESULT_FAILED);
+            }
         }
     }
 
