@@ -297,6 +297,8 @@ fn watched(walk: &mut Walk<'_>, group: &Group, moved: &[Moved]) -> Judged {
 
 /// Shows the group until the builder replies.
 fn watch(walk: &mut Walk<'_>, group: &Group) -> Result<Vec<Seen>, Stop> {
+    // Before the builder is asked: what is moved earlier would not be seen.
+    walk.vehicle.stream(group.messages, PERIOD_US)?;
     walk.say("  Enter once they have followed, s skips, q stops:");
     walk.say(group.what);
     let names: String = group
@@ -305,7 +307,6 @@ fn watch(walk: &mut Walk<'_>, group: &Group) -> Result<Vec<Seen>, Stop> {
         .map(|name| format!("{name:>WIDTH$}"))
         .collect();
     walk.say(&names);
-    walk.vehicle.stream(group.messages, PERIOD_US)?;
     let mut seen: Vec<Seen> = group.columns.iter().map(|name| Seen::new(name)).collect();
     let mut rows = 0;
     let ended = loop {
