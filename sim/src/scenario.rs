@@ -8,6 +8,7 @@ mod defaults;
 mod error;
 pub mod faults;
 pub mod keys;
+mod known;
 mod load;
 mod nearest;
 mod overrides;
@@ -18,10 +19,12 @@ mod source;
 mod steps;
 #[cfg(test)]
 mod tests;
+pub mod uncertain;
 
 pub use defaults::MISSION;
 pub use error::{Place, ScenarioError};
 pub use faults::Faults;
+pub use known::{Difference, Known};
 pub use overrides::Overrides;
 pub use steps::{STEPS, StepKind, StepNumber};
 
@@ -53,6 +56,8 @@ pub struct Scenario {
     pub time_limit: f64,
     /// The vehicle as built.
     pub vehicle: Vehicle,
+    /// How far the parameters follow the vehicle.
+    pub known: Known,
     /// Flight stack parameters: the builder's model of the vehicle.
     pub params: Params,
     /// Allocation used by the stack.

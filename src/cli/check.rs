@@ -16,6 +16,9 @@ pub fn run(args: &CheckArgs) -> Result<bool, String> {
     for line in check::lines(&found) {
         console.say(&line);
     }
+    for line in result::differences(&scenario) {
+        console.say(&line);
+    }
     if args.json {
         console::print(&check::json(&scenario.name, &found))?;
     }

@@ -5,7 +5,7 @@ use sophie_control::params::Params;
 use sophie_control::pilot::rc::ArmChoice;
 use sophie_mixers::Variant;
 
-use super::{Assist, Assumed, Expect, Faults, Overrides, Pilot, Scenario, Sensors, Vehicle, World};
+use super::{Assist, Assumed, Expect, Faults, Known, Overrides, Pilot, Scenario, Sensors, Vehicle, World};
 use crate::plant::body::BodySpec;
 use crate::plant::esc::EscSpec;
 use crate::plant::flexible::ArmBending;
@@ -101,6 +101,7 @@ impl Scenario {
             seed: 1,
             time_limit: 300.0,
             vehicle: Vehicle::default(),
+            known: Known::default(),
             params: Params::default(),
             mixer: Variant::Flexible,
             arms: ArmChoice::All,

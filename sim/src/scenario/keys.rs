@@ -7,7 +7,7 @@ use sophie_control::pilot::rc::ArmChoice;
 use sophie_mixers::Variant;
 
 use super::faults;
-use super::{Assist, PositionSensor, Scenario};
+use super::{Assist, Known, PositionSensor, Scenario};
 use crate::devices::sbus;
 use crate::plant::tendon::ServoProfile;
 use crate::sensors::barometer::BarometerFault;
@@ -349,6 +349,10 @@ pub const KEYS: &[Key] = &[
     Key {
         name: "arms",
         kind: Kind::Choice(ARMS, |s, v| s.arms = arms(v)),
+    },
+    Key {
+        name: "vehicle.known",
+        kind: Kind::Choice(Known::WORDS, |s, v| s.known = Known::from_word(v)),
     },
     number!("vehicle.infill", INFILL, vehicle.infill),
     number!("vehicle.gain_k", GAIN_K, vehicle.gain_k),

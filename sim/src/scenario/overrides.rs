@@ -4,12 +4,14 @@ use sophie_control::allocation::wrench::Configuration;
 use sophie_control::pilot::rc::ArmChoice;
 use sophie_mixers::Variant;
 
-use super::{Assist, PositionSensor, Scenario};
+use super::{Assist, Known, PositionSensor, Scenario};
 
 /// Command line settings, within the ranges of [`keys`](super::keys), override the file's vehicle; the stack's
 /// parameters follow, but for the file's `[params]`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Overrides {
+    /// How far the parameters follow the vehicle.
+    pub known: Option<Known>,
     /// Infill, %.
     pub infill: Option<f64>,
     /// Gain K on Eq. 1's elastic term.
@@ -35,6 +37,7 @@ impl Overrides {
                 *to = value;
             }
         }
+        set(&mut scenario.known, self.known);
         set(&mut scenario.vehicle.infill, self.infill);
         set(&mut scenario.vehicle.gain_k, self.gain_k);
         set(&mut scenario.vehicle.configuration, self.configuration);

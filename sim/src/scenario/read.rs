@@ -4,18 +4,17 @@
 use core::ops::Range as Span;
 use std::sync::OnceLock;
 
-use sophie_control::params::ServoMarks;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::defaults::MISSION;
 use super::keys::{self, KEYS, Key, Kind, Range, TABLES};
+use super::known;
 use super::overrides::Overrides;
 use super::read_steps::steps_of;
 use super::settings::Setting;
 use super::source::{Result, Source, Value, as_number, in_order, table};
 use super::{Scenario, Step};
-use crate::plant::tendon::ServoSpec;
 
 impl Source<'_> {
     pub(super) fn scenario(&self, overrides: &Overrides) -> Result<Scenario> {
@@ -37,7 +36,7 @@ impl Source<'_> {
             }
         }
         overrides.apply(&mut scenario);
-        params_from_vehicle(&mut scenario);
+        known::believe(&mut scenario);
         if let Some(table) = params {
             for Setting { row, value, .. } in self.settings(table)? {
                 // In its range: never an error.
@@ -147,40 +146,6 @@ impl Source<'_> {
         }
         Ok(())
     }
-}
-
-/// The stack's parameters follow the vehicle unless the file sets them. Without a lens position in the file they assume
-/// the lens at the centre of mass; it is near enough to need no measuring.
-fn params_from_vehicle(scenario: &mut Scenario) {
-    let Scenario {
-        params,
-        vehicle,
-        sensors,
-        ..
-    } = scenario;
-    let lens = [&mut params.flow_x, &mut params.flow_y, &mut params.flow_z];
-    for (measured, place) in lens.into_iter().zip(sensors.flow_place) {
-        *measured = place.map_or(*measured, |m| m as f32);
-    }
-    params.infill = vehicle.infill as f32;
-    params.gain_k = vehicle.gain_k as f32;
-    let [a1, a2, b1, b2] = vehicle.arm_coefficients.map(|c| c as f32);
-    (params.arm_a1, params.arm_a2, params.arm_b1, params.arm_b2) = (a1, a2, b1, b2);
-    params.arm_level_share = vehicle.arm_level_share as f32;
-    params.mass = vehicle.body.mass as f32;
-    let [roll, pitch, yaw] = vehicle.body.inertia.map(|i| i as f32);
-    (params.inertia_roll, params.inertia_pitch, params.inertia_yaw) = (roll, pitch, yaw);
-    params.torque_ratio = vehicle.rotor.torque_ratio as f32;
-    params.motor_tau = vehicle.rotor.time_constant as f32;
-    params.thrust_max = vehicle.rotor.thrust_max as f32;
-    let servo = ServoSpec::from(vehicle.servo);
-    params.servo_stall = servo.stall as f32;
-    let slew = servo.slew as f32;
-    (params.servo_slew_1, params.servo_slew_2) = (slew, slew);
-    (params.servo_slew_3, params.servo_slew_4) = (slew, slew);
-    params.servo_range = servo.range as f32;
-    // The servos take pulses and marks from the parameters (`ServoSpec::measured`).
-    params.servo_marks = ServoMarks::S1234;
 }
 
 /// Steps of files without any.

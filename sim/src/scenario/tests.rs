@@ -1,5 +1,6 @@
 //! Reading of good scenarios; refusals are in `refusals`.
 
+mod known;
 mod refusals;
 
 use rand::{Rng, SeedableRng};
@@ -186,6 +187,7 @@ fn faults_are_read_by_arm() {
 #[test]
 fn the_command_line_wins_over_the_file() {
     let overrides = Overrides {
+        known: None,
         infill: Some(9.0),
         gain_k: Some(2.0),
         configuration: Some(Configuration::A),

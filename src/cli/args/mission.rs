@@ -6,7 +6,7 @@ use clap::Args;
 use sophie_control::allocation::wrench::Configuration;
 use sophie_control::pilot::rc::ArmChoice;
 use sophie_sim::mixers::Variant;
-use sophie_sim::scenario::{Assist, Overrides, PositionSensor, Scenario, keys};
+use sophie_sim::scenario::{Assist, Known, Overrides, PositionSensor, Scenario, keys};
 
 use super::values::{number, seed, word};
 
@@ -36,6 +36,9 @@ pub struct MissionArgs {
     /// Gain on the elastic term of the arm equation, 1 (literal) to 10.
     #[arg(long, value_name = "K", value_parser = gain_k, allow_negative_numbers = true)]
     gain_k: Option<f64>,
+    /// What the flight stack knows of the vehicle: exact, calibrated (each calibration with its error), or as-built.
+    #[arg(long, value_name = "NAME", value_parser = known)]
+    known: Option<Known>,
     /// Seed of every random number: a whole number from 0 to 9e15.
     #[arg(long, value_name = "N", value_parser = seed, allow_negative_numbers = true)]
     seed: Option<u64>,
@@ -56,6 +59,7 @@ impl MissionArgs {
     /// The options' overrides of a scenario.
     pub(super) fn overrides(&self) -> Overrides {
         Overrides {
+            known: self.known,
             infill: self.rho,
             gain_k: self.gain_k,
             configuration: self.config,
@@ -66,6 +70,10 @@ impl MissionArgs {
             seed: self.seed,
         }
     }
+}
+
+fn known(text: &str) -> Result<Known, String> {
+    word(text, Known::WORDS).map(Known::from_word)
 }
 
 fn infill(text: &str) -> Result<f64, String> {

@@ -36,6 +36,14 @@ pub fn html(record: &FlightRecord) -> String {
     page += &section("Grip", "When it was proven.", &tables::grip(record));
     page += &section("Events", "", &tables::events(record));
     page += "</div>";
+    let wrong = tables::differences(record);
+    if !wrong.is_empty() {
+        page += &section(
+            "Truth and belief",
+            "What the flight stack's parameters have wrong.",
+            &wrong,
+        );
+    }
     page += &modes(record);
     for figure in figures::all(record) {
         page += &plot(&figure);

@@ -44,6 +44,7 @@ pub struct Summary {
 /// Vehicle, world and pilot.
 #[derive(Serialize)]
 struct Settings {
+    known: &'static str,
     infill_percent: f64,
     gain_k: f64,
     configuration: &'static str,
@@ -88,6 +89,16 @@ struct Settings {
     faults: FaultsSummary,
     /// Parameters of the stack that are not at their default, by name.
     params: BTreeMap<&'static str, f32>,
+    /// What the parameters have wrong.
+    differences: Vec<DifferenceSummary>,
+}
+
+/// One number that the parameters have wrong.
+#[derive(Serialize)]
+struct DifferenceSummary {
+    key: String,
+    truth: f64,
+    assumed: f64,
 }
 
 /// Parts that failed or were off, by arm.
@@ -209,6 +220,7 @@ impl Settings {
             (usual.get(row.name)?.to_bits() != value.to_bits()).then_some((row.name, value))
         });
         Self {
+            known: s.known.word(),
             infill_percent: v.infill,
             gain_k: v.gain_k,
             configuration: keys::configuration_word(v.configuration),
@@ -252,6 +264,15 @@ impl Settings {
             pilot_believes_pipe_diameter_m: pipe.diameter,
             faults: FaultsSummary::of(&s.faults),
             params: changed.collect(),
+            differences: s
+                .differences()
+                .into_iter()
+                .map(|d| DifferenceSummary {
+                    key: d.key,
+                    truth: tidy(d.truth),
+                    assumed: tidy(d.assumed),
+                })
+                .collect(),
         }
     }
 }
@@ -320,9 +341,12 @@ mod tests {
     fn changed_parameters_are_told_and_missing_numbers_are_null() {
         let mut record = synthetic::record();
         record.scenario.params.rate_p = 9.0;
+        record.scenario.vehicle.body.mass = 2.0;
         record.grip[0].closure = f64::NAN;
         let v = json(&record);
         assert_eq!(v["settings"]["params"], serde_json::json!({ "rate_p": 9.0 }));
         assert!(v["grip"][0]["closure_s"].is_null());
+        let mass = serde_json::json!([{ "key": "vehicle.mass_kg", "truth": 2.0, "assumed": 1.805 }]);
+        assert_eq!(v["settings"]["differences"], mass);
     }
 }

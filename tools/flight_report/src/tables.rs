@@ -3,7 +3,7 @@
 use sophie_sim::record::FlightRecord;
 
 use sophie_charts::svg::escape;
-use sophie_charts::units::{deg, kgcm};
+use sophie_charts::units::{deg, kgcm, tidy};
 
 /// The steps as flown.
 pub fn phases(record: &FlightRecord) -> String {
@@ -59,6 +59,24 @@ pub fn grip(record: &FlightRecord) -> String {
         ]
     });
     table(&head, rows, &[0])
+}
+
+/// What the stack's parameters have wrong; empty where nothing is.
+pub fn differences(record: &FlightRecord) -> String {
+    let differences = record.scenario.differences();
+    if differences.is_empty() {
+        return String::new();
+    }
+    let rows = differences.iter().map(|d| {
+        vec![
+            d.key.clone(),
+            format!("{:.4}", tidy(d.truth)),
+            format!("{:.4}", tidy(d.assumed)),
+            d.percent()
+                .map_or_else(String::new, |p| format!("{} %", signed(p))),
+        ]
+    });
+    table(&["scenario key", "true", "assumed", "off by"], rows, &[0])
 }
 
 /// What happened, in order.

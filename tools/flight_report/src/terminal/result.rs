@@ -4,7 +4,7 @@ use sophie_sim::record::FlightRecord;
 use sophie_sim::scenario::{Scenario, keys};
 use sophie_terminal::console::Console;
 
-use sophie_charts::units::{deg, kgcm};
+use sophie_charts::units::{deg, kgcm, tidy};
 use sophie_terminal::table::{Align, Table};
 
 /// One line on the flight to come.
@@ -29,6 +29,35 @@ pub fn tables(record: &FlightRecord) -> Vec<String> {
         lines.push(String::new());
         lines.extend(grip(record).lines());
     }
+    lines.extend(differences(&record.scenario));
+    lines
+}
+
+/// What the stack's parameters have wrong, after an empty line; no lines where nothing is.
+pub fn differences(scenario: &Scenario) -> Vec<String> {
+    use Align::{Left, Right};
+    let mut table = Table::new(&[
+        ("not as the parameters have it", Left),
+        ("true", Right),
+        ("assumed", Right),
+        ("off by", Right),
+    ]);
+    let differences = scenario.differences();
+    if differences.is_empty() {
+        return Vec::new();
+    }
+    for difference in &differences {
+        table.row([
+            difference.key.clone(),
+            format!("{:.4}", tidy(difference.truth)),
+            format!("{:.4}", tidy(difference.assumed)),
+            difference
+                .percent()
+                .map_or_else(String::new, |p| format!("{p:+.1} %")),
+        ]);
+    }
+    let mut lines = vec![String::new()];
+    lines.extend(table.lines());
     lines
 }
 

@@ -1,0 +1,369 @@
+//! Numbers of a vehicle, its day and its pipe that nobody knows exactly: how far builders' vehicles differ, what a
+//! calibration leaves of it, and the parameters that assume them.
+
+use super::Scenario;
+
+/// How a number differs from another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Spread {
+    /// Evenly between two multiples of it.
+    Times(f64, f64),
+    /// Evenly between two numbers added to it, in the key's unit.
+    Plus(f64, f64),
+    /// Evenly between two numbers, whatever it is, in the key's unit.
+    Within(f64, f64),
+}
+
+impl Spread {
+    /// The number that differs from `from` by `share`, 0 to 1, of the way from one end to the other.
+    #[must_use]
+    pub fn apply(self, from: f64, share: f64) -> f64 {
+        let between = |low: f64, high: f64| low + share * (high - low);
+        match self {
+            Self::Times(low, high) => from * between(low, high),
+            Self::Plus(low, high) => from + between(low, high),
+            Self::Within(low, high) => between(low, high),
+        }
+    }
+
+    /// For tables: `0.92 to 1.08 times`.
+    #[must_use]
+    pub fn text(self) -> String {
+        match self {
+            Self::Times(low, high) => format!("{low} to {high} times"),
+            Self::Plus(low, high) if low == -high => format!("± {high}"),
+            Self::Plus(low, high) => format!("{low:+} to {high:+}"),
+            Self::Within(low, high) => format!("{low} to {high}"),
+        }
+    }
+}
+
+/// A measurement that a builder makes.
+#[derive(Clone, Copy, Debug)]
+pub struct Calibration {
+    /// Command, or page of the handbook.
+    pub by: &'static str,
+    /// Difference of the result from the truth.
+    pub error: Spread,
+    /// Each of the key's numbers has an error of its own.
+    pub apart: bool,
+}
+
+/// A quantity of the table.
+pub struct Quantity {
+    /// Scenario key of the truth; its unit is that of all numbers here.
+    pub key: &'static str,
+    /// Over builders and days: of the nominal value, the same for all of the key's numbers.
+    pub all: Option<Spread>,
+    /// In addition, of each of them.
+    pub each: Option<Spread>,
+    /// What measures it; `None`: nothing does.
+    pub calibration: Option<Calibration>,
+    /// The parameters follow it where everything is known.
+    pub exact: bool,
+    /// Source of the spread.
+    pub source: &'static str,
+    /// The truth; no numbers where the vehicle has no such part.
+    pub truth: fn(&Scenario) -> Vec<f64>,
+    /// What the parameters assume of each number; no numbers where nothing assumes it.
+    pub assumed: fn(&Scenario) -> Vec<f64>,
+    /// Sets the parameters to what was measured of each number.
+    pub learn: fn(&mut Scenario, &[f64]),
+}
+
+/// What a ruler leaves of a place, m.
+const RULER: Spread = Spread::Plus(-0.005, 0.005);
+const DEGREE: f64 = core::f64::consts::PI / 180.0;
+
+/// Neither spread nor measured nor assumed.
+const FIXED: Quantity = Quantity {
+    key: "",
+    all: None,
+    each: None,
+    calibration: None,
+    exact: false,
+    source: "",
+    truth: |_| Vec::new(),
+    assumed: |_| Vec::new(),
+    learn: |_, _| (),
+};
+
+/// Sets parameters to numbers, one each.
+fn set<const N: usize>(rows: [&mut f32; N], numbers: &[f64]) {
+    for (row, number) in rows.into_iter().zip(numbers) {
+        *row = *number as f32;
+    }
+}
+
+/// The quantities, vehicle first, then sensors and pipe.
+pub const QUANTITIES: &[Quantity] = &[
+    Quantity {
+        key: "vehicle.mass_kg",
+        all: Some(Spread::Times(0.92, 1.08)),
+        calibration: Some(Calibration {
+            by: "kitchen scale ([tuning](tuning.md), 1)",
+            error: Spread::Times(0.99, 1.01),
+            apart: false,
+        }),
+        exact: true,
+        source: "4S batteries differ by 0.1 kg, prints by 5 % (assumed)",
+        truth: |s| vec![s.vehicle.body.mass],
+        assumed: |s| vec![s.params.mass.into()],
+        learn: |s, n| set([&mut s.params.mass], n),
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.inertia_kgm2",
+        each: Some(Spread::Times(0.7, 1.3)),
+        exact: true,
+        source: "derived from the parts ([physics](design/physics.md)), 30 %",
+        truth: |s| s.vehicle.body.inertia.to_vec(),
+        assumed: |s| {
+            let p = &s.params;
+            [p.inertia_roll, p.inertia_pitch, p.inertia_yaw]
+                .map(f64::from)
+                .to_vec()
+        },
+        learn: |s, n| {
+            let p = &mut s.params;
+            set([&mut p.inertia_roll, &mut p.inertia_pitch, &mut p.inertia_yaw], n);
+        },
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.thrust_max_n",
+        all: Some(Spread::Times(0.85, 1.20)),
+        calibration: Some(Calibration {
+            by: "throttle in hover ([tuning](tuning.md), 1)",
+            error: Spread::Times(0.95, 1.05),
+            apart: false,
+        }),
+        exact: true,
+        source: "motors, propellers and days 10 to 20 %; air from 0.83 (35 °C, 1,000 m) to 1.10 (-10 °C, sea level) of the \
+                 standard's density",
+        truth: |s| vec![s.vehicle.rotor.thrust_max],
+        assumed: |s| vec![s.params.thrust_max.into()],
+        learn: |s, n| set([&mut s.params.thrust_max], n),
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.motor_tau_s",
+        all: Some(Spread::Within(0.04, 0.10)),
+        calibration: Some(Calibration {
+            by: "step of thrust on a scale ([tuning](tuning.md), 4)",
+            error: Spread::Times(0.85, 1.15),
+            apart: false,
+        }),
+        exact: true,
+        source: "0.0125 up and 0.025 s down (RotorS, a small one) to 0.17 s (2212-920, 9450, 30 A on PWM: \
+                 CrissCCL/DIY_UAV_Motor_System_Identification)",
+        truth: |s| vec![s.vehicle.rotor.time_constant],
+        assumed: |s| vec![s.params.motor_tau.into()],
+        learn: |s, n| set([&mut s.params.motor_tau], n),
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.torque_ratio_m",
+        all: Some(Spread::Times(0.88, 1.12)),
+        exact: true,
+        source: "0.0164 m of an APC SF 10x4.7 (UIUC propeller data), 12 % from type to type",
+        truth: |s| vec![s.vehicle.rotor.torque_ratio],
+        assumed: |s| vec![s.params.torque_ratio.into()],
+        learn: |s, n| set([&mut s.params.torque_ratio], n),
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.gain_k",
+        exact: true,
+        source: "Table III of the paper needs 5.0 to 8.4; drawn by `arm_gain`",
+        truth: |s| vec![s.vehicle.gain_k],
+        learn: |s, n| set([&mut s.params.gain_k], n),
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.arm_coefficients",
+        exact: true,
+        source: "Table I of the paper; drawn by `arm_gain`",
+        truth: |s| s.vehicle.arm_coefficients.to_vec(),
+        learn: |s, n| {
+            let p = &mut s.params;
+            set([&mut p.arm_a1, &mut p.arm_a2, &mut p.arm_b1, &mut p.arm_b2], n);
+        },
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.arm_level_share",
+        all: Some(Spread::Plus(-0.05, 0.05)),
+        calibration: Some(Calibration {
+            by: "`sophie fit-arm` ([arms](calibration.md#arms))",
+            error: Spread::Plus(-0.02, 0.02),
+            apart: false,
+        }),
+        exact: true,
+        source: "an arm printed 1.5° off level at rest (assumed)",
+        truth: |s| vec![s.vehicle.arm_level_share],
+        assumed: |s| vec![s.params.arm_level_share.into()],
+        learn: |s, n| set([&mut s.params.arm_level_share], n),
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.arm_gain",
+        all: Some(Spread::Times(0.7, 1.4)),
+        each: Some(Spread::Times(0.93, 1.07)),
+        calibration: Some(Calibration {
+            by: "`sophie fit-arm` ([arms](calibration.md#arms)): one equation for four arms",
+            error: Spread::Times(0.95, 1.05),
+            apart: false,
+        }),
+        source: "TPU at 24 to 247 MPa by rate and batch (Haid 2023), 1.25 at 5 °C to 0.7 at 40 °C (Covestro Texin 245); print \
+                 to print 7 % (assumed)",
+        truth: |s| s.vehicle.arm_gain.to_vec(),
+        learn: |s, gains| {
+            // Into the coefficients: gain_k has less room.
+            let mean = gains.iter().sum::<f64>() / gains.len().max(1) as f64;
+            let (v, p) = (&s.vehicle, &mut s.params);
+            let scale = mean * v.gain_k / f64::from(p.gain_k);
+            let found = v.arm_coefficients.map(|c| c * scale);
+            set(
+                [&mut p.arm_a1, &mut p.arm_a2, &mut p.arm_b1, &mut p.arm_b2],
+                &found,
+            );
+        },
+        assumed: |s| vec![assumed_gain(s); 4],
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.arm_offset_deg",
+        each: Some(Spread::Plus(-3.0, 3.0)),
+        source: "print and glue (assumed); the arms' sensors see it in flight",
+        truth: |s| s.vehicle.arm_offset.map(|offset| offset / DEGREE).to_vec(),
+        assumed: |_| vec![0.0; 4],
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.arm_damping",
+        all: Some(Spread::Within(0.05, 0.15)),
+        source: "TPU's loss factor of 0.1 to 0.3 (assumed); the notch is set by hand",
+        truth: |s| vec![s.vehicle.arm_damping],
+        ..FIXED
+    },
+    Quantity {
+        key: "faults.pressure_gain",
+        each: Some(Spread::Times(0.8, 1.2)),
+        calibration: Some(Calibration {
+            by: "`calibrate fsr` ([pressure sensors](calibration.md#pressure-sensors))",
+            error: Spread::Times(0.92, 1.08),
+            apart: true,
+        }),
+        source: "Interlink's guide: 15 to 25 % from part to part; repeatability 12 to 16 % (J. Sensors 6561901)",
+        truth: |s| s.faults.pressure_gain.to_vec(),
+        assumed: |s| {
+            let p = &s.params;
+            [p.fsr_trim_1, p.fsr_trim_2, p.fsr_trim_3, p.fsr_trim_4]
+                .map(f64::from)
+                .to_vec()
+        },
+        learn: |s, n| {
+            let p = &mut s.params;
+            set(
+                [
+                    &mut p.fsr_trim_1,
+                    &mut p.fsr_trim_2,
+                    &mut p.fsr_trim_3,
+                    &mut p.fsr_trim_4,
+                ],
+                n,
+            );
+        },
+        ..FIXED
+    },
+    Quantity {
+        key: "sensors.flow_x_m",
+        calibration: Some(Calibration {
+            by: "ruler ([flow module](calibration.md#flow-module))",
+            error: RULER,
+            apart: false,
+        }),
+        exact: true,
+        source: "as mounted",
+        truth: |s| lens(s, 0),
+        assumed: |s| vec![s.params.flow_x.into()],
+        learn: |s, n| set([&mut s.params.flow_x], n),
+        ..FIXED
+    },
+    Quantity {
+        key: "sensors.flow_y_m",
+        calibration: Some(Calibration {
+            by: "ruler ([flow module](calibration.md#flow-module))",
+            error: RULER,
+            apart: false,
+        }),
+        exact: true,
+        source: "as mounted",
+        truth: |s| lens(s, 1),
+        assumed: |s| vec![s.params.flow_y.into()],
+        learn: |s, n| set([&mut s.params.flow_y], n),
+        ..FIXED
+    },
+    Quantity {
+        key: "sensors.flow_z_m",
+        calibration: Some(Calibration {
+            by: "ruler ([flow module](calibration.md#flow-module))",
+            error: RULER,
+            apart: false,
+        }),
+        exact: true,
+        source: "as mounted",
+        truth: |s| lens(s, 2),
+        assumed: |s| vec![s.params.flow_z.into()],
+        learn: |s, n| set([&mut s.params.flow_z], n),
+        ..FIXED
+    },
+    Quantity {
+        key: "world.pipe_friction",
+        all: Some(Spread::Within(0.2, 0.8)),
+        calibration: Some(Calibration {
+            by: "skin on the pipe, by a luggage scale ([parameters](parameters.md), `pipe_friction`)",
+            error: Spread::Times(0.85, 1.15),
+            apart: false,
+        }),
+        source: "urethane on steel 0.2 to 2.5, wet or dusty 0.15 to 0.4 (Polydrive, Gallagher: tables)",
+        truth: |s| vec![s.world.pipe_friction],
+        assumed: |s| vec![s.params.pipe_friction.into()],
+        learn: |s, n| set([&mut s.params.pipe_friction], n),
+        ..FIXED
+    },
+    Quantity {
+        key: "world.pipe_diameter_m",
+        all: Some(Spread::Within(0.2, 0.4)),
+        calibration: Some(Calibration {
+            by: "tape measure ([parameters](parameters.md), `pipe_diameter`)",
+            error: Spread::Plus(-0.003, 0.003),
+            apart: false,
+        }),
+        source: "pipes that the arms close on",
+        truth: |s| vec![s.world.pipe_diameter],
+        assumed: |s| vec![s.params.pipe_diameter.into()],
+        learn: |s, n| set([&mut s.params.pipe_diameter], n),
+        ..FIXED
+    },
+];
+
+/// Elastic slope of the stack's arm without thrust over that of the nominal one.
+fn assumed_gain(s: &Scenario) -> f64 {
+    let ([a1, a2, ..], p) = (s.vehicle.arm_coefficients, &s.params);
+    let built = s.vehicle.gain_k * (a1 + a2 * s.vehicle.infill);
+    let assumed = f64::from(p.gain_k) * f64::from(p.arm_a1 + p.arm_a2 * p.infill);
+    assumed / built
+}
+
+/// Place of the lens in the file, m; without a key it is near the centre and needs no measuring.
+fn lens(s: &Scenario, axis: usize) -> Vec<f64> {
+    s.sensors
+        .flow_place
+        .get(axis)
+        .copied()
+        .flatten()
+        .into_iter()
+        .collect()
+}
