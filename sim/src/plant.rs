@@ -32,7 +32,7 @@ use self::hinged::HingedArm;
 use self::hinged::link::{ArmPrint, ArmSpec, TIP};
 use self::rotor::Rotor;
 use self::servo_power::MG996R;
-use self::tendon::{ServoSpec, Tendon, TendonSpec};
+use self::tendon::{Tendon, TendonSpec};
 use crate::plant::flexible::ArmBending;
 use crate::plant::load::Load;
 use crate::scenario::{Scenario, Vehicle};
@@ -289,7 +289,7 @@ impl Base {
         let limb = |i: usize| Limb {
             rotor: Rotor::new(i, chi, v.rotor),
             tendon: Tendon::new(
-                ServoSpec::from(v.servo).measured(&scenario.params, i),
+                v.servo_on(i, scenario.params.servo_frame_rate),
                 TendonSpec {
                     slack_error: scenario.faults.tendon_slack[i],
                     ..TendonSpec::of(v.arm_bending)

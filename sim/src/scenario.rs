@@ -39,7 +39,7 @@ use crate::plant::body::BodySpec;
 use crate::plant::esc::EscSpec;
 use crate::plant::flexible::ArmBending;
 use crate::plant::rotor::RotorSpec;
-use crate::plant::tendon::ServoProfile;
+use crate::plant::tendon::{ServoProfile, ServoSpec};
 use crate::sensors::barometer::{Barometer, BarometerFault};
 use crate::sensors::flow::FlowFault;
 use crate::sensors::pose::PoseFault;
@@ -83,7 +83,7 @@ impl Scenario {
     #[must_use]
     pub fn barometer(&self) -> Barometer {
         let s = &self.sensors;
-        let sound = Barometer::new(self.streams(), f64::from(self.params.mass * GRAVITY));
+        let sound = Barometer::new(self.streams(), f64::from(self.vehicle.body.mass as f32 * GRAVITY));
         sound.failing(s.barometer_fault, s.pose_fails_at, s.pose_fails_for)
     }
 
@@ -132,12 +132,24 @@ pub struct Vehicle {
     pub servo_charge: f64,
     /// The tendon servo.
     pub servo: ServoProfile,
+    /// Pulse of each servo with its reel at the release mark, µs.
+    pub servo_release: PerArm<f64>,
+    /// Pulse of each servo after its whole travel, µs; below the release mark's for one that is mounted in reverse.
+    pub servo_full: PerArm<f64>,
     /// Mass and inertia.
     pub body: BodySpec,
     /// Motors and propellers, all alike.
     pub rotor: RotorSpec,
     /// Motor controllers, all alike. The stack knows only its parameters, which may differ.
     pub esc: EscSpec,
+}
+
+impl Vehicle {
+    /// The servo of `arm`, 0 to 3, at pulses of `frame_rate` Hz.
+    #[must_use]
+    pub fn servo_on(&self, arm: usize, frame_rate: f32) -> ServoSpec {
+        ServoSpec::from(self.servo).marked(self.servo_release[arm], self.servo_full[arm], frame_rate)
+    }
 }
 
 /// Air and pipe. Origin: the take-off point, on the ground, nose north.

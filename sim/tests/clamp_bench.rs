@@ -119,7 +119,11 @@ impl Bench {
             tilt_noise: streams.of("tilt"),
             arm: BeamArm::new(0, beam(&ArmSpec::new(infill, 7.75, gain, offset, 0.15), 0.15)),
             tendon: Tendon::new(
-                ServoSpec::from(servo).measured(&params, 0),
+                ServoSpec::from(servo).marked(
+                    params.servo_release_1.into(),
+                    params.servo_full_1.into(),
+                    params.servo_frame_rate,
+                ),
                 TendonSpec {
                     slack_error,
                     ..TendonSpec::of(ArmBending::Beam)

@@ -8,7 +8,6 @@ use crate::pilot::throttle_on_pipe;
 use crate::plant::beam::rest::{DAMPING, SlowArm, pipe_under};
 use crate::plant::beam::{BeamSpec, Masses, TENDON_LEVER};
 use crate::plant::flexible::ArmBending;
-use crate::plant::tendon::ServoSpec;
 use crate::plant::{arm_spec, beam_spec};
 use crate::scenario::{Scenario, Step};
 use crate::test_stands::arm_bench::{BenchArm, Tried, try_grip};
@@ -57,7 +56,7 @@ fn bench(scenario: &Scenario, arm: usize) -> BenchArm {
         arm,
         spec: arm_spec(v, arm),
         beam: (v.arm_bending == ArmBending::Beam).then(|| beam_spec(v, arm)),
-        servo: ServoSpec::from(v.servo).measured(&p, arm),
+        servo: v.servo_on(arm, p.servo_frame_rate),
         rotor_tau: v.rotor.time_constant,
         params: p,
         diameter: w.pipe_diameter,

@@ -26,7 +26,7 @@ use crate::devices::companion::Companion;
 use crate::devices::flow_module::{FlowLine, FlowSender};
 use crate::live::Live;
 use crate::plant::Plant;
-use crate::scenario::{PositionSensor, Scenario};
+use crate::scenario::{Known, PositionSensor, Scenario};
 use crate::target_angles;
 
 /// Step index of a reset that a client ordered, not the mission.
@@ -73,7 +73,10 @@ impl Stack {
 
     fn with(scenario: &Scenario, live: Option<Live>) -> Self {
         let board: &'static Board = Box::leak(Box::new(Board::of(scenario)));
-        let mut params = calibrated(scenario.params, board);
+        let mut params = match scenario.known {
+            Known::AsBuilt => scenario.params,
+            Known::Exact | Known::Calibrated => levelled(scenario.params, board),
+        };
         if scenario.sensors.position == PositionSensor::Flow {
             params.flow_port = FlowPort::Msp;
         }
@@ -342,8 +345,8 @@ impl Aircraft for Stack {
     }
 }
 
-/// The board's parameters, with its bench-calibrated accelerometer.
-fn calibrated(params: Params, board: &Board) -> Params {
+/// The board's parameters after `calibrate level`, with what the table's lean leaves.
+fn levelled(params: Params, board: &Board) -> Params {
     let [accel_bias_x, accel_bias_y, accel_bias_z] = board.accel_bias;
     Params {
         accel_bias_x,

@@ -5,7 +5,7 @@
 
 use std::f64::consts::PI;
 
-use sophie_control::gripper::tendon::{REFERENCE_TILT, Reel};
+use sophie_control::gripper::tendon::REFERENCE_TILT;
 use sophie_control::params::Params;
 
 use super::beam::TENDON_LEVER;
@@ -45,14 +45,13 @@ pub struct ServoSpec {
 }
 
 impl ServoSpec {
-    /// This servo on `arm` (0..=3), with pulses and frames of the parameters.
+    /// This servo with the pulses of its release and full marks, µs, and pulses at `frame_rate` Hz.
     #[must_use]
-    pub fn measured(self, params: &Params, arm: usize) -> Self {
-        let reel = Reel::from_params(params, arm);
+    pub fn marked(self, release_us: f64, full_us: f64, frame_rate: f32) -> Self {
         Self {
-            release_us: f64::from(reel.pulse(0.0)),
-            full_us: f64::from(reel.pulse(params.servo_range)),
-            frame: 1.0 / f64::from(params.servo_frame_rate),
+            release_us,
+            full_us,
+            frame: 1.0 / f64::from(frame_rate),
             ..self
         }
     }
@@ -335,16 +334,9 @@ mod tests {
     }
 
     #[test]
-    fn a_servo_obeys_the_pulses_that_were_measured_on_it() {
-        let params = Params {
-            servo_release_3: 2300.0,
-            servo_full_3: 800.0,
-            servo_trim_3: 30.0,
-            servo_frame_rate: 333.0,
-            ..Params::default()
-        };
-        let spec = ServoSpec::from(ServoProfile::Paper).measured(&params, 2);
-        assert!((spec.release_us, spec.full_us) == (2330.0, 830.0) && (spec.frame - 3.003e-3).abs() < 1e-6);
+    fn a_servo_obeys_pulses_between_its_marks() {
+        let spec = ServoSpec::from(ServoProfile::Paper).marked(2330.0, 830.0, 333.0);
+        assert!((spec.frame - 3.003e-3).abs() < 1e-6);
         let mut t = Tendon::new(spec, TendonSpec::default());
         // Half of 2330 to 830 µs is half the travel.
         for (pulse, angle) in [(2330.0, 0.0), (1580.0, 2.355), (1581.5, 2.355), (830.0, 4.71)] {

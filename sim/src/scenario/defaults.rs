@@ -33,6 +33,8 @@ impl Default for Vehicle {
             battery_charge: 1.0,
             servo_charge: 1.0,
             servo: ServoProfile::Paper,
+            servo_release: [550.0; 4],
+            servo_full: [2450.0; 4],
             body: BodySpec::default(),
             rotor: RotorSpec::default(),
             esc: EscSpec::default(),

@@ -149,6 +149,9 @@ const PIPE_PLACE: Range = Range::new(-20.0, 20.0, "m");
 const PIPE_TOP: Range = Range::new(0.5, 10.0, "m");
 const PIPE_DIAMETER: Range = Range::new(0.15, 0.6, "m");
 
+/// Range of a servo's marks: what servos accept.
+const SERVO_PULSE: Range = Range::new(500.0, 2500.0, "us");
+
 /// Range of the lens position, as that of the parameters.
 const LENS: Range = Range::new(-0.3, 0.3, "m");
 
@@ -403,6 +406,14 @@ pub const KEYS: &[Key] = &[
     Key {
         name: "vehicle.servo",
         kind: Kind::Choice(SERVOS, |s, v| s.vehicle.servo = servo(v)),
+    },
+    Key {
+        name: "vehicle.servo_release_us",
+        kind: Kind::PerArm(SERVO_PULSE, |s| &mut s.vehicle.servo_release),
+    },
+    Key {
+        name: "vehicle.servo_full_us",
+        kind: Kind::PerArm(SERVO_PULSE, |s| &mut s.vehicle.servo_full),
     },
     number!("vehicle.mass_kg", Range::new(1.0, 3.0, "kg"), vehicle.body.mass),
     Key {

@@ -72,6 +72,9 @@ pub(super) fn believe(scenario: &mut Scenario) {
     for quantity in QUANTITIES {
         match (scenario.known, &quantity.calibration) {
             (Known::Exact, _) if quantity.exact => learn(scenario, quantity, None),
+            (Known::AsBuilt, Some(calibration)) if calibration.demanded => {
+                learn(scenario, quantity, Some(calibration));
+            }
             (Known::Calibrated, Some(calibration)) => learn(scenario, quantity, Some(calibration)),
             _ => (),
         }
@@ -88,7 +91,6 @@ fn labels(scenario: &mut Scenario) {
     (params.servo_slew_1, params.servo_slew_2) = (slew, slew);
     (params.servo_slew_3, params.servo_slew_4) = (slew, slew);
     params.servo_range = servo.range as f32;
-    // The servos take pulses and marks from the parameters (`ServoSpec::measured`).
     params.servo_marks = ServoMarks::S1234;
 }
 

@@ -1,6 +1,9 @@
 //! Numbers of a vehicle, its day and its pipe that nobody knows exactly: how far builders' vehicles differ, what a
 //! calibration leaves of it, and the parameters that assume them.
 
+use sophie_control::gripper::tendon::Reel;
+use sophie_control::params::Params;
+
 use super::Scenario;
 
 /// How a number differs from another.
@@ -47,6 +50,8 @@ pub struct Calibration {
     pub error: Spread,
     /// Each of the key's numbers has an error of its own.
     pub apart: bool,
+    /// Arming is refused without it.
+    pub demanded: bool,
 }
 
 /// A quantity of the table.
@@ -74,6 +79,14 @@ pub struct Quantity {
 /// What a ruler leaves of a place, m.
 const RULER: Spread = Spread::Plus(-0.005, 0.005);
 const DEGREE: f64 = core::f64::consts::PI / 180.0;
+
+/// What hands leave of a servo's mark, µs: half a degree of 270°.
+const SERVO_MARK: Calibration = Calibration {
+    by: "`calibrate servo` ([servos](calibration.md#servos))",
+    error: Spread::Plus(-4.0, 4.0),
+    apart: true,
+    demanded: true,
+};
 
 /// Neither spread nor measured nor assumed.
 const FIXED: Quantity = Quantity {
@@ -104,6 +117,7 @@ pub const QUANTITIES: &[Quantity] = &[
             by: "kitchen scale ([tuning](tuning.md), 1)",
             error: Spread::Times(0.99, 1.01),
             apart: false,
+            demanded: false,
         }),
         exact: true,
         source: "4S batteries differ by 0.1 kg, prints by 5 % (assumed)",
@@ -137,6 +151,7 @@ pub const QUANTITIES: &[Quantity] = &[
             by: "throttle in hover ([tuning](tuning.md), 1)",
             error: Spread::Times(0.95, 1.05),
             apart: false,
+            demanded: false,
         }),
         exact: true,
         source: "motors, propellers and days 10 to 20 %; air from 0.83 (35 °C, 1,000 m) to 1.10 (-10 °C, sea level) of the \
@@ -153,6 +168,7 @@ pub const QUANTITIES: &[Quantity] = &[
             by: "step of thrust on a scale ([tuning](tuning.md), 4)",
             error: Spread::Times(0.85, 1.15),
             apart: false,
+            demanded: false,
         }),
         exact: true,
         source: "0.0125 up and 0.025 s down (RotorS, a small one) to 0.17 s (2212-920, 9450, 30 A on PWM: \
@@ -198,6 +214,7 @@ pub const QUANTITIES: &[Quantity] = &[
             by: "`sophie fit-arm` ([arms](calibration.md#arms))",
             error: Spread::Plus(-0.02, 0.02),
             apart: false,
+            demanded: false,
         }),
         exact: true,
         source: "an arm printed 1.5° off level at rest (assumed)",
@@ -214,6 +231,7 @@ pub const QUANTITIES: &[Quantity] = &[
             by: "`sophie fit-arm` ([arms](calibration.md#arms)): one equation for four arms",
             error: Spread::Times(0.95, 1.05),
             apart: false,
+            demanded: false,
         }),
         source: "TPU at 24 to 247 MPa by rate and batch (Haid 2023), 1.25 at 5 °C to 0.7 at 40 °C (Covestro Texin 245); print \
                  to print 7 % (assumed)",
@@ -248,12 +266,57 @@ pub const QUANTITIES: &[Quantity] = &[
         ..FIXED
     },
     Quantity {
+        key: "vehicle.servo_release_us",
+        each: Some(Spread::Plus(0.0, 100.0)),
+        calibration: Some(SERVO_MARK),
+        exact: true,
+        source: "a tooth of the horn's spline: 14° of 270°, 100 µs",
+        truth: |s| s.vehicle.servo_release.to_vec(),
+        assumed: |s| servo_pulses(s, 0.0),
+        learn: |s, n| {
+            let p = &mut s.params;
+            set(
+                [
+                    &mut p.servo_release_1,
+                    &mut p.servo_release_2,
+                    &mut p.servo_release_3,
+                    &mut p.servo_release_4,
+                ],
+                &servo_marks(n),
+            );
+        },
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.servo_full_us",
+        each: Some(Spread::Plus(-100.0, 0.0)),
+        calibration: Some(SERVO_MARK),
+        exact: true,
+        source: "travel of one type differs by 5 % (assumed)",
+        truth: |s| s.vehicle.servo_full.to_vec(),
+        assumed: |s| servo_pulses(s, s.params.servo_range),
+        learn: |s, n| {
+            let p = &mut s.params;
+            set(
+                [
+                    &mut p.servo_full_1,
+                    &mut p.servo_full_2,
+                    &mut p.servo_full_3,
+                    &mut p.servo_full_4,
+                ],
+                &servo_marks(n),
+            );
+        },
+        ..FIXED
+    },
+    Quantity {
         key: "faults.pressure_gain",
         each: Some(Spread::Times(0.8, 1.2)),
         calibration: Some(Calibration {
             by: "`calibrate fsr` ([pressure sensors](calibration.md#pressure-sensors))",
             error: Spread::Times(0.92, 1.08),
             apart: true,
+            demanded: false,
         }),
         source: "Interlink's guide: 15 to 25 % from part to part; repeatability 12 to 16 % (J. Sensors 6561901)",
         truth: |s| s.faults.pressure_gain.to_vec(),
@@ -283,6 +346,7 @@ pub const QUANTITIES: &[Quantity] = &[
             by: "ruler ([flow module](calibration.md#flow-module))",
             error: RULER,
             apart: false,
+            demanded: false,
         }),
         exact: true,
         source: "as mounted",
@@ -297,6 +361,7 @@ pub const QUANTITIES: &[Quantity] = &[
             by: "ruler ([flow module](calibration.md#flow-module))",
             error: RULER,
             apart: false,
+            demanded: false,
         }),
         exact: true,
         source: "as mounted",
@@ -311,6 +376,7 @@ pub const QUANTITIES: &[Quantity] = &[
             by: "ruler ([flow module](calibration.md#flow-module))",
             error: RULER,
             apart: false,
+            demanded: false,
         }),
         exact: true,
         source: "as mounted",
@@ -326,6 +392,7 @@ pub const QUANTITIES: &[Quantity] = &[
             by: "skin on the pipe, by a luggage scale ([parameters](parameters.md), `pipe_friction`)",
             error: Spread::Times(0.85, 1.15),
             apart: false,
+            demanded: false,
         }),
         source: "urethane on steel 0.2 to 2.5, wet or dusty 0.15 to 0.4 (Polydrive, Gallagher: tables)",
         truth: |s| vec![s.world.pipe_friction],
@@ -340,6 +407,7 @@ pub const QUANTITIES: &[Quantity] = &[
             by: "tape measure ([parameters](parameters.md), `pipe_diameter`)",
             error: Spread::Plus(-0.003, 0.003),
             apart: false,
+            demanded: false,
         }),
         source: "pipes that the arms close on",
         truth: |s| vec![s.world.pipe_diameter],
@@ -355,6 +423,19 @@ fn assumed_gain(s: &Scenario) -> f64 {
     let built = s.vehicle.gain_k * (a1 + a2 * s.vehicle.infill);
     let assumed = f64::from(p.gain_k) * f64::from(p.arm_a1 + p.arm_a2 * p.infill);
     assumed / built
+}
+
+/// Pulses at which the stack takes its servos to be at `angle`, rad from release.
+fn servo_pulses(s: &Scenario, angle: f32) -> Vec<f64> {
+    let pulse = |arm| Reel::from_params(&s.params, arm).pulse(angle);
+    (0..4).map(pulse).map(f64::from).collect()
+}
+
+/// Marks within what their parameters take, µs.
+fn servo_marks(found: &[f64]) -> Vec<f64> {
+    let (least, most) = Params::row("servo_release_1").map_or((550.0, 2450.0), |row| (row.min, row.max));
+    let within = |pulse: &f64| pulse.clamp(f64::from(least), f64::from(most));
+    found.iter().map(within).collect()
 }
 
 /// Place of the lens in the file, m; without a key it is near the centre and needs no measuring.

@@ -11,7 +11,8 @@ use crate::scenario::{Overrides, Scenario};
 
 /// A vehicle with none of its numbers at its default.
 const OTHER: &str = "infill = 8\ngain_k = 6\narm_coefficients = [2.5, -0.2, -0.17, 0.016]\narm_level_share = 0.45\n\
-                     arm_gain = [1.2, 1.3, 1.1, 1.2]\narm_offset_deg = [2, -1, 1, -2]\nservo = 'mg996r'\nmass_kg = 2\n\
+                     arm_gain = [1.2, 1.3, 1.1, 1.2]\narm_offset_deg = [2, -1, 1, -2]\nservo = 'mg996r'\n\
+                     servo_release_us = [560, 600, 2450, 550]\nservo_full_us = [2400, 2440, 560, 2450]\nmass_kg = 2\n\
                      inertia_kgm2 = [0.03, 0.05, 0.07]\ntorque_ratio_m = 0.018\nmotor_tau_s = 0.08\nthrust_max_n = 9.5\n\
                      [sensors]\nposition = 'flow'\nflow_x_m = 0.1\n[world]\npipe_friction = 0.4\npipe_diameter_m = 0.25\n\
                      [faults]\npressure_gain = [1.2, 0.8, 0.85, 1.15]";
@@ -38,11 +39,25 @@ fn a_vehicle_that_is_known_exactly_differs_by_its_arms_sensors_and_pipe_alone() 
 #[test]
 fn of_a_vehicle_as_built_the_labels_are_known_alone() {
     let known = other("as-built", 1).params;
+    let marks = [known.servo_release_1, known.servo_full_3];
+    assert!(
+        (marks[0] - 560.0).abs() <= 4.0 && (marks[1] - 560.0).abs() <= 4.0,
+        "{marks:?}"
+    );
     let labels = Params {
         infill: 8.0,
         servo_stall: 0.922,
         servo_range: std::f32::consts::PI,
         servo_marks: ServoMarks::S1234,
+        // Arming demands them: measured, not exact.
+        servo_release_1: known.servo_release_1,
+        servo_release_2: known.servo_release_2,
+        servo_release_3: known.servo_release_3,
+        servo_release_4: known.servo_release_4,
+        servo_full_1: known.servo_full_1,
+        servo_full_2: known.servo_full_2,
+        servo_full_3: known.servo_full_3,
+        servo_full_4: known.servo_full_4,
         ..Params::DEFAULT
     };
     assert_eq!(known, labels);
@@ -100,7 +115,14 @@ fn params_of_the_file_and_the_command_line_win() {
     };
     let s = Scenario::parse("[vehicle]\nthrust_max_n = 9.5", "f", &overrides).unwrap();
     assert_eq!(s.params.thrust_max, 8.3);
-    assert_eq!(keys(&s), ["vehicle.thrust_max_n"]);
+    assert_eq!(s.differences()[0].key, "vehicle.thrust_max_n");
+    // The others are marks of servos, which arming demands.
+    assert!(
+        keys(&s)
+            .iter()
+            .skip(1)
+            .all(|key| key.starts_with("vehicle.servo_"))
+    );
     assert!((s.differences()[0].percent().unwrap() + 12.63).abs() < 0.01);
 }
 
