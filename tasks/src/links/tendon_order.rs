@@ -38,8 +38,8 @@ impl TendonOrder {
 pub struct TendonForces {
     /// Per arm.
     pub arms: PerArm<TendonForce>,
-    /// The tendons were found wound at power-on: the servo angles must be derived from the tilt.
-    pub found: bool,
+    /// The tendons were wound at power-on: the servo angles must be derived from the tilt.
+    pub wound_at_power_on: bool,
 }
 
 /// Demand on one tendon.
@@ -48,5 +48,5 @@ pub struct TendonForce {
     /// Tension, N; 0 is slack.
     pub force: f32,
     /// Hold the servo's position and ignore the force.
-    pub stay: bool,
+    pub hold_position: bool,
 }

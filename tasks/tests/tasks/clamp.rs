@@ -107,8 +107,8 @@ impl Bench {
 }
 
 #[test]
-fn arms_that_pressed_while_they_were_kept_are_told_to_the_servos_as_found() {
-    for (kept, command, found) in [
+fn arms_that_press_before_the_first_pulse_are_reported_as_wound_at_power_on() {
+    for (kept, command, wound) in [
         // More than 80 Pa press.
         (&[500.0][..], ClampCommand::Release, true),
         (&[500.0], CLOSE, true),
@@ -128,7 +128,11 @@ fn arms_that_pressed_while_they_were_kept_are_told_to_the_servos_as_found() {
             );
         }
         bench.run(30, &World::new(command, 500.0));
-        assert_eq!(fresh(bench.0.links).unwrap().found, found, "{kept:?} {command:?}");
+        assert_eq!(
+            fresh(bench.0.links).unwrap().wound_at_power_on,
+            wound,
+            "{kept:?} {command:?}"
+        );
     }
     let mut bench = Bench::new();
     let mut world = World::new(ClampCommand::Keep, 0.0);
@@ -136,7 +140,7 @@ fn arms_that_pressed_while_they_were_kept_are_told_to_the_servos_as_found() {
     bench.run(300, &world);
     world.command = Some(ClampCommand::Release);
     bench.run(30, &world);
-    assert!(fresh(bench.0.links).unwrap().found);
+    assert!(fresh(bench.0.links).unwrap().wound_at_power_on);
 }
 
 #[test]
@@ -248,9 +252,12 @@ fn after_a_restart_closed_arms_are_sent_their_force_at_once_and_all_others_nothi
         let forces = fresh(rig.links);
         assert_eq!(forces.is_some(), sent, "{grip_memory:?}");
         if let Some(forces) = forces {
-            let asked = retained.force.map(|force| TendonForce { force, stay: true });
+            let asked = retained.force.map(|force| TendonForce {
+                force,
+                hold_position: true,
+            });
             assert_eq!(forces.arms, asked);
-            assert!(!forces.found);
+            assert!(!forces.wound_at_power_on);
         }
     }
 }

@@ -27,8 +27,11 @@ fn speak(links: &Links, running: bool, calibrated: bool) {
     links.grip_memory.send(now, GRIP);
     links.reel_angle.send(now, [2.0, 2.1, 2.2, 2.3]);
     let forces = TendonForces {
-        arms: [50.0, 51.0, 52.0, 5.0].map(|force| TendonForce { force, stay: false }),
-        found: false,
+        arms: [50.0, 51.0, 52.0, 5.0].map(|force| TendonForce {
+            force,
+            hold_position: false,
+        }),
+        wound_at_power_on: false,
     };
     links.tendons.send(now, TendonOrder::Measured(forces));
     let mut grip = GripState::default();
@@ -171,9 +174,9 @@ fn forces_that_are_resumed_or_old_are_not_kept_as_news() {
     let forces = TendonForces {
         arms: [TendonForce {
             force: 60.0,
-            stay: false,
+            hold_position: false,
         }; 4],
-        found: false,
+        wound_at_power_on: false,
     };
     rig.links
         .tendons
