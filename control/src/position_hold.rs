@@ -20,7 +20,7 @@ use crate::maths::vector::{Quat, Vec3};
 use crate::navigation::estimate::Estimate;
 use crate::params::Params;
 
-/// Largest commanded velocity, level and vertical, m/s.
+/// Largest commanded velocity, horizontal and vertical, m/s.
 pub const SPEED_MAX: f32 = 1.5;
 /// See [`SPEED_MAX`].
 pub const CLIMB_MAX: f32 = 0.7;
@@ -83,13 +83,13 @@ impl Course {
             slew(before.y, wished.y),
             slew(before.z, wished.z),
         );
-        let level = |v: Vec3| Vec3::new(v.x, v.y, 0.0);
+        let horizontal = |v: Vec3| Vec3::new(v.x, v.y, 0.0);
         let per_second = if dt > 0.0 { 1.0 / dt } else { 0.0 };
         self.asked = (self.wished - before) * per_second;
         let per = 1.0 / (COURSE_STAGE + dt);
-        self.turning = level(self.wished - self.between) * per;
+        self.turning = horizontal(self.wished - self.between) * per;
         self.between += self.turning * dt;
-        self.gained = level(self.between - self.speed) * per;
+        self.gained = horizontal(self.between - self.speed) * per;
         self.speed += self.gained * dt;
         // The height loop has no such lag: it uses the commanded acceleration directly.
         self.speed.z = self.wished.z;
@@ -203,15 +203,15 @@ impl PositionHold {
     /// Limits the distance of the held point from the vehicle.
     fn leash(&mut self, position: Vec3) {
         let off = self.anchor - position;
-        let level = Vec3::new(off.x, off.y, 0.0);
-        let over = scalar::clamp(LEASH * scalar::inv_sqrt(level.norm_squared()), 0.0, 1.0);
-        let level = if level.norm_squared() > LEASH * LEASH {
-            level * over
+        let horizontal = Vec3::new(off.x, off.y, 0.0);
+        let over = scalar::clamp(LEASH * scalar::inv_sqrt(horizontal.norm_squared()), 0.0, 1.0);
+        let horizontal = if horizontal.norm_squared() > LEASH * LEASH {
+            horizontal * over
         } else {
-            level
+            horizontal
         };
         let down = scalar::clamp_abs(off.z, height::LEASH);
-        self.anchor = position + level + Vec3::new(0.0, 0.0, down);
+        self.anchor = position + horizontal + Vec3::new(0.0, 0.0, down);
     }
 
     /// The lateral disturbance, from which the wind is learnt. In contact the learnt wind replaces it.

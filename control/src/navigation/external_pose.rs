@@ -158,12 +158,12 @@ pub struct ExternalPoseMonitor {
     origin: Vec3,
     began_us: u64,
     before: Option<Before>,
-    level: Departure,
+    horizontal: Departure,
     down: Departure,
     /// Yaw offset, pose heading less the vehicle's own, rad; `None` before the first pose.
     yaw_offset: Option<f32>,
     /// Weight of the poses whose heading steps away from it, and the time at which the heading became distrusted, µs.
-    /// It is trusted again when the old heading returns or the level displacement agrees with the new one.
+    /// It is trusted again when the old heading returns or the horizontal displacement agrees with the new one.
     turns: u32,
     turned_us: Option<u64>,
     same: u32,
@@ -268,7 +268,7 @@ impl ExternalPoseMonitor {
             .is_some_and(|since| at.saturating_sub(since) < DEAD_RECKONING_INVALID_AGE);
         let found = if self.same >= FROZEN_FIXES && flies {
             Some(PoseFault::Frozen)
-        } else if self.down.wrong || (self.level.wrong && !turned) {
+        } else if self.down.wrong || (self.horizontal.wrong && !turned) {
             Some(PoseFault::Disagrees)
         } else {
             // The estimate from before the turn is sound, and dead reckoning continues on it.
@@ -287,12 +287,12 @@ impl ExternalPoseMonitor {
         let off = scalar::wrap_pi(yaw_offset - known);
         let same = off.abs() < TURN_STEP;
         if self.turned_us.is_some() {
-            if same || !self.level.wrong {
+            if same || !self.horizontal.wrong {
                 self.turned_us = None;
-                self.level.wrong = false;
+                self.horizontal.wrong = false;
                 self.yaw_offset = Some(yaw_offset);
             }
-        } else if self.level.wrong || anew || same {
+        } else if self.horizontal.wrong || anew || same {
             let gain = if same { TURN_GAIN } else { 1.0 };
             self.yaw_offset = Some(scalar::wrap_pi(known + gain * off));
             self.turns = self.turns.saturating_sub(1);
@@ -301,7 +301,7 @@ impl ExternalPoseMonitor {
             if self.turns >= REFUSED_MAX {
                 self.turns = 0;
                 self.turned_us = Some(at);
-                self.level = Departure::doubted();
+                self.horizontal = Departure::doubted();
             }
         }
     }
@@ -365,11 +365,12 @@ impl ExternalPoseMonitor {
     fn compare(&mut self, seen: Vec3, fix: &Fix, then: &StateSnapshot, dt: f32) {
         let seen = about_down(seen, then.yaw() - fix.heading);
         let felt = then.swing;
-        let level = |v: Vec3| Vec3::new(v.x, v.y, 0.0);
+        let horizontal = |v: Vec3| Vec3::new(v.x, v.y, 0.0);
         let down = |v: Vec3| Vec3::new(0.0, 0.0, v.z);
         // Part of white noise at 50 Hz that passes the band.
         let noise = fix.variance() * (0.5 * CORNER * dt);
-        self.level.step(level(seen), level(felt), noise.x + noise.y, dt);
+        self.horizontal
+            .step(horizontal(seen), horizontal(felt), noise.x + noise.y, dt);
         self.down.step(down(seen), down(felt), noise.z, dt);
     }
 }

@@ -77,8 +77,8 @@ impl World {
             }
             let [[f, ..], [r, ..]] = self.tilt;
             let up = thrust / p.mass - GRAVITY;
-            let level = about_down(Vec3::new(f, r, 0.0), self.yaw + self.e.yaw_offset);
-            let a = level + self.wind - Vec3::new(0.0, 0.0, up);
+            let horizontal = about_down(Vec3::new(f, r, 0.0), self.yaw + self.e.yaw_offset);
+            let a = horizontal + self.wind - Vec3::new(0.0, 0.0, up);
             self.e.velocity += a * dt;
             self.e.position += self.e.velocity * dt;
         }

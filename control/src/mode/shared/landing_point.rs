@@ -25,7 +25,7 @@ const ASIDE_MAX: f32 = 4.0;
 /// The sidestep off the pipe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Aside {
-    /// Level unit vector in the estimate's axes.
+    /// Horizontal unit vector in the estimate's axes.
     direction: Vec3,
     /// Remaining time without support and remaining time in all, s.
     left: f32,
@@ -42,7 +42,7 @@ impl Aside {
     }
 }
 
-/// Level unit vector to the side of the nose towards which the vehicle moves, in the estimate's axes.
+/// Horizontal unit vector to the side of the nose towards which the vehicle moves, in the estimate's axes.
 fn sideways(step: &Step<'_>) -> Option<Vec3> {
     let (estimate, motion) = (step.inputs.position?, step.inputs.motion?);
     let nose = motion.q.to_euler().2 + estimate.yaw_offset;
@@ -69,7 +69,7 @@ impl LandingPoint {
         Self::begin(hold, None, step)
     }
 
-    /// Lands at the point that `law` holds, or beside the pipe in the direction `off_pipe`, a level unit vector in the
+    /// Lands at the point that `law` holds, or beside the pipe in the direction `off_pipe`, a horizontal unit vector in the
     /// estimate's axes.
     pub fn off_approach(law: PositionHold, off_pipe: Option<Vec3>, step: &mut Step<'_>) -> Self {
         let aside = off_pipe
@@ -132,9 +132,9 @@ impl LandingPoint {
         }
         let nose = step.inputs.motion.map_or(0.0, |m| m.q.to_euler().2) + estimate.yaw_offset;
         let speed = if carried { 0.0 } else { ASIDE_SPEED };
-        let level = about_down(aside.direction, -nose) * speed;
+        let sideways = about_down(aside.direction, -nose) * speed;
         Some(VelocityCommand {
-            velocity: Vec3::new(level.x, level.y, -ASIDE_CLIMB),
+            velocity: Vec3::new(sideways.x, sideways.y, -ASIDE_CLIMB),
             ..VelocityCommand::default()
         })
     }

@@ -207,7 +207,7 @@ fn late_flow_of_a_vehicle_that_turns_gives_its_velocity_and_range_its_height() {
     assert_eq!(r.fault(), None);
 }
 
-/// Level velocity and height that an estimator with the lens `known` has of one whose lens is at `lens`: what they are off,
+/// Horizontal velocity and height that an estimator with the lens `known` has of one whose lens is at `lens`: what they are off,
 /// m/s RMS and m at most.
 fn off_by_lever(lens: Vec3, known: Vec3) -> [f32; 2] {
     let mut r = Rig::with_lens(lens, known);
