@@ -82,7 +82,7 @@ pub struct Context {
     pub power_up_grip: PowerUpGripCheck,
     pub lean: Lean,
     pub fall: Fall,
-    pub crown: CrownOffset,
+    pub crown_offset: CrownOffset,
     /// Acceleration along world down, m/s².
     pub accel_down: f32,
     /// Vertical speed from the integral of this acceleration, independent of the position estimate.
@@ -121,7 +121,7 @@ impl Context {
             power_up_grip: PowerUpGripCheck::default(),
             lean: Lean::new(params),
             fall: Fall::default(),
-            crown: CrownOffset::default(),
+            crown_offset: CrownOffset::default(),
             accel_down: 0.0,
             vertical_fallback: VerticalFallback::default(),
             collective: Collective::default(),
@@ -165,7 +165,7 @@ impl Context {
             lift: i.lift,
         });
         self.contact_force.step(sample, dt);
-        self.crown.step(i.lift, i.roll_moment, &self.contact_force, dt);
+        self.crown_offset.step(i.lift, i.roll_moment, &self.contact_force, dt);
         self.accel_down = sample.map_or(0.0, |f| f.down);
         self.fall.step(self.accel_down, &self.contact_force, dt);
         self.lean
@@ -207,7 +207,7 @@ impl Context {
 
     /// Side of the vehicle on which the crown lies, while it rests beside it.
     pub fn crown_side(&self) -> Option<Reason> {
-        self.crown.side().map(|side| match side {
+        self.crown_offset.side().map(|side| match side {
             CrownSide::Left => Reason::CrownLeft,
             CrownSide::Right => Reason::CrownRight,
         })

@@ -559,7 +559,7 @@ fn the_place_of_the_pipe_is_taken_with_its_time_and_direction() {
     let (target, counts) = placed(&pipe());
     let target = target.unwrap();
     assert_eq!(
-        (target.at_us, target.crown.to_array()),
+        (target.at_us, target.crown_position.to_array()),
         (4_990_000, [2.0, 0.0, -1.5])
     );
     assert!((target.heading.unwrap() - 0.25 * core::f32::consts::PI).abs() < 1e-3);

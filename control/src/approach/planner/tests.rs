@@ -11,7 +11,7 @@ const REACH: f32 = 2.5;
 struct World {
     heading: f32,
     right: f32,
-    crown: f32,
+    crown_z: f32,
     ground: Option<f32>,
     radius: f32,
     /// Of the ends from the origin, along the heading, m.
@@ -27,7 +27,7 @@ struct World {
 const WORLD: World = World {
     heading: 0.4,
     right: 0.3,
-    crown: 0.7,
+    crown_z: 0.7,
     ground: Some(2.2),
     radius: 0.15,
     ends: (-1.0, 1.0),
@@ -54,7 +54,7 @@ impl World {
         let on = y.abs() < self.radius
             && (self.ends.0..self.ends.1).contains(&x)
             && !(self.missed.0..self.missed.1).contains(&x);
-        let pipe = self.crown + self.radius - (self.radius * self.radius - y * y).max(0.0).sqrt();
+        let pipe = self.crown_z + self.radius - (self.radius * self.radius - y * y).max(0.0).sqrt();
         let dip = if y > self.dip.1 { self.dip.0 } else { 0.0 };
         let z = if on {
             Some(pipe)
@@ -108,7 +108,7 @@ fn flown(world: World, law: ApproachPlanner) -> (Result<(), ApproachAbort>, Vec3
             Err(doubt) => return (Err(doubt), held, law, i as f32 * DT),
         }
         let (y, _) = world.beside(held);
-        let touches = y.abs() < world.radius && held.z > world.crown - 0.05;
+        let touches = y.abs() < world.radius && held.z > world.crown_z - 0.05;
         if law.has_left() || (touches && law.committed()) {
             return (Ok(()), held, law, i as f32 * DT);
         }
@@ -206,7 +206,7 @@ fn it_sinks_no_faster_than_it_may_and_only_over_the_crown() {
         assert!(v.z <= DESCENT && v.x.hypot(v.y) < 0.5, "{v:?}");
         held += about_down(v, world.heading) * DT;
         let (y, _) = world.beside(held);
-        let range = world.crown - held.z;
+        let range = world.crown_z - held.z;
         assert!(range > LOW - 0.1 || y.abs() < 0.05, "{range} m over it at {y} m");
         if law.phase == Phase::Commit {
             assert!(v.y.abs() <= CORRECT_SPEED, "{v:?}");
@@ -272,7 +272,7 @@ fn a_range_that_shows_higher_steps_than_before_ends_it() {
                 Err(ApproachAbort::RangeLong | ApproachAbort::RangeMisfit | ApproachAbort::PipeLost)
             );
             assert!(found, "{from} {ground}: {end:?} {law:?}");
-            let above = world.crown - at.z;
+            let above = world.crown_z - at.z;
             assert!(
                 above > 0.15 && seconds < f32::from(from) + 6.0,
                 "{from} {ground}: {above} m, {seconds} s"
@@ -406,10 +406,10 @@ fn another_try_climbs_before_it_searches_and_leaving_only_climbs() {
 /// From 0.65 m over the crown another try climbed by 0.4 m more, from where the ground was out of the range's reach.
 #[test]
 fn another_try_from_a_search_climbs_no_higher_than_over_what_it_has_met() {
-    for (crown, climbs) in [(0.3, HIGH - 0.3), (0.65, 0.0)] {
+    for (crown_z, climbs) in [(0.3, HIGH - 0.3), (0.65, 0.0)] {
         let world = World {
             right: 0.0,
-            crown,
+            crown_z,
             ..WORLD
         };
         let mut law = begun(&world);
@@ -435,14 +435,14 @@ fn another_try_from_a_search_climbs_no_higher_than_over_what_it_has_met() {
         }
         assert_eq!(law.phase, Phase::Search);
         let again = law.retried(&Params::default(), &view, world.heading, 0);
-        assert!((again.up + climbs).abs() < 1e-5, "{crown}: {}", again.up);
+        assert!((again.up + climbs).abs() < 1e-5, "{crown_z}: {}", again.up);
     }
 }
 
 /// Over the crown on the way down: at `range` m, sinking at `sinks` m/s, the newest flow `age` s old.
 fn descending(range: f32, sinks: f32, age: f32) -> (ApproachPlanner, View) {
     let world = World { right: 0.0, ..WORLD };
-    let place = Vec3::new(0.0, 0.0, world.crown - range);
+    let place = Vec3::new(0.0, 0.0, world.crown_z - range);
     let view = View {
         position: place,
         velocity: Vec3::new(0.0, 0.0, sinks),
@@ -457,7 +457,7 @@ fn descending(range: f32, sinks: f32, age: f32) -> (ApproachPlanner, View) {
         target: None,
     };
     let mut law = begun(&world);
-    (law.phase, law.top) = (Phase::Descend, world.crown);
+    (law.phase, law.crown_z) = (Phase::Descend, world.crown_z);
     (law, view)
 }
 
@@ -475,11 +475,11 @@ fn it_stops_at_the_gate_where_it_is_not_known_to_touch_on_the_crown() {
         let (mut law, mut view) = descending(LOW, 0.0, 0.02);
         let (mut speed, mut nearest) = (0.0, f32::MAX);
         for i in 1..800u32 {
-            let range = WORLD.crown - view.position.z;
+            let range = WORLD.crown_z - view.position.z;
             nearest = nearest.min(range);
             view.velocity.y = if range < gust { 2.0 * GATE_SPEED } else { 0.0 };
             view.range_hit.count = (i % 256) as u8;
-            view.range_hit.surface_point = Some(Vec3::new(0.0, 0.0, WORLD.crown));
+            view.range_hit.surface_point = Some(Vec3::new(0.0, 0.0, WORLD.crown_z));
             let wish = law.step(&view, DT).unwrap();
             if law.phase == Phase::Commit {
                 break;
@@ -491,7 +491,7 @@ fn it_stops_at_the_gate_where_it_is_not_known_to_touch_on_the_crown() {
             view.position.z += view.velocity.z * DT;
         }
         assert!(nearest > 0.085, "{gust}: {nearest} m");
-        let stands = (WORLD.crown - view.position.z - GATE).abs() < 0.01;
+        let stands = (WORLD.crown_z - view.position.z - GATE).abs() < 0.01;
         assert!(stands || law.phase == Phase::Commit, "{gust}: {view:?}");
     }
 }
@@ -523,7 +523,7 @@ fn without_a_pose_it_climbs_from_the_pipe() {
         let (mut law, mut view) = descending(1.5 * GATE, 0.0, age);
         view.position.y += aside;
         let target = PipeTarget {
-            crown: Vec3::new(0.0, 0.0, WORLD.crown),
+            crown_position: Vec3::new(0.0, 0.0, WORLD.crown_z),
             ..PipeTarget::default()
         };
         (law, view.target) = (law.to(&target), Some(target));
@@ -538,7 +538,7 @@ fn without_a_pose_it_climbs_from_the_pipe() {
 fn a_search_about_where_the_pipe_was_finds_it_from_where_an_escape_ends() {
     let world = World {
         right: -2.3,
-        crown: 0.2,
+        crown_z: 0.2,
         ground: Some(1.7),
         ..WORLD
     };
@@ -558,8 +558,8 @@ fn a_search_about_where_the_pipe_was_finds_it_from_where_an_escape_ends() {
     );
     // The flow has drifted by as much as 0.6 m meanwhile.
     for drift in [-0.6, 0.0, 0.6] {
-        let crown = about_down(Vec3::new(0.1, world.right + drift, world.crown), world.heading);
-        let law = ApproachPlanner::back_to(crown, &p, &view, world.heading, 0);
+        let crown_position = about_down(Vec3::new(0.1, world.right + drift, world.crown_z), world.heading);
+        let law = ApproachPlanner::back_to(crown_position, &p, &view, world.heading, 0);
         let (end, at, law, seconds) = flown(world, law);
         assert_eq!(end, Ok(()), "{drift}: {law:?}");
         let (y, x) = world.beside(at);

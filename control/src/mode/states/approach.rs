@@ -9,7 +9,7 @@ use crate::maths::vector::Vec3;
 use crate::mode::behaviour::Behaviour;
 use crate::mode::context::{Context, Step};
 use crate::mode::inputs::Inputs;
-use crate::mode::inputs::auto_perch::TRIES;
+use crate::mode::inputs::auto_perch::{LastCrown, TRIES};
 use crate::mode::reason::Reason;
 use crate::navigation::estimate::Estimate;
 use crate::pilot::stick_positions::{centred, keeps_hold};
@@ -65,12 +65,12 @@ impl Approach {
 
     /// Climbs off the pipe: `left` ends there, otherwise a new search follows.
     pub fn climb(step: &mut Step<'_>, left: bool) -> Self {
-        let crown = step.context.auto_perch.crown.filter(|_| !left);
+        let crown = step.context.auto_perch.last_crown.filter(|_| !left);
         Self::begin(None, step, |step, view, e| {
             let (params, heading) = (&step.context.params, heading(step, e));
             match crown {
-                Some((crown, reset_count)) if reset_count == e.reset_count => {
-                    ApproachPlanner::back_to(crown, params, view, heading, reset_count)
+                Some(crown) if crown.reset_count == e.reset_count => {
+                    ApproachPlanner::back_to(crown.position, params, view, heading, e.reset_count)
                 }
                 _ => ApproachPlanner::again(params, view, heading, e.reset_count, left),
             }
@@ -118,7 +118,7 @@ impl Approach {
         self.planner.has_left()
     }
 
-    /// Level unit vector off the pipe for a vehicle at `position`, in the estimate's axes; `None` if unknown.
+    /// Horizontal unit vector off the pipe for a vehicle at `position`, in the estimate's axes; `None` if unknown.
     pub fn off_pipe(&self, position: Vec3) -> Option<Vec3> {
         self.planner.off_pipe(position)
     }
@@ -136,8 +136,11 @@ impl Approach {
         if self.planner.has_left() {
             self.abort_reason = self.pending_abort_reason;
         }
-        let crown = self.planner.crown().map(|crown| (crown, estimate.reset_count));
-        step.context.auto_perch.crown = crown.or(step.context.auto_perch.crown);
+        let crown = self.planner.crown_position().map(|position| LastCrown {
+            position,
+            reset_count: estimate.reset_count,
+        });
+        step.context.auto_perch.last_crown = crown.or(step.context.auto_perch.last_crown);
         step.context.vertical_fallback.steady = self.planner.near_crown(&seen);
         let wish = result.unwrap_or_else(|doubt| {
             match doubt {

@@ -211,7 +211,7 @@ fn a_radio_lost_over_the_pipe_leads_away_from_it() {
 fn said(off: Vec3) -> Option<PipeTarget> {
     Some(PipeTarget {
         at_us: 1,
-        crown: Vec3::new(0.0, RIGHT, -CROWN) + off,
+        crown_position: Vec3::new(0.0, RIGHT, -CROWN) + off,
         heading: Some(crate::maths::scalar::PI),
     })
 }
@@ -273,7 +273,7 @@ fn a_place_of_the_pipe_that_is_stale_far_or_jumps_ends_it_by_its_name() {
         (said(Vec3::new(0.0, 0.0, -1.5)), Reason::TargetFar),
         (
             Some(PipeTarget {
-                crown: Vec3::new(f32::NAN, 0.0, 0.0),
+                crown_position: Vec3::new(f32::NAN, 0.0, 0.0),
                 ..said(Vec3::ZERO).unwrap_or_default()
             }),
             Reason::TargetStale,
