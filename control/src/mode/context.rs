@@ -1,8 +1,8 @@
 //! State that outlives a mode: parameters, the pilot's switches, evidence of support and lean, dangers, the collective.
 
 use super::inputs::Inputs;
+use super::inputs::actuator_tests::ActuatorTests;
 use super::inputs::auto_perch::AutoPerch;
-use super::inputs::bench::Bench;
 use super::inputs::dangers::Dangers;
 use super::inputs::remote::{self, Remote};
 use super::reason::Reason;
@@ -91,7 +91,7 @@ pub struct Context {
     pub ground_probe: GroundProbe,
     /// Number of times that the arms have tightened since they closed.
     pub tightened: u8,
-    pub bench: Bench,
+    pub actuator_tests: ActuatorTests,
     pub remote: Remote,
     pub auto_perch: AutoPerch,
     /// A reason and its remaining display time, s.
@@ -127,7 +127,7 @@ impl Context {
             collective: Collective::default(),
             ground_probe: GroundProbe::default(),
             tightened: 0,
-            bench: Bench::default(),
+            actuator_tests: ActuatorTests::default(),
             remote: Remote::default(),
             auto_perch: AutoPerch::default(),
             note: (None, 0.0),
@@ -165,7 +165,8 @@ impl Context {
             lift: i.lift,
         });
         self.contact_force.step(sample, dt);
-        self.crown_offset.step(i.lift, i.roll_moment, &self.contact_force, dt);
+        self.crown_offset
+            .step(i.lift, i.roll_moment, &self.contact_force, dt);
         self.accel_down = sample.map_or(0.0, |f| f.down);
         self.fall.step(self.accel_down, &self.contact_force, dt);
         self.lean
@@ -178,7 +179,7 @@ impl Context {
         self.gesture = remote::gesture(order).or(self.gesture);
         self.remote.kill = order == RemoteOrder::Kill;
         if self.gesture == Some(Gesture::Disarm) {
-            self.bench.stop();
+            self.actuator_tests.stop();
         }
     }
 

@@ -466,8 +466,8 @@ fn give(links: &Links, at: Instant, requests: CommanderRequests) {
     if let Some(request) = requests.remote {
         links.remote.send(at, request);
     }
-    if let Some(request) = requests.bench {
-        links.bench.send(at, request);
+    if let Some(request) = requests.actuator_test {
+        links.actuator_test.send(at, request);
     }
 }
 
@@ -535,7 +535,7 @@ fn picture(links: &Links, reels: &PerArm<Reel>) -> Vehicle {
 /// Replies to the latest orders, of any line.
 fn answers(links: &Links) -> Answers {
     Answers {
-        bench: links.bench_view(),
+        actuator_test: links.actuator_test_view(),
         newest: links.remote.look(|m| m.value.number).unwrap_or(0),
         renewed: links.remote.fresh().is_some(),
         remote: links.remote_answer.fresh().unwrap_or_default(),

@@ -1,7 +1,7 @@
 //! Tendon forces demanded by the clamp, and the input that they are based on.
 
 use sophie_control::allocation::wrench::PerArm;
-use sophie_control::pilot::bench_orders::Place;
+use sophie_control::pilot::actuator_test::Place;
 
 /// Demanded tendon forces, by the input that they are based on; the message is stamped with that input's time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,7 +12,7 @@ pub enum TendonOrder {
     Blind(TendonForces),
     /// Retained from before a restart, sent once at the start: the servos hold their position until a command arrives.
     Resumed(TendonForces),
-    /// Bench test: one servo at a given pulse; the forces of the others are zero.
+    /// Actuator test: one servo at a given pulse; the forces of the others are zero.
     Placed {
         /// Per arm.
         forces: TendonForces,

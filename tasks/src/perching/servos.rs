@@ -4,7 +4,7 @@
 //! vehicle is on the pipe at power-up, the gears hold. After a restart the drives resume from the retained angles.
 //! With stale forces the servos hold; also with a missing tilt, unless the arm is to be released.
 //!
-//! A servo with uncalibrated marks gets pulses only in bench tests: the default marks may lie beyond an end stop,
+//! A servo with uncalibrated marks gets pulses only in actuator tests: the default marks may lie beyond an end stop,
 //! where the stall current would burn the servo.
 //!
 //! The task ends the chain from contact pressure to pulse and measures it (`ChainWatch`).

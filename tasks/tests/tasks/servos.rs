@@ -5,7 +5,7 @@ use sophie_control::allocation::wrench::PerArm;
 use sophie_control::arming::ArmingInhibit;
 use sophie_control::gripper::retained_grip::GripMemory;
 use sophie_control::params::{Params, ServoMarks};
-use sophie_control::pilot::bench_orders::Place;
+use sophie_control::pilot::actuator_test::Place;
 use sophie_control::pilot::rc::ArmChoice;
 use sophie_ports::retained::StartCause;
 use sophie_tasks::links::Links;

@@ -28,7 +28,7 @@ pub fn calibrated(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Disar
     let grip_memory = from.behaviour().grip_memory();
     Disarmed {
         grip_memory: step.context.after_switch(step.inputs.sticks, grip_memory),
-        bench: None,
+        actuator_test: None,
     }
 }
 
@@ -46,7 +46,7 @@ pub fn stopped(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Disarmed
     };
     Disarmed {
         grip_memory,
-        bench: None,
+        actuator_test: None,
     }
 }
 

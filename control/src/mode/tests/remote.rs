@@ -8,7 +8,9 @@ use crate::gripper::clamp_command::ClampCommand;
 use crate::gripper::grip::ArmState;
 use crate::mode::inputs::remote::GRAB_WAIT;
 use crate::mode::*;
-use crate::pilot::bench_orders::{BenchOrder, BenchRefusal, BenchRequest, BenchState, SPIN_DRIVE, Spin};
+use crate::pilot::actuator_test::{
+    ActuatorTest, ActuatorTestRefusal, ActuatorTestRequest, ActuatorTestState, SPIN_DRIVE, Spin,
+};
 use crate::pilot::rc::ArmChoice;
 use crate::pilot::remote::RemoteOrder::{self, Arm, Disarm, Grab, Kill, Release};
 use crate::pilot::remote::{RemoteRefusal, RemoteRequest};
@@ -159,14 +161,17 @@ fn a_kill_on_the_pipe_keeps_the_arms_closed() {
 fn disarming_ends_what_is_tried_on_the_bench() {
     for order in [Disarm, Kill] {
         let mut r = Rig::disarmed();
-        let spin = BenchOrder::Spin(Spin::at(0, SPIN_DRIVE));
-        for (number, order) in (1..).zip([BenchOrder::PropellersOff, spin]) {
-            r.inputs.bench = Some(BenchRequest { number, order });
+        let spin = ActuatorTest::Spin(Spin::at(0, SPIN_DRIVE));
+        for (number, order) in (1..).zip([ActuatorTest::PropellersOff, spin]) {
+            r.inputs.actuator_test = Some(ActuatorTestRequest { number, order });
             r.step();
         }
-        assert_eq!(r.out.bench.state, BenchState::Running);
+        assert_eq!(r.out.actuator_test.state, ActuatorTestState::Running);
         assert_eq!(r.remote(order), None);
-        assert_eq!(r.out.bench.state, BenchState::Ended(BenchRefusal::Disarm));
+        assert_eq!(
+            r.out.actuator_test.state,
+            ActuatorTestState::Ended(ActuatorTestRefusal::Disarm)
+        );
         assert_eq!(r.out.rotors, Setpoint::Stop);
     }
 }

@@ -1,7 +1,8 @@
-//! Orders to the commander: arming, gripper and bench tests. Each is acknowledged when the commander has answered.
+//! Orders to the commander: arming, gripper and actuator tests. Each is acknowledged when the commander has answered.
 
-use sophie_control::pilot::bench_orders::{
-    BenchOrder, BenchRefusal, BenchRequest, BenchState, PLACE_TIME, Place, SPIN_TIME, Spin,
+use sophie_control::pilot::actuator_test::{
+    ActuatorTest, ActuatorTestRefusal, ActuatorTestRequest, ActuatorTestState, PLACE_TIME, Place, SPIN_TIME,
+    Spin,
 };
 use sophie_control::pilot::remote::{RemoteOrder, RemoteRefusal, RemoteRequest};
 
@@ -25,8 +26,8 @@ const FIRST_SERVO: u32 = 5;
 pub struct CommanderRequests {
     /// Arming and gripper.
     pub remote: Option<RemoteRequest>,
-    /// Bench tests.
-    pub bench: Option<BenchRequest>,
+    /// Actuator tests.
+    pub actuator_test: Option<ActuatorTestRequest>,
 }
 
 /// The part of the server that acknowledges a waiting command. What another part ends does not acknowledge it: a motor
@@ -35,8 +36,8 @@ pub struct CommanderRequests {
 pub(super) enum Answerer {
     /// Arming and gripper, by the commander.
     Remote,
-    /// Bench tests, by the commander.
-    Bench,
+    /// Actuator tests, by the commander.
+    ActuatorTest,
     /// The procedure of calibrations.
     Calibration,
     /// The board: rows of a report, brown-out level.
@@ -52,20 +53,20 @@ struct Pending {
     since: u64,
 }
 
-/// A bench test.
+/// An actuator test.
 #[derive(Clone, Copy, Debug)]
 struct Trial {
     /// The number is 0 before it is sent.
-    request: BenchRequest,
+    request: ActuatorTestRequest,
     /// Its end, µs.
     until: u64,
 }
 
 impl Trial {
     /// A test that begins at `now`, µs, and lasts `seconds` at most.
-    fn new(order: BenchOrder, now: u64, seconds: f32) -> Self {
+    fn new(order: ActuatorTest, now: u64, seconds: f32) -> Self {
         Self {
-            request: BenchRequest { number: 0, order },
+            request: ActuatorTestRequest { number: 0, order },
             until: now.saturating_add((seconds * 1e6) as u64),
         }
     }
@@ -78,7 +79,7 @@ pub struct Orders {
     /// The number is 0 before it is sent.
     remote: Option<RemoteRequest>,
     trial: Option<Trial>,
-    /// Number of this line's newest bench order.
+    /// Number of this line's newest actuator test.
     own: u32,
 }
 
@@ -115,11 +116,11 @@ impl Services {
         } else if number == MavCmd::MAV_CMD_USER_1 as u32 {
             let [first, ..] = command.params;
             match whole(first) {
-                Some(1) => self.try_on_bench(
+                Some(1) => self.try_actuator(
                     command,
                     from,
                     now,
-                    Trial::new(BenchOrder::PropellersOff, now, 0.0),
+                    Trial::new(ActuatorTest::PropellersOff, now, 0.0),
                 ),
                 _ => Some(self.deny("1 confirms that propellers are off")),
             }
@@ -181,20 +182,20 @@ impl Services {
         };
         let spin = Spin::at(rotor as usize - 1, throttle / 100.0);
         let order = if throttle <= 0.0 || throttle.is_nan() {
-            BenchOrder::End
+            ActuatorTest::End
         } else if by_pulse {
-            BenchOrder::Spin(Spin {
+            ActuatorTest::Spin(Spin {
                 drive: vehicle.motor_pulses.command(throttle),
                 probes: true,
                 ..spin
             })
         } else {
-            BenchOrder::Spin(spin)
+            ActuatorTest::Spin(spin)
         };
         // 0, or not given, means the longest time.
         let shorter = seconds > 0.0 && seconds < SPIN_TIME;
         let seconds = if shorter { seconds } else { SPIN_TIME };
-        self.try_on_bench(command, from, now, Trial::new(order, now, seconds))
+        self.try_actuator(command, from, now, Trial::new(order, now, seconds))
     }
 
     fn set_servo(&mut self, command: &Command, from: Peer, now: u64) -> Option<MavResult> {
@@ -204,14 +205,14 @@ impl Services {
             return Some(self.deny("outputs 5 to 8 are the servos"));
         };
         let order = if pulse_us > 0.0 {
-            BenchOrder::Place(Place {
+            ActuatorTest::Place(Place {
                 servo: servo as usize,
                 pulse_us,
             })
         } else {
-            BenchOrder::End
+            ActuatorTest::End
         };
-        self.try_on_bench(command, from, now, Trial::new(order, now, PLACE_TIME))
+        self.try_actuator(command, from, now, Trial::new(order, now, PLACE_TIME))
     }
 
     fn give(
@@ -234,8 +235,8 @@ impl Services {
         })
     }
 
-    fn try_on_bench(&mut self, command: &Command, from: Peer, now: u64, trial: Trial) -> Option<MavResult> {
-        let begun = self.begin(command.number, from, now, Answerer::Bench);
+    fn try_actuator(&mut self, command: &Command, from: Peer, now: u64, trial: Trial) -> Option<MavResult> {
+        let begun = self.begin(command.number, from, now, Answerer::ActuatorTest);
         begun.err().unwrap_or_else(|| {
             self.orders.trial = Some(trial);
             None
@@ -302,7 +303,7 @@ impl Services {
     pub fn requests(&mut self, now: u64, vehicle: &Vehicle) -> CommanderRequests {
         CommanderRequests {
             remote: self.remote(now, vehicle),
-            bench: self.bench(now, vehicle),
+            actuator_test: self.actuator_test(now, vehicle),
         }
     }
 
@@ -338,8 +339,11 @@ impl Services {
         None
     }
 
-    fn bench(&mut self, now: u64, vehicle: &Vehicle) -> Option<BenchRequest> {
-        let (view, late) = (vehicle.answers.bench, self.is_late(Answerer::Bench, now));
+    fn actuator_test(&mut self, now: u64, vehicle: &Vehicle) -> Option<ActuatorTestRequest> {
+        let (view, late) = (
+            vehicle.answers.actuator_test,
+            self.is_late(Answerer::ActuatorTest, now),
+        );
         let trial = self.orders.trial.as_mut()?;
         if trial.request.number == 0 {
             match view.next(self.orders.own) {
@@ -349,7 +353,7 @@ impl Services {
                 }
                 Err(why) => {
                     self.orders.trial = None;
-                    self.settle_refused(Answerer::Bench, why.text());
+                    self.settle_refused(Answerer::ActuatorTest, why.text());
                     return None;
                 }
             }
@@ -358,24 +362,26 @@ impl Services {
         let state = (view.answer.number == request.number).then_some(view.answer.state);
         match state {
             None if !late => return Some(request),
-            Some(BenchState::Running) => {
+            Some(ActuatorTestState::Running) => {
                 if now >= until {
-                    trial.request = BenchRequest {
+                    trial.request = ActuatorTestRequest {
                         number: 0,
-                        order: BenchOrder::End,
+                        order: ActuatorTest::End,
                     };
                 }
-                self.settle(Answerer::Bench, MavResult::MAV_RESULT_ACCEPTED);
+                self.settle(Answerer::ActuatorTest, MavResult::MAV_RESULT_ACCEPTED);
                 return Some(request);
             }
-            None => self.say_silent(Answerer::Bench),
-            Some(BenchState::Done) => self.settle(Answerer::Bench, MavResult::MAV_RESULT_ACCEPTED),
-            Some(BenchState::Refused(BenchRefusal::OutOfRange)) => {
-                let result = self.deny(BenchRefusal::OutOfRange.text());
-                self.settle(Answerer::Bench, result);
+            None => self.say_silent(Answerer::ActuatorTest),
+            Some(ActuatorTestState::Done) => {
+                self.settle(Answerer::ActuatorTest, MavResult::MAV_RESULT_ACCEPTED)
             }
-            Some(BenchState::Refused(why) | BenchState::Ended(why)) => {
-                self.settle_refused(Answerer::Bench, why.text())
+            Some(ActuatorTestState::Refused(ActuatorTestRefusal::OutOfRange)) => {
+                let result = self.deny(ActuatorTestRefusal::OutOfRange.text());
+                self.settle(Answerer::ActuatorTest, result);
+            }
+            Some(ActuatorTestState::Refused(why) | ActuatorTestState::Ended(why)) => {
+                self.settle_refused(Answerer::ActuatorTest, why.text())
             }
         }
         self.orders.trial = None;
