@@ -8,10 +8,10 @@ use sophie_control::pilot::remote::{RemoteOrder, RemoteRefusal, RemoteRequest};
 
 use sophie_control::calibration::procedure::Procedure;
 
-use super::{or_zero, whole};
+use super::{Received, or_zero, whole};
 use crate::services::Services;
 use crate::vehicle::Vehicle;
-use crate::wire::requests::{Command, Peer};
+use crate::wire::requests::Peer;
 use sophie_dialect::*;
 
 /// Longest time to the commander's answer, µs: fifty of its periods.
@@ -95,32 +95,27 @@ impl Orders {
 }
 
 impl Services {
-    /// Gives the order that `command` asks for; `None` if the acknowledgement comes later.
+    /// Gives the order that the command asks for; `None` if the acknowledgement comes later.
     pub(super) fn order_by(
         &mut self,
-        command: &Command,
-        from: Peer,
-        now: u64,
-        vehicle: &Vehicle,
+        received: &Received<'_>,
         procedure: &mut Procedure,
     ) -> Option<MavResult> {
-        let number = u32::from(command.number);
+        let number = u32::from(received.command.number);
         if number == MavCmd::MAV_CMD_COMPONENT_ARM_DISARM as u32 {
-            self.arm_disarm(command, from, now, procedure)
+            self.arm_disarm(received, procedure)
         } else if number == MavCmd::MAV_CMD_DO_GRIPPER as u32 {
-            self.gripper(command, from, now, procedure)
+            self.gripper(received, procedure)
         } else if number == MavCmd::MAV_CMD_DO_MOTOR_TEST as u32 {
-            self.motor_test(command, from, now, vehicle)
+            self.motor_test(received)
         } else if number == MavCmd::MAV_CMD_DO_SET_SERVO as u32 {
-            self.set_servo(command, from, now)
+            self.set_servo(received)
         } else if number == MavCmd::MAV_CMD_USER_1 as u32 {
-            let [first, ..] = command.params;
+            let [first, ..] = received.command.params;
             match whole(first) {
                 Some(1) => self.try_actuator(
-                    command,
-                    from,
-                    now,
-                    Trial::new(ActuatorTest::PropellersOff, now, 0.0),
+                    received,
+                    Trial::new(ActuatorTest::PropellersOff, received.now, 0.0),
                 ),
                 _ => Some(self.deny("1 confirms that propellers are off")),
             }
@@ -129,14 +124,8 @@ impl Services {
         }
     }
 
-    fn arm_disarm(
-        &mut self,
-        command: &Command,
-        from: Peer,
-        now: u64,
-        procedure: &mut Procedure,
-    ) -> Option<MavResult> {
-        let [what, force, ..] = command.params;
+    fn arm_disarm(&mut self, received: &Received<'_>, procedure: &mut Procedure) -> Option<MavResult> {
+        let [what, force, ..] = received.command.params;
         let order = match (whole(what), whole(or_zero(force)) == Some(FORCED)) {
             (Some(1), false) => RemoteOrder::Arm,
             (Some(1), true) => return Some(self.deny("no arming check can be forced")),
@@ -144,33 +133,21 @@ impl Services {
             (Some(0), true) => RemoteOrder::Kill,
             _ => return Some(self.deny("0 disarms, 1 arms")),
         };
-        self.give(command, from, now, order, procedure)
+        self.give(received, order, procedure)
     }
 
-    fn gripper(
-        &mut self,
-        command: &Command,
-        from: Peer,
-        now: u64,
-        procedure: &mut Procedure,
-    ) -> Option<MavResult> {
-        let [gripper, action, ..] = command.params;
+    fn gripper(&mut self, received: &Received<'_>, procedure: &mut Procedure) -> Option<MavResult> {
+        let [gripper, action, ..] = received.command.params;
         let order = match (whole(or_zero(gripper)), whole(action)) {
             (Some(0 | 1), Some(0)) => RemoteOrder::Release,
             (Some(0 | 1), Some(1)) => RemoteOrder::Grab,
             _ => return Some(self.deny("gripper 1: 0 releases, 1 grabs")),
         };
-        self.give(command, from, now, order, procedure)
+        self.give(received, order, procedure)
     }
 
-    fn motor_test(
-        &mut self,
-        command: &Command,
-        from: Peer,
-        now: u64,
-        vehicle: &Vehicle,
-    ) -> Option<MavResult> {
-        let [motor, kind, throttle, seconds, count, ..] = command.params;
+    fn motor_test(&mut self, received: &Received<'_>) -> Option<MavResult> {
+        let [motor, kind, throttle, seconds, count, ..] = received.command.params;
         let by_pulse = match whole(kind) {
             Some(kind) if kind == MotorTestThrottleType::MOTOR_TEST_THROTTLE_PERCENT as u32 => false,
             Some(kind) if kind == MotorTestThrottleType::MOTOR_TEST_THROTTLE_PWM as u32 => true,
@@ -185,7 +162,7 @@ impl Services {
             ActuatorTest::End
         } else if by_pulse {
             ActuatorTest::Spin(Spin {
-                drive: vehicle.motor_pulses.command(throttle),
+                drive: received.vehicle.motor_pulses.command(throttle),
                 probes: true,
                 ..spin
             })
@@ -195,11 +172,11 @@ impl Services {
         // 0, or not given, means the longest time.
         let shorter = seconds > 0.0 && seconds < SPIN_TIME;
         let seconds = if shorter { seconds } else { SPIN_TIME };
-        self.try_actuator(command, from, now, Trial::new(order, now, seconds))
+        self.try_actuator(received, Trial::new(order, received.now, seconds))
     }
 
-    fn set_servo(&mut self, command: &Command, from: Peer, now: u64) -> Option<MavResult> {
-        let [output, pulse_us, ..] = command.params;
+    fn set_servo(&mut self, received: &Received<'_>) -> Option<MavResult> {
+        let [output, pulse_us, ..] = received.command.params;
         let servo = whole(output).and_then(|output| output.checked_sub(FIRST_SERVO));
         let Some(servo @ 0..4) = servo else {
             return Some(self.deny("outputs 5 to 8 are the servos"));
@@ -212,14 +189,12 @@ impl Services {
         } else {
             ActuatorTest::End
         };
-        self.try_actuator(command, from, now, Trial::new(order, now, PLACE_TIME))
+        self.try_actuator(received, Trial::new(order, received.now, PLACE_TIME))
     }
 
     fn give(
         &mut self,
-        command: &Command,
-        from: Peer,
-        now: u64,
+        received: &Received<'_>,
         order: RemoteOrder,
         procedure: &mut Procedure,
     ) -> Option<MavResult> {
@@ -228,32 +203,27 @@ impl Services {
             self.acknowledge_pending(MavResult::MAV_RESULT_TEMPORARILY_REJECTED);
             self.calibrations.cancel(procedure);
         }
-        let begun = self.begin(command.number, from, now, Answerer::Remote);
+        let begun = self.begin(received, Answerer::Remote);
         begun.err().unwrap_or_else(|| {
             self.orders.remote = Some(RemoteRequest { number: 0, order });
             None
         })
     }
 
-    fn try_actuator(&mut self, command: &Command, from: Peer, now: u64, trial: Trial) -> Option<MavResult> {
-        let begun = self.begin(command.number, from, now, Answerer::ActuatorTest);
+    fn try_actuator(&mut self, received: &Received<'_>, trial: Trial) -> Option<MavResult> {
+        let begun = self.begin(received, Answerer::ActuatorTest);
         begun.err().unwrap_or_else(|| {
             self.orders.trial = Some(trial);
             None
         })
     }
 
-    /// Notes that `command` is acknowledged later, `by` one part of the server.
+    /// Notes that the command is acknowledged later, `by` one part of the server.
     ///
     /// # Errors
-    /// The acknowledgement to send now; `None` if `command` is a repetition of the one that waits.
-    pub(super) fn begin(
-        &mut self,
-        command: u16,
-        to: Peer,
-        since: u64,
-        by: Answerer,
-    ) -> Result<(), Option<MavResult>> {
+    /// The acknowledgement to send now; `None` if it is a repetition of the one that waits.
+    pub(super) fn begin(&mut self, received: &Received<'_>, by: Answerer) -> Result<(), Option<MavResult>> {
+        let (command, to) = (received.command.number, received.from);
         match self.orders.pending {
             Some(p) if p.command == command && p.to == to => Err(None),
             Some(_) => Err(Some(self.refuse("another command is under way"))),
@@ -262,7 +232,7 @@ impl Services {
                     command,
                     by,
                     to,
-                    since,
+                    since: received.now,
                 });
                 Ok(())
             }
