@@ -55,7 +55,7 @@ fn sideways(step: &Step<'_>) -> Option<Vec3> {
     Some(right * onwards)
 }
 
-/// Holds the vehicle over the spot.
+/// Holds the vehicle over the landing point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LandingPoint {
     hold: CoastingHold,
@@ -97,13 +97,13 @@ impl LandingPoint {
     }
 
     fn begin(hold: CoastingHold, aside: Option<Aside>, step: &mut Step<'_>) -> Self {
-        let mut spot = Self {
+        let mut landing = Self {
             hold,
             aside,
             wanted: Setpoint::Stop,
         };
-        spot.step(None, step);
-        spot
+        landing.step(None, step);
+        landing
     }
 
     /// One step; the `pilot` commands velocities by his sticks, which cancels the sidestep.
