@@ -545,7 +545,7 @@ mod tests {
     /// In other axes the places of the ones before are none, and a flank that was half seen no longer keeps the flow from being
     /// judged.
     #[test]
-    fn nothing_of_the_axes_before_is_left_where_an_estimate_begins() {
+    fn a_new_estimate_drops_the_places_of_the_previous_axes() {
         let mut flow_range = FlowRangeFusion::new(0.3, Vec3::ZERO);
         let at = |us: u64, y: f32| StateSnapshot {
             at_us: us,

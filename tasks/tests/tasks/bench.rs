@@ -475,7 +475,7 @@ fn the_self_test_names_each_part_and_what_is_wrong_with_it() {
 }
 
 #[test]
-fn nothing_of_it_moves_a_vehicle_that_is_armed() {
+fn no_actuator_test_runs_while_armed() {
     let mut table = Table::set();
     table.says("propellers off", 200);
     table.sticks.set(Some(Sticks::default()));

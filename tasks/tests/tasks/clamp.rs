@@ -171,7 +171,7 @@ fn nothing_is_sent_before_the_first_command_and_forces_are_held_without_one() {
 }
 
 #[test]
-fn what_is_missing_of_one_arm_holds_that_arm_alone() {
+fn a_missing_input_of_one_arm_holds_that_arm_alone() {
     let mut bench = Bench::new();
     let mut world = World::new(CLOSE, 0.0);
     let before = bench.run(500, &world);
@@ -193,7 +193,7 @@ fn what_is_missing_of_one_arm_holds_that_arm_alone() {
 }
 
 #[test]
-fn pressures_older_than_20_ms_are_none() {
+fn pressures_older_than_20_ms_are_not_used() {
     let mut bench = Bench::new();
     let mut world = World::new(CLOSE, 0.0);
     bench.run(300, &world);
@@ -207,7 +207,7 @@ fn pressures_older_than_20_ms_are_none() {
 }
 
 #[test]
-fn only_rotors_that_run_are_met_by_the_tendons() {
+fn tendons_compensate_the_thrust_of_running_rotors_alone() {
     let mut bench = Bench::new();
     let mut world = World::new(CLOSE, 0.0);
     world.mix = MixOutput {
@@ -263,7 +263,7 @@ fn after_a_restart_closed_arms_are_sent_their_force_at_once_and_all_others_nothi
 }
 
 #[test]
-fn forces_and_judgement_carry_the_time_of_their_pressures() {
+fn forces_and_grip_state_carry_the_time_of_their_pressures() {
     let mut bench = Bench::new();
     let mut world = World::new(CLOSE, 500.0);
     world.contact = false;

@@ -107,7 +107,7 @@ fn the_gyros_bias_is_kept_as_the_part_has_it() {
 }
 
 #[test]
-fn a_bias_before_calibration_is_none() {
+fn before_calibration_there_is_no_bias() {
     let (rig, memory) = (Rig::new(), FakeMemory::default());
     speak(rig.links, false, false);
     RetainedStore::new(rig.links, memory.clone()).keep(rig.links);

@@ -283,7 +283,7 @@ fn a_range_that_shows_higher_steps_than_before_ends_it() {
 
 /// Called too long at its first jump, one that jumps was never named.
 #[test]
-fn a_range_that_is_back_soon_is_no_other_step() {
+fn a_range_that_returns_soon_is_no_surface_step() {
     for from in 7..26u8 {
         for ground in [2.2, 1.3] {
             let from = f32::from(from);
@@ -336,7 +336,7 @@ fn another_try_knows_the_steps_of_the_first() {
 }
 
 #[test]
-fn only_over_the_crown_and_near_it_nothing_but_the_pipes_back_is_below() {
+fn near_crown_holds_low_over_it_alone() {
     for (range, aside, near) in [(0.2, 0.0, true), (0.35, 0.0, false), (0.2, 0.08, false)] {
         let (mut law, mut view) = descending(range, 0.0, 0.02);
         law.look(&view);

@@ -627,7 +627,7 @@ fn a_grab_and_a_release_by_order_do_it_with_the_pilots_switch_left_alone() {
 }
 
 #[test]
-fn a_release_by_order_leaves_by_itself_and_the_pilots_switch_that_stayed_on_is_no_wish() {
+fn after_a_remote_release_the_perch_switch_left_on_does_not_close_the_arms() {
     let mut w = World::perched();
     assert_eq!((w.r.remote(Release), w.r.out.mode), (None, Mode::Releasing));
     w.run(2.0);

@@ -158,7 +158,7 @@ fn a_kill_on_the_pipe_keeps_the_arms_closed() {
 }
 
 #[test]
-fn disarming_ends_what_is_tried_on_the_bench() {
+fn disarming_ends_an_actuator_test() {
     for order in [Disarm, Kill] {
         let mut r = Rig::disarmed();
         let spin = ActuatorTest::Spin(Spin::at(0, SPIN_DRIVE));
@@ -193,7 +193,7 @@ fn a_grab_closes_at_the_touch_and_holds_with_the_pilots_switch_off() {
 }
 
 #[test]
-fn a_release_takes_what_the_switch_takes_and_leaves_no_wish_behind() {
+fn a_remote_release_has_the_switchs_conditions_and_does_not_outlast_its_refusal() {
     let mut r = Rig::perched();
     assert_eq!(r.remote(Release), Some(RemoteRefusal::Throttle));
     r.sticks().throttle = 0.3;

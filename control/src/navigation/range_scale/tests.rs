@@ -97,7 +97,7 @@ fn a_sound_range_is_never_wrong() {
 }
 
 #[test]
-fn one_that_is_too_long_or_too_short_is_found_where_the_vehicle_rises() {
+fn a_wrong_range_scale_is_detected_in_a_climb() {
     for range in [(|h, _| 1.6 * h) as fn(f64, f64) -> f64, |h, _| 0.6 * h] {
         let found = Rig::new(climbing, range).run(30.0);
         assert!(found.is_some_and(|after| after < 6.0), "{found:?}");
@@ -113,7 +113,7 @@ fn small_errors_of_the_scale_are_tolerated() {
 
 /// Held in gusts it rises and sinks by 2 cm: enough to see it move by 1.6 times as much.
 #[test]
-fn one_that_is_too_long_is_found_in_a_hold_too() {
+fn a_range_scale_too_long_is_detected_in_a_hold_too() {
     let found = Rig::new(held, |h, _| 1.6 * h).run(30.0);
     assert!(found.is_some_and(|after| after < 15.0), "{found:?}");
 }
@@ -129,7 +129,7 @@ fn what_a_round_back_does_is_no_scale() {
 }
 
 #[test]
-fn it_is_used_again_once_it_has_risen_as_far_as_it_says() {
+fn a_range_is_used_again_once_its_scale_fits_a_climb() {
     let mut r = Rig::new(climbing, |h, _| 1.6 * h);
     assert!(r.run(10.0).is_some());
     r.run(20.0);
