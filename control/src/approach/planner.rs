@@ -158,7 +158,7 @@ pub struct ApproachPlanner {
 impl ApproachPlanner {
     /// An attempt from the present position, over or beside a pipe along `heading`, rad.
     pub fn begin(p: &Params, v: &View, heading: f32, reset_count: u8) -> Self {
-        let law = Self {
+        let planner = Self {
             diameter: p.pipe_diameter,
             lens: p.flow_lens(),
             origin: v.position,
@@ -197,8 +197,8 @@ impl ApproachPlanner {
             speed: Vec3::ZERO,
         };
         match &v.target {
-            Some(target) => law.to(target),
-            None => law,
+            Some(target) => planner.to(target),
+            None => planner,
         }
     }
 
@@ -216,13 +216,13 @@ impl ApproachPlanner {
     /// An attempt that climbs to `HIGH` over `crown_position`, as last known, and sweeps about it: an escape has
     /// carried the vehicle a metre or two away.
     pub fn back_to(crown_position: Vec3, p: &Params, v: &View, heading: f32, reset_count: u8) -> Self {
-        let law = Self::again(p, v, heading, reset_count, false);
-        let off = law.local(crown_position);
+        let planner = Self::again(p, v, heading, reset_count, false);
+        let off = planner.local(crown_position);
         Self {
             up: clamp(off.z - HIGH, -2.0 * HIGH, 0.0),
             middle: Vec3::new(off.x, off.y, 0.0),
             side: if off.y > 0.0 { 1.0 } else { -1.0 },
-            ..law
+            ..planner
         }
     }
 
@@ -318,7 +318,7 @@ impl ApproachPlanner {
             return Err(ApproachAbort::RangeStale);
         }
         let before = self.edges.surface_depth();
-        let edge = self.look(v).filter(|_| !self.has_target);
+        let edge = self.take_range(v).filter(|_| !self.has_target);
         let at = self.local(v.position);
         if let Some(edge) = edge {
             self.other = self.other.filter(|other| !self.at_known(other.from));
@@ -379,7 +379,7 @@ impl ApproachPlanner {
     }
 
     /// The step that a new range shows.
-    fn look(&mut self, v: &View) -> Option<Edge> {
+    fn take_range(&mut self, v: &View) -> Option<Edge> {
         if v.range_hit.count == self.seen {
             return None;
         }
@@ -666,7 +666,7 @@ impl ApproachPlanner {
         if self.settled.step(at_gate && over && !blind, dt) >= GATE_TIME {
             self.enter(Phase::Commit);
         }
-        let mut way = Self::velocity_towards(held, self.above_crown(LOW), CORRECT_SPEED, DESCENT);
+        let mut command = Self::velocity_towards(held, self.above_crown(LOW), CORRECT_SPEED, DESCENT);
         let waits = off.abs() > NEAR_OFF;
         // Flow works again from a little higher. A pose may not return: the vehicle must not drift beside the pipe.
         let (goal, back) = match (blind, self.has_target) {
@@ -675,12 +675,12 @@ impl ApproachPlanner {
             (true, true) => (LOW, CLIMB_SPEED),
         };
         let braked = HEIGHT_GAIN * (self.clearance(held).min(stops) - goal);
-        way.z = if waits && range < NEAR && !blind {
+        command.z = if waits && range < NEAR && !blind {
             0.0
         } else {
             clamp(braked, -back, DESCENT)
         };
-        Ok(way)
+        Ok(command)
     }
 
     fn commit(&mut self, at: Vec3, held: Vec3) -> Result<Vec3, ApproachAbort> {
@@ -688,9 +688,9 @@ impl ApproachPlanner {
         if (at.y - self.crown_y).abs() > ASTRAY {
             return Err(ApproachAbort::NotCentred);
         }
-        let mut way = Self::velocity_towards(held, self.above_crown(LOW), CORRECT_SPEED, DESCENT);
-        way.z = LAST_SPEED;
-        Ok(way)
+        let mut command = Self::velocity_towards(held, self.above_crown(LOW), CORRECT_SPEED, DESCENT);
+        command.z = LAST_SPEED;
+        Ok(command)
     }
 }
 

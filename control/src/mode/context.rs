@@ -289,9 +289,9 @@ impl Context {
         }
     }
 
-    /// Replaces a closing `wish` by the number of tightenings made so far.
-    pub fn tight(&self, wish: ClampCommand) -> ClampCommand {
-        match wish {
+    /// Replaces a closing `command` by the number of tightenings made so far.
+    pub fn tight(&self, command: ClampCommand) -> ClampCommand {
+        match command {
             ClampCommand::Close { arms } if self.tightened > 0 => ClampCommand::Tighten {
                 arms,
                 times: self.tightened,

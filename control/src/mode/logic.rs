@@ -135,8 +135,8 @@ impl ModeLogic {
         context
             .ground_probe
             .step(mode == Mode::Failsafe, &context.contact_force, dt);
-        let wish = state.rotors(context, inputs);
-        let rotors = context.collective.finish(wish, &context.params, dt);
+        let setpoint = state.rotors(context, inputs);
+        let rotors = context.collective.finish(setpoint, &context.params, dt);
         let grip_memory = state.grip_memory();
         let inhibits = if rotors_locked(mode) {
             context.inhibits(inputs, grip_memory)

@@ -116,10 +116,10 @@ impl Departure {
 
     /// Takes a displacement `seen` by poses, m, with its `variance`, m², and the inertial displacement, m, `dt` s
     /// after the last.
-    fn step(&mut self, seen: Vec3, felt: Vec3, variance: f32, dt: f32) {
+    fn step(&mut self, seen: Vec3, inertial: Vec3, variance: f32, dt: f32) {
         let keep = WINDOW / (WINDOW + dt);
-        self.off = self.off * keep + (seen - felt).norm_squared() * dt;
-        self.way = self.way * keep + felt.norm_squared() * dt;
+        self.off = self.off * keep + (seen - inertial).norm_squared() * dt;
+        self.way = self.way * keep + inertial.norm_squared() * dt;
         let floor = WINDOW * (FLOOR * FLOOR + variance);
         if !self.wrong {
             if self.off > BORNE * self.way + floor {
@@ -151,8 +151,8 @@ struct Before {
 #[derive(Clone, Debug, Default)]
 pub struct ExternalPoseMonitor {
     /// Band filter of the inertial displacement, and time of the newest inertial sample, µs.
-    felt: [Low; 4],
-    felt_us: u64,
+    inertial: [Low; 4],
+    inertial_us: u64,
     /// Band filter of the poses, the origin that keeps it free of steps, and its start time, µs.
     seen: [Low; 4],
     origin: Vec3,
@@ -187,18 +187,18 @@ impl ExternalPoseMonitor {
 
     /// Filters an inertial sample; returns the displacement in the band, m, in the axes of the vehicle's attitude.
     /// Zero after a gap, and for a sample that is not finite.
-    pub fn predict(&mut self, felt: &Inertial) -> Vec3 {
-        let dt = seconds(self.felt_us, felt.at_us);
+    pub fn predict(&mut self, sample: &Inertial) -> Vec3 {
+        let dt = seconds(self.inertial_us, sample.at_us);
         if dt > super::inertial::STEP_MAX {
-            self.felt = Default::default();
-            self.began_us = self.began_us.max(felt.at_us);
+            self.inertial = Default::default();
+            self.began_us = self.began_us.max(sample.at_us);
         }
-        self.felt_us = felt.at_us;
-        let acceleration = felt.q.rotate(felt.accel) + Vec3::new(0.0, 0.0, GRAVITY);
+        self.inertial_us = sample.at_us;
+        let acceleration = sample.q.rotate(sample.accel) + Vec3::new(0.0, 0.0, GRAVITY);
         if dt > super::inertial::STEP_MAX || !acceleration.is_finite() {
             return Vec3::ZERO;
         }
-        let [first, second, slow, last] = &mut self.felt;
+        let [first, second, slow, last] = &mut self.inertial;
         let once = first.step(acceleration * (1.0 / (CORNER * CORNER)), dt);
         let twice = second.step(once, dt);
         let high = twice - slow.step(twice, dt);
@@ -364,13 +364,13 @@ impl ExternalPoseMonitor {
 
     fn compare(&mut self, seen: Vec3, fix: &Fix, then: &StateSnapshot, dt: f32) {
         let seen = about_down(seen, then.yaw() - fix.heading);
-        let felt = then.swing;
+        let inertial = then.swing;
         let horizontal = |v: Vec3| Vec3::new(v.x, v.y, 0.0);
         let down = |v: Vec3| Vec3::new(0.0, 0.0, v.z);
         // Part of white noise at 50 Hz that passes the band.
         let noise = fix.variance() * (0.5 * CORNER * dt);
         self.horizontal
-            .step(horizontal(seen), horizontal(felt), noise.x + noise.y, dt);
-        self.down.step(down(seen), down(felt), noise.z, dt);
+            .step(horizontal(seen), horizontal(inertial), noise.x + noise.y, dt);
+        self.down.step(down(seen), down(inertial), noise.z, dt);
     }
 }

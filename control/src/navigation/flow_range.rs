@@ -249,11 +249,11 @@ impl FlowRangeFusion {
 
     /// Takes the measured acceleration `down`, m/s², gravity removed, at `at_us` µs; `None` while the vehicle does not
     /// fly. The tilt of the beam is computed only if a run of equal ranges needs it.
-    pub fn feel(&mut self, at_us: u64, down: Option<f32>, q: Quat) {
-        self.scale.feel(at_us, down);
-        if self.frozen.feels() {
+    pub fn predict(&mut self, at_us: u64, down: Option<f32>, q: Quat) {
+        self.scale.predict(at_us, down);
+        if self.frozen.needs_motion() {
             let leans = (q.down_in_body().z, q.rotate(self.lens).z);
-            self.frozen.feel(at_us, down, leans, self.scale.climb());
+            self.frozen.predict(at_us, down, leans, self.scale.climb());
         }
     }
 
@@ -262,16 +262,16 @@ impl FlowRangeFusion {
         self.mistaken = true;
         let cos = q.down_in_body().z;
         if cos >= COS_MIN {
-            self.look_at_scale(distance * cos, q, Below::Plain);
+            self.update_scale(distance * cos, q, Below::Plain);
         }
     }
 
     /// Compares the vertical part of the newest range, `height` m, with the inertial motion.
-    fn look_at_scale(&mut self, height: f32, q: Quat, below: Below) {
+    fn update_scale(&mut self, height: f32, q: Quat, below: Below) {
         let lag = seconds(self.range_us, self.now_us);
         // Height of the centre of mass, without the lever arm: its swing is no motion of the vehicle, and its error
         // does not pass for a scale.
-        self.scale.look(height + q.rotate(self.lens).z, lag, below);
+        self.scale.update(height + q.rotate(self.lens).z, lag, below);
     }
 
     /// Height of the centre of mass above the ground with which an estimate may begin, m, at a flow with the attitude
@@ -355,7 +355,7 @@ impl FlowRangeFusion {
                 } else {
                     Below::Plain
                 };
-                self.look_at_scale(distance * cos, then.q, below);
+                self.update_scale(distance * cos, then.q, below);
                 return Some((off, RANGE_NOISE * RANGE_NOISE));
             }
             let band = self.band.get_or_insert(below);
@@ -373,7 +373,7 @@ impl FlowRangeFusion {
                 self.flank = if doubt > RANGE_NOISE { self.flank - 1 } else { 0 };
             }
             let off = self.surface_z - back;
-            self.look_at_scale(distance * cos - drop, then.q, below);
+            self.update_scale(distance * cos - drop, then.q, below);
             return Some((off, RANGE_NOISE * RANGE_NOISE + doubt * doubt));
         }
         self.agreed = if (off - self.step).abs() <= SAME {
@@ -391,7 +391,7 @@ impl FlowRangeFusion {
             let fell = self.scale.begun() && self.surface_z - before > 2.0 * self.radius;
             self.unproven = self.unproven.filter(|_| !fell);
             let seen = if known { Below::Known } else { Below::New };
-            self.look_at_scale(distance * cos, then.q, seen);
+            self.update_scale(distance * cos, then.q, seen);
             let mut band = self.band.unwrap_or(below);
             band.top = self.surface_z.min(before);
             let reach = band.top - then.position.z;

@@ -144,7 +144,7 @@ impl PositionEstimator {
             return None;
         }
         let down = inertial.q.rotate(inertial.accel).z + GRAVITY;
-        self.flow_range.feel(at_us, flies.then_some(down), inertial.q);
+        self.flow_range.predict(at_us, flies.then_some(down), inertial.q);
         // A wrongly scaled range gives no height; its changes may prove that it is right again.
         let range = match range {
             Some((at, distance)) if self.flow_range.scale.wrong() => {

@@ -69,13 +69,13 @@ impl LandingPoint {
         Self::begin(hold, None, step)
     }
 
-    /// Lands at the point that `law` holds, or beside the pipe in the direction `off_pipe`, a horizontal unit vector in the
+    /// Lands at the point that `position_hold` holds, or beside the pipe in the direction `off_pipe`, a horizontal unit vector in the
     /// estimate's axes.
-    pub fn off_approach(law: PositionHold, off_pipe: Option<Vec3>, step: &mut Step<'_>) -> Self {
+    pub fn off_approach(position_hold: PositionHold, off_pipe: Option<Vec3>, step: &mut Step<'_>) -> Self {
         let aside = off_pipe
             .filter(|_| step.inputs.motion.is_some())
             .map(Aside::towards);
-        Self::begin(CoastingHold::new(law), aside, step)
+        Self::begin(CoastingHold::new(position_hold), aside, step)
     }
 
     /// Lands beside the pipe, which lies along the nose, on the side towards which the vehicle moves; `None` without a
@@ -92,8 +92,8 @@ impl LandingPoint {
 
     fn from_here(aside: Option<Aside>, step: &mut Step<'_>) -> Option<Self> {
         let estimate = step.inputs.position.filter(|_| step.inputs.position_fresh())?;
-        let law = PositionHold::begin(&step.context.params, &estimate, &step.body_motion());
-        Some(Self::begin(CoastingHold::new(law), aside, step))
+        let position_hold = PositionHold::begin(&step.context.params, &estimate, &step.body_motion());
+        Some(Self::begin(CoastingHold::new(position_hold), aside, step))
     }
 
     fn begin(hold: CoastingHold, aside: Option<Aside>, step: &mut Step<'_>) -> Self {
@@ -112,11 +112,11 @@ impl LandingPoint {
             self.aside = None;
         }
         let estimate = step.inputs.position.unwrap_or_default();
-        let wish = match self.way_off(&estimate, step) {
-            Some(wish) => wish,
+        let command = match self.way_off(&estimate, step) {
+            Some(command) => command,
             None => velocity_from_sticks(&pilot.unwrap_or_default(), 0.0, step.context),
         };
-        self.wanted = self.hold.step(&estimate, &wish, step);
+        self.wanted = self.hold.step(&estimate, &command, step);
     }
 
     /// Velocity command of the sidestep, until it ends.

@@ -18,7 +18,7 @@ use crate::position_hold::{PositionHold, VelocityCommand};
 /// State of the mode [`crate::mode::Mode::Approach`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Approach {
-    pub law: PositionHold,
+    pub position_hold: PositionHold,
     planner: ApproachPlanner,
     wanted: Setpoint,
     /// Reason for which no further try follows.
@@ -56,9 +56,9 @@ pub fn obstacle(step: &Step<'_>) -> Option<Reason> {
 }
 
 impl Approach {
-    /// Starts the search at the point that `law` holds.
-    pub fn search(law: Option<PositionHold>, step: &mut Step<'_>) -> Self {
-        Self::begin(law, step, |step, view, e| {
+    /// Starts the search at the point that `position_hold` holds.
+    pub fn search(position_hold: Option<PositionHold>, step: &mut Step<'_>) -> Self {
+        Self::begin(position_hold, step, |step, view, e| {
             ApproachPlanner::begin(&step.context.params, view, heading(step, e), e.reset_count)
         })
     }
@@ -78,16 +78,16 @@ impl Approach {
     }
 
     fn begin(
-        law: Option<PositionHold>,
+        position_hold: Option<PositionHold>,
         step: &mut Step<'_>,
         planner: impl Fn(&Step<'_>, &View, &Estimate) -> ApproachPlanner,
     ) -> Self {
         let estimate = step.inputs.position.unwrap_or_default();
-        let law =
-            law.unwrap_or_else(|| PositionHold::begin(&step.context.params, &estimate, &step.body_motion()));
-        let planner = planner(step, &view(&law, &estimate, step), &estimate);
+        let position_hold = position_hold
+            .unwrap_or_else(|| PositionHold::begin(&step.context.params, &estimate, &step.body_motion()));
+        let planner = planner(step, &view(&position_hold, &estimate, step), &estimate);
         let mut approach = Self {
-            law,
+            position_hold,
             planner,
             wanted: Setpoint::Stop,
             abort_reason: None,
@@ -124,7 +124,7 @@ impl Approach {
     }
 
     fn step(&mut self, estimate: &Estimate, step: &mut Step<'_>) {
-        let seen = view(&self.law, estimate, step);
+        let seen = view(&self.position_hold, estimate, step);
         if step.context.vertical_fallback.misfit() && !self.planner.leaves() {
             self.misfit(false, &seen, estimate, step);
         }
@@ -142,7 +142,7 @@ impl Approach {
         });
         step.context.auto_perch.last_crown = crown.or(step.context.auto_perch.last_crown);
         step.context.vertical_fallback.steady = self.planner.near_crown(&seen);
-        let wish = result.unwrap_or_else(|doubt| {
+        let command = result.unwrap_or_else(|doubt| {
             match doubt {
                 ApproachAbort::RangeMisfit => self.misfit(false, &seen, estimate, step),
                 ApproachAbort::RangeLong => self.misfit(true, &seen, estimate, step),
@@ -150,7 +150,9 @@ impl Approach {
             }
             VelocityCommand::default()
         });
-        self.wanted = self.law.step(estimate, &step.body_motion(), &wish, true, step.dt);
+        self.wanted = self
+            .position_hold
+            .step(estimate, &step.body_motion(), &command, true, step.dt);
     }
 
     /// Allows one more try unless the misfit is `proven`; then climbs away.
@@ -188,13 +190,13 @@ impl Approach {
     }
 }
 
-fn view(law: &PositionHold, e: &Estimate, step: &Step<'_>) -> View {
+fn view(position_hold: &PositionHold, e: &Estimate, step: &Step<'_>) -> View {
     let heading = step.inputs.motion.map_or(0.0, |m| m.q.to_euler().2);
     View {
         position: e.position,
         velocity: e.velocity,
         heading: heading + e.yaw_offset,
-        held: law.held(),
+        held: position_hold.held(),
         age: e.age,
         range_hit: e.range_hit,
         target: step.inputs.target,

@@ -119,8 +119,8 @@ impl World {
         self.see();
         self.r.step();
         if let State::Approach(a) = &self.r.logic.state() {
-            let moved = a.law.held() - self.held;
-            self.held = a.law.held();
+            let moved = a.position_hold.held() - self.held;
+            self.held = a.position_hold.held();
             // The first step in a mode sets the point.
             if moved.norm() < 0.05 {
                 self.at += moved;

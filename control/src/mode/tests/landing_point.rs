@@ -90,7 +90,7 @@ fn with_an_empty_battery_the_hold_switch_says_what_the_sticks_ask_for() {
         let asked = 0.5 * r.params.stick_angle;
         let [roll, ..] = angles(&r);
         if held {
-            // A velocity: it leans as far as the wish has grown.
+            // A velocity: it leans as far as the command has grown.
             assert!(roll > 0.0 && roll < 0.5 * asked, "{roll}");
         } else {
             assert!((roll - asked).abs() < 1e-4, "{roll}");

@@ -69,13 +69,13 @@ impl Rig {
             self.now += STEP_US;
             let t = self.now as f64 * 1e-6;
             let [_, down] = (self.motion)(t);
-            self.scale.feel(self.now, Some((down + self.bias) as f32));
+            self.scale.predict(self.now, Some((down + self.bias) as f32));
             let at = self.now - LATE_US;
             if self.now.is_multiple_of(RANGE_US) {
                 let t = at as f64 * 1e-6;
                 let [height, _] = (self.motion)(t);
                 let seen = (self.range)(height, t) + 0.015 * noise(self.now / RANGE_US);
-                self.scale.look(seen as f32, LATE_US as f32 * 1e-6, self.below);
+                self.scale.update(seen as f32, LATE_US as f32 * 1e-6, self.below);
             }
             if self.scale.wrong() && found.is_none() {
                 found = Some((self.now - begun) as f64 * 1e-6);
@@ -151,9 +151,9 @@ fn on_the_ground_and_in_a_shock_nothing_is_judged() {
     let mut r = Rig::new(climbing, |h, _| 1.6 * h);
     for _ in 0..40 {
         r.run(0.4);
-        r.scale.feel(r.now, None);
+        r.scale.predict(r.now, None);
         r.run(0.4);
-        r.scale.feel(r.now, Some(9.0));
+        r.scale.predict(r.now, Some(9.0));
         assert!(!r.scale.wrong());
     }
 }
@@ -166,7 +166,7 @@ fn a_step_onto_something_is_no_scale() {
         assert_eq!(r.run(1.3), None);
         r.range = if i % 2 == 0 { |h, _| h - 0.4 } else { |h, _| h };
         r.scale
-            .look(1.0, 0.03, if i < 10 { Below::New } else { Below::Known });
+            .update(1.0, 0.03, if i < 10 { Below::New } else { Below::Known });
     }
 }
 
@@ -174,9 +174,9 @@ fn a_step_onto_something_is_no_scale() {
 fn no_number_breaks_it() {
     let mut r = Rig::new(climbing, |h, _| h);
     for number in [f32::NAN, f32::INFINITY, f32::MAX, -1e30, 0.0] {
-        r.scale.feel(r.now, Some(number));
-        r.scale.look(number, 0.03, Below::Plain);
-        r.scale.look(1.0, number, Below::Plain);
+        r.scale.predict(r.now, Some(number));
+        r.scale.update(number, 0.03, Below::Plain);
+        r.scale.update(1.0, number, Below::Plain);
         r.run(1.0);
         assert!(!r.scale.wrong());
     }
