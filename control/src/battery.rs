@@ -105,7 +105,7 @@ impl Monitor {
     }
 }
 
-/// Time below a level of the servo battery before it counts, s: longer than a closing (2.6 to 3.9 s in the paper),
+/// Time below a warning voltage of the servo battery before it counts, s: longer than a closing (2.6 to 3.9 s in the paper),
 /// under which the voltage sags.
 pub const SERVO_SAG_TIME: f32 = 5.0;
 
@@ -130,11 +130,11 @@ pub enum ServoSupply {
 pub struct ServoBattery {
     /// Voltage under load, V, low-passed.
     pub voltage: f32,
-    /// Level of that voltage: `Low`, `NearEnd` or `Good`.
+    /// State by that voltage: `Low`, `NearEnd` or `Good`.
     pub supply: ServoSupply,
 }
 
-/// The servo battery's filter and levels.
+/// The servo battery's filter and warning voltages.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ServoMonitor {
     voltage: Option<LowPass>,

@@ -7,7 +7,10 @@ pub mod flow;
 pub mod procedure;
 pub mod step;
 
+use core::fmt;
+
 use crate::attitude::mounting::{Direction, Mounting};
+use crate::maths::decimal::Decimal;
 use crate::maths::scalar::{GRAVITY, clamp, deg, sin, sqrt};
 use crate::maths::vector::Vec3;
 use crate::params::Params;
@@ -62,17 +65,29 @@ pub fn thousandths(value: f32) -> f32 {
     (value * 1000.0 + half) as i32 as f32 / 1000.0
 }
 
-/// Reason for which samples are unfit: the quantity, its value and its limits.
+/// Reason for which samples are unfit: the quantity, its value and its limits; as text, a sentence on them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Unfit {
+pub struct Unfit<T = &'static str> {
     /// Name of the quantity.
-    pub what: &'static str,
+    pub what: T,
     /// Measured value.
     pub value: f32,
     /// Least and largest allowed value.
     pub allowed: [f32; 2],
     /// Unit of the value and both limits.
-    pub unit: &'static str,
+    pub unit: T,
+}
+
+impl fmt::Display for Unfit<&str> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [value, least, most] = [self.value, self.allowed[0], self.allowed[1]].map(Decimal);
+        let space = if self.unit.is_empty() { "" } else { " " };
+        write!(
+            f,
+            "{} is {value:.2}; {least:.2} to {most:.2}{space}{} allowed",
+            self.what, self.unit
+        )
+    }
 }
 
 /// `Ok` for a value within `allowed`; NaN is not.

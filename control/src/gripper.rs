@@ -75,6 +75,8 @@ pub struct GripperOutput {
     pub misfit: Option<Misfit>,
     /// Every arm is free.
     pub released: bool,
+    /// An arm pressed at power-on while its servo had no pulses: the tendons are wound, by an unknown angle.
+    pub wound_at_power_on: bool,
 }
 
 /// Controller of the four arms.
@@ -84,6 +86,7 @@ pub struct Gripper {
     /// Time of all chosen arms within the tolerance, s.
     together: f32,
     proven: bool,
+    wound_at_power_on: bool,
 }
 
 impl Gripper {
@@ -106,10 +109,24 @@ impl Gripper {
         }
     }
 
+    /// One step of `dt` s before the servos' first pulse, while their gears hold the arms as at power-on.
+    pub fn step_without_pulses(&mut self, cfg: &Config, input: &PerArm<ArmInput>, dt: f32) -> GripperOutput {
+        let out = self.step(cfg, input, dt);
+        self.wound_at_power_on = out
+            .arms
+            .iter()
+            .any(|arm| arm.grip.pressure > cfg.demand.release_pressure);
+        GripperOutput {
+            wound_at_power_on: self.wound_at_power_on,
+            ..out
+        }
+    }
+
     /// One step of `dt` s.
     pub fn step(&mut self, cfg: &Config, input: &PerArm<ArmInput>, dt: f32) -> GripperOutput {
         let mut out = GripperOutput {
             released: true,
+            wound_at_power_on: self.wound_at_power_on,
             ..GripperOutput::default()
         };
         // Arms that release one after another would turn the body about the last one: all tendons become slack

@@ -1,6 +1,6 @@
-//! Inputs of people: receiver channels, stick positions, orders of a ground station and of the bench.
+//! Inputs of people: receiver channels, stick positions, orders of a ground station, tests of actuators.
 
-pub mod bench_orders;
+pub mod actuator_test;
 pub mod rc;
 pub mod release_throttle;
 pub mod remote;

@@ -20,7 +20,7 @@ use crate::maths::vector::{Quat, Vec3};
 use crate::navigation::estimate::Estimate;
 use crate::params::Params;
 
-/// Largest commanded velocity, level and vertical, m/s.
+/// Largest commanded velocity, horizontal and vertical, m/s.
 pub const SPEED_MAX: f32 = 1.5;
 /// See [`SPEED_MAX`].
 pub const CLIMB_MAX: f32 = 0.7;
@@ -65,7 +65,7 @@ pub struct BodyMotion {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Course {
     /// Commanded velocity within [`SPEED_SLEW`], the same behind one stage, and that of the held point, m/s.
-    wished: Vec3,
+    commanded: Vec3,
     between: Vec3,
     speed: Vec3,
     /// Their derivatives, m/s².
@@ -75,24 +75,24 @@ struct Course {
 }
 
 impl Course {
-    fn step(&mut self, wished: Vec3, dt: f32) {
+    fn step(&mut self, commanded: Vec3, dt: f32) {
         let slew = |from: f32, to: f32| scalar::slew(from, to, SPEED_SLEW * dt);
-        let before = self.wished;
-        self.wished = Vec3::new(
-            slew(before.x, wished.x),
-            slew(before.y, wished.y),
-            slew(before.z, wished.z),
+        let before = self.commanded;
+        self.commanded = Vec3::new(
+            slew(before.x, commanded.x),
+            slew(before.y, commanded.y),
+            slew(before.z, commanded.z),
         );
-        let level = |v: Vec3| Vec3::new(v.x, v.y, 0.0);
+        let horizontal = |v: Vec3| Vec3::new(v.x, v.y, 0.0);
         let per_second = if dt > 0.0 { 1.0 / dt } else { 0.0 };
-        self.asked = (self.wished - before) * per_second;
+        self.asked = (self.commanded - before) * per_second;
         let per = 1.0 / (COURSE_STAGE + dt);
-        self.turning = level(self.wished - self.between) * per;
+        self.turning = horizontal(self.commanded - self.between) * per;
         self.between += self.turning * dt;
-        self.gained = level(self.between - self.speed) * per;
+        self.gained = horizontal(self.between - self.speed) * per;
         self.speed += self.gained * dt;
         // The height loop has no such lag: it uses the commanded acceleration directly.
-        self.speed.z = self.wished.z;
+        self.speed.z = self.commanded.z;
     }
 
     /// Distance by which the held point is behind, m.
@@ -152,7 +152,7 @@ impl PositionHold {
         &mut self,
         e: &Estimate,
         motion: &BodyMotion,
-        wish: &VelocityCommand,
+        command: &VelocityCommand,
         known: bool,
         dt: f32,
     ) -> Setpoint {
@@ -160,8 +160,8 @@ impl PositionHold {
         if e.reset_count != self.reset_count {
             self.anchor_at(e);
         }
-        let wished = about_down(wish.velocity, heading);
-        self.course.step(wished, dt);
+        let commanded = about_down(command.velocity, heading);
+        self.course.step(commanded, dt);
         let speed = self.course.speed;
         self.anchor += speed * dt;
         self.leash(e.position);
@@ -182,36 +182,36 @@ impl PositionHold {
             let course = [asked, turning, gained].map(ahead);
             self.feedback(p, v, ahead(d), wind, &course, motion)
         } else {
-            core::array::from_fn(|i| at(&wish.lean, i) - at(&wind, i))
+            core::array::from_fn(|i| at(&command.lean, i) - at(&wind, i))
         };
         let u = limited(u);
         self.lag.step(u, tilt(motion.q), tilt_rate(motion.rate), dt);
         let up = self.height.step(
             &height::State {
                 error: self.anchor.z - e.position.z,
-                wished: speed.z,
+                commanded: speed.z,
                 gained: self.course.asked.z,
                 velocity: e.velocity.z,
                 disturbance: e.disturbance.z,
-                landing: motion.carried && wish.velocity.z > 0.0,
+                landing: motion.carried && command.velocity.z > 0.0,
             },
             dt,
         );
-        self.setpoint(u, up, motion.q, wish.yaw_rate)
+        self.setpoint(u, up, motion.q, command.yaw_rate)
     }
 
     /// Limits the distance of the held point from the vehicle.
     fn leash(&mut self, position: Vec3) {
         let off = self.anchor - position;
-        let level = Vec3::new(off.x, off.y, 0.0);
-        let over = scalar::clamp(LEASH * scalar::inv_sqrt(level.norm_squared()), 0.0, 1.0);
-        let level = if level.norm_squared() > LEASH * LEASH {
-            level * over
+        let horizontal = Vec3::new(off.x, off.y, 0.0);
+        let over = scalar::clamp(LEASH * scalar::inv_sqrt(horizontal.norm_squared()), 0.0, 1.0);
+        let horizontal = if horizontal.norm_squared() > LEASH * LEASH {
+            horizontal * over
         } else {
-            level
+            horizontal
         };
         let down = scalar::clamp_abs(off.z, height::LEASH);
-        self.anchor = position + level + Vec3::new(0.0, 0.0, down);
+        self.anchor = position + horizontal + Vec3::new(0.0, 0.0, down);
     }
 
     /// The lateral disturbance, from which the wind is learnt. In contact the learnt wind replaces it.

@@ -10,6 +10,7 @@ use sophie_control::params::Params;
 use crate::inputs::{Inputs, pose};
 use crate::services::Services;
 use crate::services::answer::Answer;
+use crate::services::commands::Received;
 use crate::services::commands::orders::CommanderRequests;
 use crate::services::commands::report::{Report, Row};
 use crate::services::parameters::{Place, SetError};
@@ -218,7 +219,13 @@ impl Server {
             | Request::Range(_)
             | Request::PipeTarget(_) => (),
             Request::Command(command) => {
-                if let Some(reply) = self.services.command(command, from, now, vehicle, procedure) {
+                let received = Received {
+                    command,
+                    from,
+                    now,
+                    vehicle,
+                };
+                if let Some(reply) = self.services.command(&received, procedure) {
                     self.services.acknowledge(command.number, from, reply.result, 0);
                     if let Some(answer) = reply.then {
                         self.services.answer(answer);

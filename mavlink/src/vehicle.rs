@@ -9,7 +9,7 @@ use sophie_control::chain::Attitude;
 use sophie_control::gripper::grip::GripState;
 use sophie_control::mode::{Mode, Reason};
 use sophie_control::navigation::air_pressure::AirPressure;
-use sophie_control::pilot::bench_orders::BenchView;
+use sophie_control::pilot::actuator_test::ActuatorTestView;
 use sophie_control::pilot::rc::Sticks;
 use sophie_control::pilot::remote::RemoteAnswer;
 
@@ -72,8 +72,8 @@ pub struct Vehicle {
 /// The commander's answers to orders.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Answers {
-    /// State of the bench tests.
-    pub bench: BenchView,
+    /// State of the actuator tests.
+    pub actuator_test: ActuatorTestView,
     /// Number of the newest remote order of any line.
     pub newest: u32,
     /// That order is still being sent.

@@ -96,8 +96,8 @@ impl Scenario {
     /// Direction that the steady wind comes from, clockwise from north, rad.
     #[must_use]
     pub fn wind_from(&self) -> f64 {
-        let drawn = || self.streams().within("wind", 0.0, core::f64::consts::TAU);
-        self.world.steady_wind_from.unwrap_or_else(drawn)
+        let sampled = || self.streams().within("wind", 0.0, core::f64::consts::TAU);
+        self.world.steady_wind_from.unwrap_or_else(sampled)
     }
 }
 

@@ -1,4 +1,4 @@
 //! Test stands: parts of the vehicle under given inputs, without a mission or a pilot.
 
-pub mod arm_bench;
+pub mod arm_stand;
 pub mod flight_level;

@@ -437,8 +437,11 @@ fn a_clamp_loop_that_falls_silent_leaves_the_servos_where_they_are() {
             links.tendons.send(
                 now,
                 TendonOrder::Measured(TendonForces {
-                    arms: [TendonForce { force, stay: false }; 4],
-                    found: false,
+                    arms: [TendonForce {
+                        force,
+                        hold_position: false,
+                    }; 4],
+                    wound_at_power_on: false,
                 }),
             );
         }

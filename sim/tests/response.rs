@@ -10,7 +10,7 @@ use sophie_sim::plant::tendon::ServoProfile;
 use sophie_sim::record::Silent;
 use sophie_sim::scenario::{Scenario, Step};
 use sophie_sim::sensors::fsr::FsrBreak;
-use sophie_sim::test_stands::arm_bench::{BenchArm, Closing, try_grip};
+use sophie_sim::test_stands::arm_stand::{Closing, StandArm, try_grip};
 
 /// True response over the assumed one.
 const RESPONSES: [f32; 5] = [0.5, 0.71, 1.0, 1.41, 2.0];
@@ -46,8 +46,8 @@ fn cases() -> Vec<Case> {
     cases
 }
 
-fn bench(case: &Case, broken: Option<FsrBreak>) -> BenchArm {
-    let mut arm = BenchArm::from(&Closing {
+fn bench(case: &Case, broken: Option<FsrBreak>) -> StandArm {
+    let mut arm = StandArm::from(&Closing {
         infill: case.infill,
         diameter: case.diameter,
         servo: ServoProfile::Paper.into(),

@@ -4,7 +4,7 @@
 //! restart puts in force. If the terminal does not read, its text is dropped and no other task is delayed. Noise on
 //! the serial line is parsed as unknown commands.
 
-mod bench;
+mod actuator_test;
 mod calibrate;
 mod chip;
 mod command;
@@ -97,7 +97,7 @@ struct Console<'a, I, O, S, C> {
     params: Params,
     /// The calibrations.
     procedure: Procedure,
-    /// Sequence number of the newest bench order of this console.
+    /// Sequence number of the newest actuator test of this console.
     order: u32,
 }
 

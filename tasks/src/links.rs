@@ -41,7 +41,7 @@ use sophie_control::navigation::estimate::Estimate;
 use sophie_control::navigation::flow_range_sample::GroundView;
 use sophie_control::navigation::position_estimator::Fault;
 use sophie_control::params::Params;
-use sophie_control::pilot::bench_orders::{BenchAnswer, BenchRequest, BenchView};
+use sophie_control::pilot::actuator_test::{ActuatorTestAnswer, ActuatorTestRequest, ActuatorTestView};
 use sophie_control::pilot::remote::{RemoteAnswer, RemoteRequest};
 use sophie_ports::external_pose::ExternalPose;
 use sophie_ports::receiver::RcState;
@@ -165,10 +165,10 @@ links! {
     rc: RcState, Rc to "commander, console, mavlink", stale after 500 ms;
     /// State reported by the commander.
     status: Status, Commander to "telemetry, console, mavlink, log", stale after 200 ms;
-    /// Bench test request, by console or MAVLink, renewed while it lasts; without it motors stop and servos go to release.
-    bench: BenchRequest, Console to "commander", stale after 150 ms;
-    /// Reply to the last bench request.
-    bench_answer: BenchAnswer, Commander to "console, mavlink", stale after 200 ms;
+    /// Test of one actuator, by console or MAVLink, renewed while it lasts; without it motors stop and servos go to release.
+    actuator_test: ActuatorTestRequest, Console to "commander", stale after 150 ms;
+    /// Reply to the last actuator test.
+    actuator_test_answer: ActuatorTestAnswer, Commander to "console, mavlink", stale after 200 ms;
     /// Vehicle pose measured externally, with each message.
     external_pose: ExternalPose, Mavlink to "position, console", stale after 200 ms;
     /// Flow and range below the vehicle, from the module's line or by MAVLink, stamped with the newest arrival; each has its own time.
@@ -222,12 +222,12 @@ impl Links {
         self.stack_scarce.store(true, Ordering::Relaxed);
     }
 
-    /// State of the bench for a sender of orders.
-    pub fn bench_view(&self) -> BenchView {
-        BenchView {
-            newest: self.bench.look(|m| m.value.number).unwrap_or(0),
-            renewed: self.bench.fresh().is_some(),
-            answer: self.bench_answer.fresh().unwrap_or_default(),
+    /// State of the actuator tests for a sender of orders.
+    pub fn actuator_test_view(&self) -> ActuatorTestView {
+        ActuatorTestView {
+            newest: self.actuator_test.look(|m| m.value.number).unwrap_or(0),
+            renewed: self.actuator_test.fresh().is_some(),
+            answer: self.actuator_test_answer.fresh().unwrap_or_default(),
         }
     }
 

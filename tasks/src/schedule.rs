@@ -135,7 +135,7 @@ tasks! {
     Telemetry "telemetry": Background, each 50000 us at 0 us, within 50000 us, Unwatched;
     /// MAVLink to ground stations.
     Mavlink "mavlink": Background, each 20000 us at 0 us, within 20000 us, Unwatched;
-    /// Renewal of a running bench command; other console work has no fixed rate.
+    /// Renewal of a running actuator test; other console work has no fixed rate.
     Console "console": Background, each 50000 us, within 50000 us, Unwatched;
     /// Deadline supervision; feeds the watchdog. A stalled supervisor causes a reset.
     Supervisor "supervisor": Steady, each 10000 us at 1200 us, within 10000 us, Unwatched;

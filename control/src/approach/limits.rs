@@ -83,7 +83,7 @@ pub const TOUCH_WAIT: f32 = 2.5;
 pub const RAISED: f32 = 0.3;
 /// Age beyond which a range is stale, s.
 pub const RANGE_AGE: f32 = 0.3;
-/// Slew limit of the level velocity command, m/s²: the hold follows faster turns with twice the speed.
+/// Slew limit of the horizontal velocity command, m/s²: the hold follows faster turns with twice the speed.
 pub const SLEW: f32 = 0.3;
 /// Height error to vertical speed, 1/s.
 pub const HEIGHT_GAIN: f32 = 1.5;
@@ -95,7 +95,7 @@ pub const OVER_TIME: f32 = 0.5;
 /// Heading error to yaw rate, 1/s, and its limit, rad/s.
 pub const HEADING_GAIN: f32 = 1.0;
 pub const YAW_RATE_MAX: f32 = 0.3;
-/// Largest level distance of a reported pipe from the vehicle, m: the hold begins within a metre of it.
+/// Largest horizontal distance of a reported pipe from the vehicle, m: the hold begins within a metre of it.
 pub const TARGET_REACH: f32 = 1.5;
 /// The same for another attempt, since an escape has thrown the vehicle two metres off the pipe; and the bounds of the
 /// pipe's depth below the vehicle, m.

@@ -12,7 +12,7 @@ pub struct PipeTarget {
     /// When it was measured, µs.
     pub at_us: u64,
     /// Point on the crown on which the vehicle is to land, m.
-    pub crown: Vec3,
+    pub crown_position: Vec3,
     /// Heading of the pipe, in either direction, rad; `None` if unknown.
     pub heading: Option<f32>,
 }
@@ -21,13 +21,13 @@ impl PipeTarget {
     /// The heading of a pipe along the x axis of `q`, rad; `None` for one that is too steep.
     pub fn heading_of(q: Quat) -> Option<f32> {
         let along = q.rotate(Vec3::new(1.0, 0.0, 0.0));
-        let level = along.z.abs() <= STEEPEST;
-        level.then(|| scalar::atan2(along.y, along.x))
+        let horizontal = along.z.abs() <= STEEPEST;
+        horizontal.then(|| scalar::atan2(along.y, along.x))
     }
 
     /// True if every number is finite.
     pub fn is_finite(&self) -> bool {
-        self.crown.is_finite() && self.heading.is_none_or(f32::is_finite)
+        self.crown_position.is_finite() && self.heading.is_none_or(f32::is_finite)
     }
 
     /// The pipe's heading that is nearest to the nose's, rad: a pipe has no front.
@@ -67,8 +67,8 @@ mod tests {
                 "{pipe} {nose}: {found}"
             );
         }
-        let level = PipeTarget::heading_of(Quat::from_euler(0.5, 0.1, 0.7)).unwrap();
-        assert!((level - 0.7).abs() < 1e-3);
+        let heading = PipeTarget::heading_of(Quat::from_euler(0.5, 0.1, 0.7)).unwrap();
+        assert!((heading - 0.7).abs() < 1e-3);
         assert_eq!(PipeTarget::heading_of(Quat::from_euler(0.0, 0.5, 0.7)), None);
         assert_eq!(PipeTarget::default().heading_near(1.0), None);
     }

@@ -86,7 +86,7 @@ enum Phase {
     Commit,
 }
 
-/// An unexpected range step: the abort reason for it, the level before it, m down, and its duration, s.
+/// An unexpected range step: the abort reason for it, the surface depth before it, m down, and its duration, s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Other {
     doubt: ApproachAbort,
@@ -129,12 +129,12 @@ pub struct ApproachPlanner {
     entered: Option<f32>,
     /// Middle of the object that the search met last, by one of its edges, right, m.
     met: Option<f32>,
-    /// The pipe's crown: right and down, m, half its width, m.
-    crown: f32,
-    top: f32,
+    /// The pipe's crown, right and down, m, and half the pipe's width, m.
+    crown_y: f32,
+    crown_z: f32,
     half: f32,
     /// Crown by the previous crossing, right, m.
-    before: Option<f32>,
+    previous_crown_y: Option<f32>,
     /// Landing point along the pipe, m, and the ends found, m.
     along: f32,
     ends: [Option<f32>; 2],
@@ -158,7 +158,7 @@ pub struct ApproachPlanner {
 impl ApproachPlanner {
     /// An attempt from the present position, over or beside a pipe along `heading`, rad.
     pub fn begin(p: &Params, v: &View, heading: f32, reset_count: u8) -> Self {
-        let law = Self {
+        let planner = Self {
             diameter: p.pipe_diameter,
             lens: p.flow_lens(),
             origin: v.position,
@@ -180,10 +180,10 @@ impl ApproachPlanner {
             legs: 0,
             entered: None,
             met: None,
-            crown: 0.0,
-            top: 0.0,
+            crown_y: 0.0,
+            crown_z: 0.0,
             half: 0.5 * p.pipe_diameter,
-            before: None,
+            previous_crown_y: None,
             along: 0.0,
             ends: [None; 2],
             fell: None,
@@ -197,8 +197,8 @@ impl ApproachPlanner {
             speed: Vec3::ZERO,
         };
         match &v.target {
-            Some(target) => law.to(target),
-            None => law,
+            Some(target) => planner.to(target),
+            None => planner,
         }
     }
 
@@ -213,23 +213,23 @@ impl ApproachPlanner {
         }
     }
 
-    /// An attempt that climbs to `HIGH` over `crown`, the last known place, and sweeps about it: an escape has
+    /// An attempt that climbs to `HIGH` over `crown_position`, as last known, and sweeps about it: an escape has
     /// carried the vehicle a metre or two away.
-    pub fn back_to(crown: Vec3, p: &Params, v: &View, heading: f32, reset_count: u8) -> Self {
-        let law = Self::again(p, v, heading, reset_count, false);
-        let off = law.local(crown);
+    pub fn back_to(crown_position: Vec3, p: &Params, v: &View, heading: f32, reset_count: u8) -> Self {
+        let planner = Self::again(p, v, heading, reset_count, false);
+        let off = planner.local(crown_position);
         Self {
             up: clamp(off.z - HIGH, -2.0 * HIGH, 0.0),
             middle: Vec3::new(off.x, off.y, 0.0),
             side: if off.y > 0.0 { 1.0 } else { -1.0 },
-            ..law
+            ..planner
         }
     }
 
-    /// Place of the crown in the estimate's axes, m; `None` before the descent.
-    pub fn crown(&self) -> Option<Vec3> {
-        let crown = about_down(self.spot(0.0), self.heading) + self.origin;
-        self.committed().then_some(crown)
+    /// Position of the crown in the estimate's axes, m; `None` before the descent.
+    pub fn crown_position(&self) -> Option<Vec3> {
+        let position = about_down(self.above_crown(0.0), self.heading) + self.origin;
+        self.committed().then_some(position)
     }
 
     /// A climb after a misleading range, to leave the pipe.
@@ -247,7 +247,7 @@ impl ApproachPlanner {
             return again;
         }
         let known = !matches!(self.phase, Phase::Climb | Phase::Search);
-        let top = if known { self.top } else { self.edges.top() };
+        let top = if known { self.crown_z } else { self.edges.top() };
         let over = self.origin.z + top - HIGH - v.position.z;
         Self {
             has_target: self.has_target,
@@ -266,7 +266,7 @@ impl ApproachPlanner {
     /// The descent is so near that only the pipe's back can be below.
     pub fn near_crown(&self, v: &View) -> bool {
         let at = self.local(v.position);
-        let over = (at.y - self.crown).abs() < NEAR_OFF;
+        let over = (at.y - self.crown_y).abs() < NEAR_OFF;
         self.phase == Phase::Descend && !self.has_target && over && self.clearance(at) < STEADY
     }
 
@@ -285,7 +285,7 @@ impl ApproachPlanner {
         self.left
     }
 
-    /// Level direction off the pipe for a vehicle at `position`, length 1, in the estimate's axes: across, to the
+    /// Horizontal direction off the pipe for a vehicle at `position`, length 1, in the estimate's axes: across, to the
     /// nearer side. `None` before an object is met.
     pub fn off_pipe(&self, position: Vec3) -> Option<Vec3> {
         let here = self.local(position).y;
@@ -294,7 +294,7 @@ impl ApproachPlanner {
             // Over an object from the beginning: continue in the direction of the sweep.
             (Phase::Search, None) if self.origin.z + self.edges.surface_depth() < -RAISED => self.side,
             (Phase::Search, None) => return None,
-            _ => here - self.crown,
+            _ => here - self.crown_y,
         };
         let side = if off < 0.0 { -1.0 } else { 1.0 };
         Some(about_down(Vec3::new(0.0, side, 0.0), self.heading))
@@ -318,7 +318,7 @@ impl ApproachPlanner {
             return Err(ApproachAbort::RangeStale);
         }
         let before = self.edges.surface_depth();
-        let edge = self.look(v).filter(|_| !self.has_target);
+        let edge = self.take_range(v).filter(|_| !self.has_target);
         let at = self.local(v.position);
         if let Some(edge) = edge {
             self.other = self.other.filter(|other| !self.at_known(other.from));
@@ -379,7 +379,7 @@ impl ApproachPlanner {
     }
 
     /// The step that a new range shows.
-    fn look(&mut self, v: &View) -> Option<Edge> {
+    fn take_range(&mut self, v: &View) -> Option<Edge> {
         if v.range_hit.count == self.seen {
             return None;
         }
@@ -398,7 +398,7 @@ impl ApproachPlanner {
 
     /// The present surface is `before`, m down, again, or the pipe, or the ground at its sides.
     fn at_known(&self, before: f32) -> bool {
-        let [onto, off] = self.steps.map(|step| self.top + step);
+        let [onto, off] = self.steps.map(|step| self.crown_z + step);
         let near = |known: f32| (self.edges.surface_depth() - known).abs() < 0.5 * self.diameter;
         self.sees_pipe() || [before, onto, off].into_iter().any(near)
     }
@@ -423,7 +423,7 @@ impl ApproachPlanner {
         }
     }
 
-    /// Velocity from the held point to `target`, level at most `speed` and vertically at most `climb`, m/s.
+    /// Velocity from the held point to `target`, horizontally at most `speed` and vertically at most `climb`, m/s.
     fn velocity_towards(held: Vec3, target: Vec3, speed: f32, climb: f32) -> Vec3 {
         let off = target - held;
         Vec3::new(
@@ -464,7 +464,7 @@ impl ApproachPlanner {
                 if !(least * self.diameter..=most * self.diameter).contains(&width) {
                     return None;
                 }
-                (self.half, self.top) = (0.5 * width, self.edges.top());
+                (self.half, self.crown_z) = (0.5 * width, self.edges.top());
                 let [onto, off] = &mut self.steps;
                 if onto.is_finite() && off.is_infinite() {
                     *off = self.edges.height().unwrap_or(f32::INFINITY);
@@ -483,7 +483,7 @@ impl ApproachPlanner {
             None => self.met,
         };
         if let Some(middle) = self.crossed(edge) {
-            self.crown = middle;
+            self.crown_y = middle;
             self.along = held.x;
             self.enter(Phase::Over);
         }
@@ -501,14 +501,14 @@ impl ApproachPlanner {
         Ok(Self::velocity_towards(held, target, SWEEP_SPEED, 0.0))
     }
 
-    /// The place over the crown, `height` m above it.
-    fn spot(&self, height: f32) -> Vec3 {
-        Vec3::new(self.along, self.crown, self.top - height)
+    /// The point `height` m above the crown.
+    fn above_crown(&self, height: f32) -> Vec3 {
+        Vec3::new(self.along, self.crown_y, self.crown_z - height)
     }
 
     fn over(&mut self, at: Vec3, held: Vec3, askew: f32) -> Result<Vec3, ApproachAbort> {
         self.late(WAY_TIME, ApproachAbort::NotCentred)?;
-        let target = self.spot(LOW);
+        let target = self.above_crown(LOW);
         let off = target - at;
         if off.y.abs() < OVER && off.z.abs() < OVER && self.since > OVER_TIME {
             if self.has_target {
@@ -527,13 +527,13 @@ impl ApproachPlanner {
 
     /// Begins the crossings.
     fn turn_across(&mut self) {
-        (self.side, self.legs, self.before) = (1.0, 0, None);
+        (self.side, self.legs, self.previous_crown_y) = (1.0, 0, None);
         self.enter(Phase::Cross);
     }
 
     /// The range sees the pipe's back.
     fn sees_pipe(&self) -> bool {
-        self.has_target || (self.edges.surface_depth() - self.top).abs() < 0.5 * self.diameter
+        self.has_target || (self.edges.surface_depth() - self.crown_z).abs() < 0.5 * self.diameter
     }
 
     fn look_along(&mut self, edge: Option<Edge>, held: Vec3, dt: f32) -> Result<Vec3, ApproachAbort> {
@@ -543,7 +543,7 @@ impl ApproachPlanner {
         let goal = middle + if fore { LOOK } else { -LOOK };
         // The beam follows the crown, not the vehicle.
         let Vec3 { x, y, .. } = self.lens;
-        let target = Vec3::new(goal - x, self.crown - y, self.top - LOW);
+        let target = Vec3::new(goal - x, self.crown_y - y, self.crown_z - LOW);
         // A gust may carry the beam off the side: a pipe that the beam returns to has not ended.
         match edge {
             Some(Edge::Off(at)) => self.fell = Some(at.x),
@@ -581,19 +581,22 @@ impl ApproachPlanner {
     fn cross(&mut self, edge: Option<Edge>, held: Vec3) -> Result<Vec3, ApproachAbort> {
         self.late(2.0 * WAY_TIME, ApproachAbort::NotCentred)?;
         if let Some(middle) = self.crossed(edge) {
-            if self.before.is_some_and(|before| (before - middle).abs() > AGREE) {
+            if self
+                .previous_crown_y
+                .is_some_and(|previous| (previous - middle).abs() > AGREE)
+            {
                 return Err(ApproachAbort::NotCentred);
             }
-            self.before = Some(middle);
-            self.crown = middle;
+            self.previous_crown_y = Some(middle);
+            self.crown_y = middle;
         }
-        let mut target = self.spot(LOW);
+        let mut target = self.above_crown(LOW);
         target.y += self.side * (self.half + BESIDE) - self.lens.y;
         if (target.y - held.y).abs() < REACHED {
             self.side = -self.side;
             self.legs = self.legs.saturating_add(1);
             if self.legs >= LEGS {
-                if self.before.is_none() {
+                if self.previous_crown_y.is_none() {
                     return Err(ApproachAbort::PipeLost);
                 }
                 self.crossed = true;
@@ -609,25 +612,30 @@ impl ApproachPlanner {
             // The vehicle comes from the side at which the last crossing ended, so that the edge shows the drift
             // since.
             Some(Edge::Onto(onto)) => {
-                let inwards = if onto.y < self.crown {
+                let inwards = if onto.y < self.crown_y {
                     self.half
                 } else {
                     -self.half
                 };
                 let middle = onto.y + inwards;
-                if (middle - self.crown).abs() > AGREE {
+                if (middle - self.crown_y).abs() > AGREE {
                     return Err(ApproachAbort::NotCentred);
                 }
-                self.crown += NEWER * (middle - self.crown);
+                self.crown_y += NEWER * (middle - self.crown_y);
             }
             // A gust carries the beam off the side.
             Some(Edge::Off(_)) | None => (),
         }
         // The vehicle settles during the descent: each second here costs a centimetre of the edge's accuracy.
-        if (at.y - self.crown).abs() < NEAR_OFF && self.sees_pipe() {
+        if (at.y - self.crown_y).abs() < NEAR_OFF && self.sees_pipe() {
             self.enter(Phase::Descend);
         }
-        Ok(Self::velocity_towards(held, self.spot(LOW), CROSS_SPEED, DESCENT))
+        Ok(Self::velocity_towards(
+            held,
+            self.above_crown(LOW),
+            CROSS_SPEED,
+            DESCENT,
+        ))
     }
 
     fn descend(
@@ -641,7 +649,7 @@ impl ApproachPlanner {
         if matches!(edge, Some(Edge::Off(_))) || !self.sees_pipe() {
             return Err(ApproachAbort::PipeLost);
         }
-        let off = at.y - self.crown;
+        let off = at.y - self.crown_y;
         let range = self.clearance(at);
         let share = clamp(self.since / PATIENCE, 0.0, 1.0);
         let within = STRICT + (CONTENT - STRICT) * share;
@@ -658,7 +666,7 @@ impl ApproachPlanner {
         if self.settled.step(at_gate && over && !blind, dt) >= GATE_TIME {
             self.enter(Phase::Commit);
         }
-        let mut way = Self::velocity_towards(held, self.spot(LOW), CORRECT_SPEED, DESCENT);
+        let mut command = Self::velocity_towards(held, self.above_crown(LOW), CORRECT_SPEED, DESCENT);
         let waits = off.abs() > NEAR_OFF;
         // Flow works again from a little higher. A pose may not return: the vehicle must not drift beside the pipe.
         let (goal, back) = match (blind, self.has_target) {
@@ -667,22 +675,22 @@ impl ApproachPlanner {
             (true, true) => (LOW, CLIMB_SPEED),
         };
         let braked = HEIGHT_GAIN * (self.clearance(held).min(stops) - goal);
-        way.z = if waits && range < NEAR && !blind {
+        command.z = if waits && range < NEAR && !blind {
             0.0
         } else {
             clamp(braked, -back, DESCENT)
         };
-        Ok(way)
+        Ok(command)
     }
 
     fn commit(&mut self, at: Vec3, held: Vec3) -> Result<Vec3, ApproachAbort> {
         self.late(TOUCH_WAIT, ApproachAbort::NotTouched)?;
-        if (at.y - self.crown).abs() > ASTRAY {
+        if (at.y - self.crown_y).abs() > ASTRAY {
             return Err(ApproachAbort::NotCentred);
         }
-        let mut way = Self::velocity_towards(held, self.spot(LOW), CORRECT_SPEED, DESCENT);
-        way.z = LAST_SPEED;
-        Ok(way)
+        let mut command = Self::velocity_towards(held, self.above_crown(LOW), CORRECT_SPEED, DESCENT);
+        command.z = LAST_SPEED;
+        Ok(command)
     }
 }
 

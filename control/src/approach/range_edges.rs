@@ -4,7 +4,7 @@ use crate::maths::vector::Vec3;
 
 /// Least step, m: half the height of the smallest pipe, and three times the drop of a pipe's flank between two ranges.
 const STEP: f32 = 0.12;
-/// Share by which the level follows each range of the same surface.
+/// Share by which the surface depth follows each range of the same surface.
 const FOLLOW: f32 = 0.5;
 /// Depth used for a range with no target in reach, m.
 const BEYOND: f32 = 50.0;

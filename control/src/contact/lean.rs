@@ -54,8 +54,8 @@ pub struct Lean {
     /// Share of the weight on the rotors while the arms close, and the least one while they open.
     closing_share: f32,
     release_share: f32,
-    /// Pitch and yaw at the last moment of free air, rad.
-    before: Option<[f32; 2]>,
+    /// Pitch and yaw at the last moment of free air, rad; kept from the touch on.
+    pitch_yaw_at_contact: Option<[f32; 2]>,
     /// Last known turn about the pipe, rad, >= 0.
     lean: f32,
     /// Least lean since the arms began to close or to open, rad.
@@ -76,7 +76,7 @@ impl Lean {
             friction_limit: FrictionLimit::from_params(p),
             closing_share: p.perch_lift,
             release_share: release_thrust(p) / (p.mass * GRAVITY),
-            before: None,
+            pitch_yaw_at_contact: None,
             lean: 0.0,
             lean_at_contact: 0.0,
             creeping: HoldTimer::default(),
@@ -104,17 +104,19 @@ impl Lean {
             return;
         };
         let (roll, pitch, yaw) = motion.q.to_euler();
-        let [level, ahead] =
-            *self
-                .before
-                .insert(match self.before.filter(|_| self.apart.time() < TOUCH_MEMORY) {
-                    Some(before) => before,
-                    None => [pitch, yaw],
-                });
-        let (nod, twist) = (pitch - level, wrap_pi(yaw - ahead));
-        let lean = sqrt(roll * roll + nod * nod);
+        let [pitch_at_contact, yaw_at_contact] = *self.pitch_yaw_at_contact.insert(
+            match self
+                .pitch_yaw_at_contact
+                .filter(|_| self.apart.time() < TOUCH_MEMORY)
+            {
+                Some(captured) => captured,
+                None => [pitch, yaw],
+            },
+        );
+        let (pitch_change, twist) = (pitch - pitch_at_contact, wrap_pi(yaw - yaw_at_contact));
+        let lean = sqrt(roll * roll + pitch_change * pitch_change);
         // Small angles: body rates approximate the rates of roll, pitch and yaw.
-        let outward = (roll * motion.rate.x + nod * motion.rate.y) / lean.max(LEAN_MIN);
+        let outward = (roll * motion.rate.x + pitch_change * motion.rate.y) / lean.max(LEAN_MIN);
         self.lean = lean;
         let grows = outward > GROWING_RATE && !self.friction_limit.holds(lean, share);
         self.sliding.step(lean > HOPELESS_LEAN || grows, dt);

@@ -93,7 +93,7 @@ impl ArmGripper {
         let free = self
             .free
             .step(&cfg.demand, measured.pressure, measured.tension, dt);
-        let felt = measured.pressure.filter(|_| self.fault.is_none());
+        let pressure = measured.pressure.filter(|_| self.fault.is_none());
         if self.phase == Phase::Release && free {
             *self = Self {
                 filters: self.filters,
@@ -103,7 +103,7 @@ impl ArmGripper {
         }
         let holding = match self.phase {
             Phase::Grip(_) | Phase::Approach | Phase::Resume(_) => {
-                self.hold.step(&cfg.demand, felt, self.force, dt)
+                self.hold.step(&cfg.demand, pressure, self.force, dt)
             }
             Phase::Free | Phase::Release => {
                 self.hold = HoldProof::default();

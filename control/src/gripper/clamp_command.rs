@@ -1,6 +1,6 @@
 //! Wanted action of the tendons, from the mode logic.
 
-use crate::pilot::bench_orders::Place;
+use crate::pilot::actuator_test::Place;
 use crate::pilot::rc::ArmChoice;
 
 /// Wanted action of the tendons.
@@ -23,6 +23,6 @@ pub enum ClampCommand {
     },
     /// No pulses: the gears keep hold as at power-up.
     Keep,
-    /// One servo at a bench pulse, the others as with [`Self::Release`].
+    /// One servo at a test pulse, the others as with [`Self::Release`].
     Place(Place),
 }

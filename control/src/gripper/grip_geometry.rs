@@ -58,11 +58,11 @@ pub fn misfit(arms: &PerArm<Option<Laid>>, bend: f32) -> Option<Misfit> {
         return Some(Misfit::Thickness);
     }
     let [beside, oblique, stray] = differences(arms);
-    let (lengthwise, level) = (oblique <= OBLIQUE_MAX, beside <= BESIDE_MAX && stray <= STRAY_MAX);
+    let (lengthwise, even) = (oblique <= OBLIQUE_MAX, beside <= BESIDE_MAX && stray <= STRAY_MAX);
     if !lengthwise {
         return Some(Misfit::Oblique);
     }
-    if !level {
+    if !even {
         return Some(Misfit::Uneven);
     }
     let least = laid().map(|a| a.force).fold(f32::INFINITY, f32::min);

@@ -1,8 +1,8 @@
 //! State that outlives a mode: parameters, the pilot's switches, evidence of support and lean, dangers, the collective.
 
 use super::inputs::Inputs;
+use super::inputs::actuator_tests::ActuatorTests;
 use super::inputs::auto_perch::AutoPerch;
-use super::inputs::bench::Bench;
 use super::inputs::dangers::Dangers;
 use super::inputs::remote::{self, Remote};
 use super::reason::Reason;
@@ -82,7 +82,7 @@ pub struct Context {
     pub power_up_grip: PowerUpGripCheck,
     pub lean: Lean,
     pub fall: Fall,
-    pub crown: CrownOffset,
+    pub crown_offset: CrownOffset,
     /// Acceleration along world down, m/s².
     pub accel_down: f32,
     /// Vertical speed from the integral of this acceleration, independent of the position estimate.
@@ -91,7 +91,7 @@ pub struct Context {
     pub ground_probe: GroundProbe,
     /// Number of times that the arms have tightened since they closed.
     pub tightened: u8,
-    pub bench: Bench,
+    pub actuator_tests: ActuatorTests,
     pub remote: Remote,
     pub auto_perch: AutoPerch,
     /// A reason and its remaining display time, s.
@@ -121,13 +121,13 @@ impl Context {
             power_up_grip: PowerUpGripCheck::default(),
             lean: Lean::new(params),
             fall: Fall::default(),
-            crown: CrownOffset::default(),
+            crown_offset: CrownOffset::default(),
             accel_down: 0.0,
             vertical_fallback: VerticalFallback::default(),
             collective: Collective::default(),
             ground_probe: GroundProbe::default(),
             tightened: 0,
-            bench: Bench::default(),
+            actuator_tests: ActuatorTests::default(),
             remote: Remote::default(),
             auto_perch: AutoPerch::default(),
             note: (None, 0.0),
@@ -165,7 +165,8 @@ impl Context {
             lift: i.lift,
         });
         self.contact_force.step(sample, dt);
-        self.crown.step(i.lift, i.roll_moment, &self.contact_force, dt);
+        self.crown_offset
+            .step(i.lift, i.roll_moment, &self.contact_force, dt);
         self.accel_down = sample.map_or(0.0, |f| f.down);
         self.fall.step(self.accel_down, &self.contact_force, dt);
         self.lean
@@ -178,7 +179,7 @@ impl Context {
         self.gesture = remote::gesture(order).or(self.gesture);
         self.remote.kill = order == RemoteOrder::Kill;
         if self.gesture == Some(Gesture::Disarm) {
-            self.bench.stop();
+            self.actuator_tests.stop();
         }
     }
 
@@ -207,7 +208,7 @@ impl Context {
 
     /// Side of the vehicle on which the crown lies, while it rests beside it.
     pub fn crown_side(&self) -> Option<Reason> {
-        self.crown.side().map(|side| match side {
+        self.crown_offset.side().map(|side| match side {
             CrownSide::Left => Reason::CrownLeft,
             CrownSide::Right => Reason::CrownRight,
         })
@@ -288,9 +289,9 @@ impl Context {
         }
     }
 
-    /// Replaces a closing `wish` by the number of tightenings made so far.
-    pub fn tight(&self, wish: ClampCommand) -> ClampCommand {
-        match wish {
+    /// Replaces a closing `command` by the number of tightenings made so far.
+    pub fn tight(&self, command: ClampCommand) -> ClampCommand {
+        match command {
             ClampCommand::Close { arms } if self.tightened > 0 => ClampCommand::Tighten {
                 arms,
                 times: self.tightened,

@@ -1,8 +1,8 @@
-//! Inputs of the mode logic and their direct consequences: autonomous perching, orders of ground station and bench,
+//! Inputs of the mode logic and their direct consequences: autonomous perching, orders of ground station and actuator tests,
 //! dangers.
 
+pub mod actuator_tests;
 pub mod auto_perch;
-pub mod bench;
 pub mod dangers;
 pub mod remote;
 
@@ -14,7 +14,7 @@ use crate::battery::ServoSupply;
 use crate::gripper::grip::GripState;
 use crate::navigation::estimate::Estimate;
 use crate::navigation::fix_age::{APPROACH_AGE, FRESH_AGE, HEIGHT_AGE, PRESSURE_AGE};
-use crate::pilot::bench_orders::BenchRequest;
+use crate::pilot::actuator_test::ActuatorTestRequest;
 use crate::pilot::rc::Sticks;
 use crate::pilot::remote::RemoteRequest;
 
@@ -44,7 +44,7 @@ pub struct Inputs {
     /// Arming inhibits of drivers, storage and start-up.
     pub hardware: ArmingInhibits,
     /// Request at the console.
-    pub bench: Option<BenchRequest>,
+    pub actuator_test: Option<ActuatorTestRequest>,
     /// Order of a remote link.
     pub remote: Option<RemoteRequest>,
     /// Position estimate; its age is the time since it became inertial only.

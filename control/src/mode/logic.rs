@@ -2,7 +2,7 @@
 
 use super::context::{Context, Step};
 use super::inputs::Inputs;
-use super::inputs::bench::Table;
+use super::inputs::actuator_tests::TestConditions;
 use super::modes::Mode;
 use super::outputs::Outputs;
 use super::remote_refusal;
@@ -71,13 +71,15 @@ impl ModeLogic {
             position: inputs.position.map(|e| self.context.vertical_fallback.apply(e)),
             ..*inputs
         };
-        let table = Table::new(
+        let conditions = TestConditions::new(
             before,
             self.state.behaviour().grip_memory(),
             inputs,
             &self.context.params,
         );
-        self.context.bench.step(inputs.bench, &table, dt);
+        self.context
+            .actuator_tests
+            .step(inputs.actuator_test, &conditions, dt);
         if let (Some(request), None) = (remote, refused) {
             self.context.obey(request.order);
         }
@@ -133,8 +135,8 @@ impl ModeLogic {
         context
             .ground_probe
             .step(mode == Mode::Failsafe, &context.contact_force, dt);
-        let wish = state.rotors(context, inputs);
-        let rotors = context.collective.finish(wish, &context.params, dt);
+        let setpoint = state.rotors(context, inputs);
+        let rotors = context.collective.finish(setpoint, &context.params, dt);
         let grip_memory = state.grip_memory();
         let inhibits = if rotors_locked(mode) {
             context.inhibits(inputs, grip_memory)
@@ -148,7 +150,7 @@ impl ModeLogic {
             grip_memory,
             reason: state.reason(context, inputs, inhibits),
             inhibits,
-            bench: context.bench.answer(),
+            actuator_test: context.actuator_tests.answer(),
             remote: context.remote.answer(),
         }
     }

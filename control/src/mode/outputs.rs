@@ -6,7 +6,7 @@ use crate::arming::ArmingInhibits;
 use crate::chain::setpoint::Setpoint;
 use crate::gripper::clamp_command::ClampCommand;
 use crate::gripper::retained_grip::GripMemory;
-use crate::pilot::bench_orders::BenchAnswer;
+use crate::pilot::actuator_test::ActuatorTestAnswer;
 use crate::pilot::remote::RemoteAnswer;
 
 /// Outputs of one step.
@@ -24,8 +24,8 @@ pub struct Outputs {
     pub reason: Option<Reason>,
     /// Everything against arming; empty while armed.
     pub inhibits: ArmingInhibits,
-    /// Answer to the newest bench order.
-    pub bench: BenchAnswer,
+    /// Answer to the newest actuator test.
+    pub actuator_test: ActuatorTestAnswer,
     /// Answer to the newest order of a remote link.
     pub remote: RemoteAnswer,
 }

@@ -1,8 +1,8 @@
 //! The mode logic: a vehicle in a world of two switches ([`rig`]), a flight without trouble ([`mission`]), and every
 //! trouble.
 
+mod actuator_tests;
 mod auto_perch;
-mod bench;
 mod diagram;
 mod docs;
 mod hand_over;

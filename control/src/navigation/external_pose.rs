@@ -116,10 +116,10 @@ impl Departure {
 
     /// Takes a displacement `seen` by poses, m, with its `variance`, m², and the inertial displacement, m, `dt` s
     /// after the last.
-    fn step(&mut self, seen: Vec3, felt: Vec3, variance: f32, dt: f32) {
+    fn step(&mut self, seen: Vec3, inertial: Vec3, variance: f32, dt: f32) {
         let keep = WINDOW / (WINDOW + dt);
-        self.off = self.off * keep + (seen - felt).norm_squared() * dt;
-        self.way = self.way * keep + felt.norm_squared() * dt;
+        self.off = self.off * keep + (seen - inertial).norm_squared() * dt;
+        self.way = self.way * keep + inertial.norm_squared() * dt;
         let floor = WINDOW * (FLOOR * FLOOR + variance);
         if !self.wrong {
             if self.off > BORNE * self.way + floor {
@@ -151,19 +151,19 @@ struct Before {
 #[derive(Clone, Debug, Default)]
 pub struct ExternalPoseMonitor {
     /// Band filter of the inertial displacement, and time of the newest inertial sample, µs.
-    felt: [Low; 4],
-    felt_us: u64,
+    inertial: [Low; 4],
+    inertial_us: u64,
     /// Band filter of the poses, the origin that keeps it free of steps, and its start time, µs.
     seen: [Low; 4],
     origin: Vec3,
     began_us: u64,
     before: Option<Before>,
-    level: Departure,
+    horizontal: Departure,
     down: Departure,
     /// Yaw offset, pose heading less the vehicle's own, rad; `None` before the first pose.
     yaw_offset: Option<f32>,
     /// Weight of the poses whose heading steps away from it, and the time at which the heading became distrusted, µs.
-    /// It is trusted again when the old heading returns or the level displacement agrees with the new one.
+    /// It is trusted again when the old heading returns or the horizontal displacement agrees with the new one.
     turns: u32,
     turned_us: Option<u64>,
     same: u32,
@@ -187,18 +187,18 @@ impl ExternalPoseMonitor {
 
     /// Filters an inertial sample; returns the displacement in the band, m, in the axes of the vehicle's attitude.
     /// Zero after a gap, and for a sample that is not finite.
-    pub fn predict(&mut self, felt: &Inertial) -> Vec3 {
-        let dt = seconds(self.felt_us, felt.at_us);
+    pub fn predict(&mut self, sample: &Inertial) -> Vec3 {
+        let dt = seconds(self.inertial_us, sample.at_us);
         if dt > super::inertial::STEP_MAX {
-            self.felt = Default::default();
-            self.began_us = self.began_us.max(felt.at_us);
+            self.inertial = Default::default();
+            self.began_us = self.began_us.max(sample.at_us);
         }
-        self.felt_us = felt.at_us;
-        let acceleration = felt.q.rotate(felt.accel) + Vec3::new(0.0, 0.0, GRAVITY);
+        self.inertial_us = sample.at_us;
+        let acceleration = sample.q.rotate(sample.accel) + Vec3::new(0.0, 0.0, GRAVITY);
         if dt > super::inertial::STEP_MAX || !acceleration.is_finite() {
             return Vec3::ZERO;
         }
-        let [first, second, slow, last] = &mut self.felt;
+        let [first, second, slow, last] = &mut self.inertial;
         let once = first.step(acceleration * (1.0 / (CORNER * CORNER)), dt);
         let twice = second.step(once, dt);
         let high = twice - slow.step(twice, dt);
@@ -268,7 +268,7 @@ impl ExternalPoseMonitor {
             .is_some_and(|since| at.saturating_sub(since) < DEAD_RECKONING_INVALID_AGE);
         let found = if self.same >= FROZEN_FIXES && flies {
             Some(PoseFault::Frozen)
-        } else if self.down.wrong || (self.level.wrong && !turned) {
+        } else if self.down.wrong || (self.horizontal.wrong && !turned) {
             Some(PoseFault::Disagrees)
         } else {
             // The estimate from before the turn is sound, and dead reckoning continues on it.
@@ -287,12 +287,12 @@ impl ExternalPoseMonitor {
         let off = scalar::wrap_pi(yaw_offset - known);
         let same = off.abs() < TURN_STEP;
         if self.turned_us.is_some() {
-            if same || !self.level.wrong {
+            if same || !self.horizontal.wrong {
                 self.turned_us = None;
-                self.level.wrong = false;
+                self.horizontal.wrong = false;
                 self.yaw_offset = Some(yaw_offset);
             }
-        } else if self.level.wrong || anew || same {
+        } else if self.horizontal.wrong || anew || same {
             let gain = if same { TURN_GAIN } else { 1.0 };
             self.yaw_offset = Some(scalar::wrap_pi(known + gain * off));
             self.turns = self.turns.saturating_sub(1);
@@ -301,7 +301,7 @@ impl ExternalPoseMonitor {
             if self.turns >= REFUSED_MAX {
                 self.turns = 0;
                 self.turned_us = Some(at);
-                self.level = Departure::doubted();
+                self.horizontal = Departure::doubted();
             }
         }
     }
@@ -364,12 +364,13 @@ impl ExternalPoseMonitor {
 
     fn compare(&mut self, seen: Vec3, fix: &Fix, then: &StateSnapshot, dt: f32) {
         let seen = about_down(seen, then.yaw() - fix.heading);
-        let felt = then.swing;
-        let level = |v: Vec3| Vec3::new(v.x, v.y, 0.0);
+        let inertial = then.swing;
+        let horizontal = |v: Vec3| Vec3::new(v.x, v.y, 0.0);
         let down = |v: Vec3| Vec3::new(0.0, 0.0, v.z);
         // Part of white noise at 50 Hz that passes the band.
         let noise = fix.variance() * (0.5 * CORNER * dt);
-        self.level.step(level(seen), level(felt), noise.x + noise.y, dt);
-        self.down.step(down(seen), down(felt), noise.z, dt);
+        self.horizontal
+            .step(horizontal(seen), horizontal(inertial), noise.x + noise.y, dt);
+        self.down.step(down(seen), down(inertial), noise.z, dt);
     }
 }

@@ -163,7 +163,7 @@ pub struct FlowRangeFusion {
     unproven: Option<Vec3>,
     /// Height of the present surface, of the lowest known one and of the other known one, along the estimate's down
     /// axis, m.
-    level: f32,
+    surface_z: f32,
     base: f32,
     other: f32,
     /// Candidate step, m, and the ranges that agree on it.
@@ -249,11 +249,11 @@ impl FlowRangeFusion {
 
     /// Takes the measured acceleration `down`, m/s², gravity removed, at `at_us` µs; `None` while the vehicle does not
     /// fly. The tilt of the beam is computed only if a run of equal ranges needs it.
-    pub fn feel(&mut self, at_us: u64, down: Option<f32>, q: Quat) {
-        self.scale.feel(at_us, down);
-        if self.frozen.feels() {
+    pub fn predict(&mut self, at_us: u64, down: Option<f32>, q: Quat) {
+        self.scale.predict(at_us, down);
+        if self.frozen.needs_motion() {
             let leans = (q.down_in_body().z, q.rotate(self.lens).z);
-            self.frozen.feel(at_us, down, leans, self.scale.climb());
+            self.frozen.predict(at_us, down, leans, self.scale.climb());
         }
     }
 
@@ -262,16 +262,16 @@ impl FlowRangeFusion {
         self.mistaken = true;
         let cos = q.down_in_body().z;
         if cos >= COS_MIN {
-            self.look_at_scale(distance * cos, q, Below::Plain);
+            self.update_scale(distance * cos, q, Below::Plain);
         }
     }
 
     /// Compares the vertical part of the newest range, `height` m, with the inertial motion.
-    fn look_at_scale(&mut self, height: f32, q: Quat, below: Below) {
+    fn update_scale(&mut self, height: f32, q: Quat, below: Below) {
         let lag = seconds(self.range_us, self.now_us);
         // Height of the centre of mass, without the lever arm: its swing is no motion of the vehicle, and its error
         // does not pass for a scale.
-        self.scale.look(height + q.rotate(self.lens).z, lag, below);
+        self.scale.update(height + q.rotate(self.lens).z, lag, below);
     }
 
     /// Height of the centre of mass above the ground with which an estimate may begin, m, at a flow with the attitude
@@ -282,7 +282,7 @@ impl FlowRangeFusion {
         let (least, most) = FLOW_HEIGHT;
         let fresh = flow.until_us.saturating_sub(at) <= RANGE_AGE;
         let sound = cos >= COS_MIN && flow.quality >= QUALITY_MIN && (least..=most).contains(&distance);
-        (self.level, self.base, self.other) = (0.0, 0.0, 0.0);
+        (self.surface_z, self.base, self.other) = (0.0, 0.0, 0.0);
         // Steps, flank and places of the axes before are dropped: a surface that is not known to be wide is at the
         // present hit.
         (self.agreed, self.step, self.flank) = (0, 0.0, 0);
@@ -318,16 +318,16 @@ impl FlowRangeFusion {
             (self.agreements, self.unsure_us) = (Default::default(), then.at_us);
         }
         if posed || anew {
-            (self.level, self.base, self.other) = (surface, surface, surface);
+            (self.surface_z, self.base, self.other) = (surface, surface, surface);
             self.band = None;
             return None;
         }
         let foot = then.position + beam(then.q, distance, yaw_offset);
-        // Innovation of a hit on a surface at `level`.
-        let off = self.level - surface;
+        // Innovation of a hit on the present surface.
+        let off = self.surface_z - surface;
         let raised = self.raised();
         let heading = then.yaw() + yaw_offset;
-        let below = PipeFootprint::below(foot, heading, self.radius, self.level);
+        let below = PipeFootprint::below(foot, heading, self.radius, self.surface_z);
         if !self.scale.begun() {
             self.unproven = Some(foot);
         }
@@ -338,8 +338,8 @@ impl FlowRangeFusion {
         } else {
             let (met_us, met) = self.met;
             let (way, time) = (foot - met, then.at_us.saturating_sub(met_us));
-            let level = Vec3::new(way.x, way.y, 0.0).norm();
-            let behind = level > LEFT_BEHIND.0 || time > LEFT_BEHIND.1;
+            let moved = Vec3::new(way.x, way.y, 0.0).norm();
+            let behind = moved > LEFT_BEHIND.0 || time > LEFT_BEHIND.1;
             self.band = self.band.filter(|_| !behind);
         }
         let flank = raised && off < 0.0 && below.is_flank(-off);
@@ -355,11 +355,11 @@ impl FlowRangeFusion {
                 } else {
                     Below::Plain
                 };
-                self.look_at_scale(distance * cos, then.q, below);
+                self.update_scale(distance * cos, then.q, below);
                 return Some((off, RANGE_NOISE * RANGE_NOISE));
             }
             let band = self.band.get_or_insert(below);
-            band.top = self.level;
+            band.top = self.surface_z;
             let (drop, doubt) = band.drop(foot);
             let back = surface - drop;
             let below = if self.flank > 0 {
@@ -368,12 +368,12 @@ impl FlowRangeFusion {
                 Below::Narrow
             };
             if self.flank > 0 {
-                self.level += FLANK_SHARE * (back - self.level);
-                self.other = self.level;
+                self.surface_z += FLANK_SHARE * (back - self.surface_z);
+                self.other = self.surface_z;
                 self.flank = if doubt > RANGE_NOISE { self.flank - 1 } else { 0 };
             }
-            let off = self.level - back;
-            self.look_at_scale(distance * cos - drop, then.q, below);
+            let off = self.surface_z - back;
+            self.update_scale(distance * cos - drop, then.q, below);
             return Some((off, RANGE_NOISE * RANGE_NOISE + doubt * doubt));
         }
         self.agreed = if (off - self.step).abs() <= SAME {
@@ -386,14 +386,14 @@ impl FlowRangeFusion {
         };
         self.step = off;
         if self.agreed >= STEP_RANGES {
-            let (before, onto) = (self.level, off > 0.0);
-            let known = self.change_level(surface, then.at_us);
-            let fell = self.scale.begun() && self.level - before > 2.0 * self.radius;
+            let (before, onto) = (self.surface_z, off > 0.0);
+            let known = self.change_surface(surface, then.at_us);
+            let fell = self.scale.begun() && self.surface_z - before > 2.0 * self.radius;
             self.unproven = self.unproven.filter(|_| !fell);
             let seen = if known { Below::Known } else { Below::New };
-            self.look_at_scale(distance * cos, then.q, seen);
+            self.update_scale(distance * cos, then.q, seen);
             let mut band = self.band.unwrap_or(below);
-            band.top = self.level.min(before);
+            band.top = self.surface_z.min(before);
             let reach = band.top - then.position.z;
             let at = |m: &StateSnapshot| m.position + beam(m.q, reach, yaw_offset);
             let way = at(then) - at(earlier);
@@ -405,19 +405,19 @@ impl FlowRangeFusion {
     }
 
     /// Switches to another surface; true if it is a known one.
-    fn change_level(&mut self, surface: f32, now: u64) -> bool {
+    fn change_surface(&mut self, surface: f32, now: u64) -> bool {
         self.agreed = 0;
         // A known surface is used again.
         let known = [self.base, self.other];
-        let again = known.iter().find(|level| (**level - surface).abs() <= STEP);
-        let before = self.level;
-        self.level = again.copied().unwrap_or(surface);
+        let again = known.iter().find(|z| (**z - surface).abs() <= STEP);
+        let before = self.surface_z;
+        self.surface_z = again.copied().unwrap_or(surface);
         // Down is positive. The surface that the beam falls to is the ground: if the height has drifted since, a
         // deeper ground must not remain, over which the true one would seem raised.
-        if self.level > before {
-            (self.other, self.base) = (before, self.level);
+        if self.surface_z > before {
+            (self.other, self.base) = (before, self.surface_z);
         } else {
-            self.other = self.level;
+            self.other = self.surface_z;
         }
         let faded = STEPS_RATE * seconds(self.stepped_us, now);
         (self.steps, self.stepped_us) = ((self.steps - faded).max(0.0) + 1.0, now);
@@ -430,17 +430,17 @@ impl FlowRangeFusion {
 
     /// A narrow object is below.
     pub(crate) fn raised(&self) -> bool {
-        self.base - self.level > STEP
+        self.base - self.surface_z > STEP
     }
 
     /// Effective distance of the flow's scene from `to`. Beside a narrow object the rest of the view is farther; if an
     /// edge of the object was seen, its share of the view is known.
     pub(crate) fn depth(&self, to: &StateSnapshot, cos: f32, yaw_offset: f32) -> Depth {
-        let far = |level: f32| {
+        let far = |surface_z: f32| {
             let (least, most) = FLOW_HEIGHT;
-            scalar::clamp((level - to.position.z) / cos, least, 2.0 * most)
+            scalar::clamp((surface_z - to.position.z) / cos, least, 2.0 * most)
         };
-        let near = far(self.level);
+        let near = far(self.surface_z);
         let foot = to.position + beam(to.q, near, yaw_offset);
         let seen = match self.band {
             Some(band) => band.depth(to.position, foot, far(self.base)),
@@ -545,7 +545,7 @@ mod tests {
     /// In other axes the places of the ones before are none, and a flank that was half seen no longer keeps the flow from being
     /// judged.
     #[test]
-    fn nothing_of_the_axes_before_is_left_where_an_estimate_begins() {
+    fn a_new_estimate_drops_the_places_of_the_previous_axes() {
         let mut flow_range = FlowRangeFusion::new(0.3, Vec3::ZERO);
         let at = |us: u64, y: f32| StateSnapshot {
             at_us: us,

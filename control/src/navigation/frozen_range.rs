@@ -121,14 +121,14 @@ impl Frozen {
 
     /// A run of equal readings has a displacement, or is to begin one.
     #[inline(always)]
-    pub fn feels(&self) -> bool {
+    pub fn needs_motion(&self) -> bool {
         self.begun || self.way.is_some()
     }
 
     /// Integrates the displacement to `at_us` µs with the measured acceleration `down`, m/s², gravity removed. `cos`
     /// is the down component of the vehicle's down axis, `lever` the offset of the lens below the centre of mass, m.
     /// Outside of flight the displacement is dropped, and without a `climb` estimate it does not begin.
-    pub fn feel(&mut self, at_us: u64, down: Option<f32>, (cos, lever): (f32, f32), climb: Option<Climb>) {
+    pub fn predict(&mut self, at_us: u64, down: Option<f32>, (cos, lever): (f32, f32), climb: Option<Climb>) {
         let (Some(down), Some(distance)) = (down.filter(|a| a.abs() < SHOCK), self.before) else {
             (self.way, self.exceeds) = (None, false);
             return;

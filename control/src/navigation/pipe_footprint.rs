@@ -26,7 +26,7 @@ pub struct Depth {
     pub distance: f32,
     /// Relative uncertainty of it by the place of the footprint.
     pub doubt: f32,
-    /// Level offset of the near part within the view, in the estimate's axes, 1: as that part comes nearer it seems to
+    /// Horizontal offset of the near part within the view, in the estimate's axes, 1: as that part comes nearer it seems to
     /// move this way.
     pub lean: Vec3,
 }
@@ -34,7 +34,7 @@ pub struct Depth {
 /// A band along the vehicle, or across it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PipeFootprint {
-    /// Point on its centre line, and the direction across it, level, in the estimate's axes.
+    /// Point on its centre line, and the horizontal direction across it, in the estimate's axes.
     middle: Vec3,
     across: Vec3,
     /// Half its width, m.
@@ -180,7 +180,7 @@ impl PipeFootprint {
     }
 }
 
-/// Level directions along `heading`, rad, and to the right of it.
+/// Horizontal directions along `heading`, rad, and to the right of it.
 fn ahead_and_right(heading: f32) -> (Vec3, Vec3) {
     let (sin, cos) = (scalar::sin(heading), scalar::cos(heading));
     (Vec3::new(cos, sin, 0.0), Vec3::new(-sin, cos, 0.0))

@@ -30,7 +30,7 @@ use crate::params::Params;
 /// m/s.
 const READY_FIXES: u32 = 25;
 const READY_SPEED: f32 = 0.1;
-/// Least deviation of a bias that is kept over a restart of the estimate, as after a perch, m/s²: level that of the
+/// Least deviation of a bias that is kept over a restart of the estimate, as after a perch, m/s²: horizontally that of the
 /// attitude, 0.6°, down that of the sensor alone.
 const KEPT_BIAS: [f32; 3] = [0.1, 0.1, 0.03];
 /// Largest bias that is kept, m/s²: a larger one comes from an estimate with inconsistent flow.
@@ -42,7 +42,7 @@ const POSE_FRESH: f32 = 0.2;
 /// Flows refused in a row after which the next one resets the velocity, a second at 50 Hz; a permanently wrong flow is
 /// found by its disagreement with the inertial sensor.
 const FLOWS_REFUSED_MAX: u32 = 50;
-/// Range below which the vehicle stands, m, and the variance of its level speed then, (m/s)².
+/// Range below which the vehicle stands, m, and the variance of its horizontal speed then, (m/s)².
 const STANDING: f32 = 0.05;
 const STAND_SPEED: f32 = 0.01;
 /// Time over which the motion of the beam across an edge is measured, µs.
@@ -144,7 +144,7 @@ impl PositionEstimator {
             return None;
         }
         let down = inertial.q.rotate(inertial.accel).z + GRAVITY;
-        self.flow_range.feel(at_us, flies.then_some(down), inertial.q);
+        self.flow_range.predict(at_us, flies.then_some(down), inertial.q);
         // A wrongly scaled range gives no height; its changes may prove that it is right again.
         let range = match range {
             Some((at, distance)) if self.flow_range.scale.wrong() => {
@@ -389,7 +389,7 @@ impl Track {
     }
 
     /// Invalidates dead reckoning after poses or flow have disagreed with the vehicle's motion: the velocity gets the
-    /// variance of a first fix, the level biases are reset, so that the disturbance is the acceleration as measured,
+    /// variance of a first fix, the horizontal biases are reset, so that the disturbance is the acceleration as measured,
     /// and the age rises to [`DEAD_RECKONING_INVALID_AGE`], so that no mode coasts.
     fn invalidate_dead_reckoning(&mut self) {
         self.fixed_us = self
@@ -434,7 +434,7 @@ impl Track {
             return;
         };
         if distance < STANDING && !posed {
-            // Flow is blind so near, and the surface carries the vehicle or soon will: the vehicle's level speed is
+            // Flow is blind so near, and the surface carries the vehicle or soon will: the vehicle's horizontal speed is
             // fused as zero.
             let lag = seconds(at, self.at_us);
             let [x, y, _] = &mut self.axes;

@@ -45,7 +45,7 @@ const MOST: f32 = 4.0;
 /// for a verdict.
 const LEAST: f32 = 1e-9;
 const MOST_VARIANCE: f32 = 1e3;
-const FELT_MIN: f32 = 20.0;
+const INERTIAL_MIN: f32 = 20.0;
 /// Scales at which a rejected range is used again, and the least inverse variance of the scale for that: a deviation
 /// of 0.15.
 const REGAINED: (f32, f32) = (0.85, 1.18);
@@ -90,8 +90,9 @@ impl Climb {
 /// The regression, and the filter behind it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RangeScale {
-    seen: Run,
-    felt: Run,
+    /// Height, climb and bias by the ranges, and by the inertial sensor.
+    ranged: Run,
+    inertial: Run,
     /// Covariances of the height with height, rate and bias; variance of the rate, its covariance with the bias,
     /// variance of the bias.
     with_height: [f32; 3],
@@ -121,17 +122,17 @@ impl RangeScale {
     /// Climb by range and inertial sensor; `None` without a range on the present surface, or while the range is
     /// rejected.
     pub fn climb(&self) -> Option<Climb> {
-        let ([_, seen, seen_bias], [_, felt, felt_bias]) = (self.seen, self.felt);
+        let ([_, ranged, ranged_bias], [_, inertial, inertial_bias]) = (self.ranged, self.inertial);
         (self.anchored && !self.wrong).then_some(Climb {
-            rate: seen + felt,
-            bias: seen_bias + felt_bias,
+            rate: ranged + inertial,
+            bias: ranged_bias + inertial_bias,
             variances: self.rest,
         })
     }
 
     /// Predicts both runs to `at_us` µs with the measured acceleration `down`, m/s², gravity removed. `None`, while
     /// the vehicle does not fly, restarts the filter.
-    pub fn feel(&mut self, at_us: u64, down: Option<f32>) {
+    pub fn predict(&mut self, at_us: u64, down: Option<f32>) {
         let dt = seconds(self.at_us, at_us);
         self.since += dt;
         let down = down.filter(|a| a.abs() <= SHOCK && dt <= STEP_MAX && self.since <= GAP);
@@ -144,7 +145,7 @@ impl RangeScale {
             return;
         };
         self.at_us = at_us;
-        for (run, down) in [(&mut self.seen, 0.0), (&mut self.felt, down)] {
+        for (run, down) in [(&mut self.ranged, 0.0), (&mut self.inertial, down)] {
             let [height, rate, bias] = run;
             let up = *bias - down;
             *height += (*rate + 0.5 * up * dt) * dt;
@@ -154,7 +155,7 @@ impl RangeScale {
 
     /// Fuses a range by which the centre of mass was `height` m over the surface, `lag` s ago. A height that is not
     /// finite is ignored.
-    pub fn look(&mut self, height: f32, lag: f32, below: Below) {
+    pub fn update(&mut self, height: f32, lag: f32, below: Below) {
         if !(height + lag).is_finite() {
             return;
         }
@@ -165,15 +166,15 @@ impl RangeScale {
         let dt = core::mem::take(&mut self.since);
         self.carry(dt);
         let then = |[height, rate, _]: Run| height - rate * lag;
-        let seen = height - then(self.seen);
-        let felt = then(self.felt);
+        let ranged = height - then(self.ranged);
+        let inertial = then(self.inertial);
         // While the range is rejected no other monitor looks for steps.
-        let stepped = self.wrong && (seen - felt).abs() > STEP;
+        let stepped = self.wrong && (ranged - inertial).abs() > STEP;
         if !self.anchored || stepped || matches!(below, Below::Known | Below::New) {
             if stepped || below == Below::New {
                 self.sums = [0.0; 4];
             }
-            self.anchor(seen, felt, below);
+            self.anchor(ranged, inertial, below);
             return;
         }
         let noise = deviation(below);
@@ -195,12 +196,19 @@ impl RangeScale {
             rb - r * b * per,
             scalar::clamp(bb - b * b * per, LEAST, MOST_VARIANCE),
         ];
-        for (run, off) in [(&mut self.seen, seen), (&mut self.felt, -felt)] {
+        for (run, off) in [(&mut self.ranged, ranged), (&mut self.inertial, -inertial)] {
             for (value, gain) in run.iter_mut().zip(gains) {
                 *value += gain * per * off;
             }
         }
-        self.judge([felt * felt * per, seen * felt * per, seen * seen * per], dt);
+        self.judge(
+            [
+                inertial * inertial * per,
+                ranged * inertial * per,
+                ranged * ranged * per,
+            ],
+            dt,
+        );
     }
 
     /// Propagates the covariance by `dt` s.
@@ -224,7 +232,7 @@ impl RangeScale {
     }
 
     /// Restarts on another surface: the height is that of the range, the rate is unknown, the bias is kept.
-    fn anchor(&mut self, seen: f32, felt: f32, below: Below) {
+    fn anchor(&mut self, ranged: f32, inertial: f32, below: Below) {
         let [_, _, bb] = self.rest;
         let bias = if self.begun {
             bb.max(KEPT_BIAS * KEPT_BIAS)
@@ -234,9 +242,9 @@ impl RangeScale {
         let noise = deviation(below);
         self.with_height = [noise * noise, 0.0, 0.0];
         self.rest = [START_RATE * START_RATE, 0.0, bias];
-        let ([seen_height, ..], [felt_height, ..]) = (&mut self.seen, &mut self.felt);
-        *seen_height += seen;
-        *felt_height -= felt;
+        let ([ranged_height, ..], [inertial_height, ..]) = (&mut self.ranged, &mut self.inertial);
+        *ranged_height += ranged;
+        *inertial_height -= inertial;
         (self.begun, self.anchored) = (true, true);
     }
 
@@ -247,14 +255,14 @@ impl RangeScale {
         for (sum, new) in self.sums.iter_mut().zip(news.into_iter().chain([1.0])) {
             *sum = *sum * keep + new;
         }
-        let [felt, both, seen, count] = self.sums;
-        if count < RANGES_MIN || felt < FELT_MIN {
+        let [inertial, both, ranged, count] = self.sums;
+        if count < RANGES_MIN || inertial < INERTIAL_MIN {
             return;
         }
-        let scale = both / felt;
-        let rough = ((seen - both * scale) / count).max(1.0);
+        let scale = both / inertial;
+        let rough = ((ranged - both * scale) / count).max(1.0);
         // Inverse variance of the scale.
-        let known = felt / rough;
+        let known = inertial / rough;
         if self.wrong {
             let (least, most) = REGAINED;
             self.wrong = known < SURE || !(least..=most).contains(&scale);

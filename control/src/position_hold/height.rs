@@ -23,7 +23,7 @@ pub struct State {
     /// From the vehicle down to the held height, m.
     pub error: f32,
     /// Commanded velocity, m/s.
-    pub wished: f32,
+    pub commanded: f32,
     /// Commanded acceleration, m/s²: without it the vehicle falls behind the held height and then overtakes it.
     pub gained: f32,
     /// Velocity, m/s.
@@ -55,8 +55,8 @@ impl Default for Height {
 impl Height {
     /// Acceleration setpoint upwards beyond gravity, m/s², in a step of `dt` s.
     pub fn step(&mut self, s: &State, dt: f32) -> f32 {
-        let wished = scalar::clamp_abs(s.wished + HEIGHT_GAIN * s.error, CLIMB_MAX);
-        let short = s.velocity - wished;
+        let commanded = scalar::clamp_abs(s.commanded + HEIGHT_GAIN * s.error, CLIMB_MAX);
+        let short = s.velocity - commanded;
         let rate = if s.landing { -SETTLE_RATE } else { LIFT_RATE };
         self.settled = scalar::clamp(self.settled + rate * dt, 0.0, 1.0);
         if !s.landing {

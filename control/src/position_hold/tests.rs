@@ -14,7 +14,7 @@ struct World {
     tilt: [[f32; 3]; 2],
     stages: [[f32; 2]; 2],
     wind: Vec3,
-    wish: VelocityCommand,
+    command: VelocityCommand,
     known: bool,
     yaw: f32,
     out: Setpoint,
@@ -37,7 +37,7 @@ impl World {
             tilt: [[0.0; 3]; 2],
             stages: [[0.0; 2]; 2],
             wind: Vec3::ZERO,
-            wish: VelocityCommand::default(),
+            command: VelocityCommand::default(),
             known: true,
             yaw,
             out: Setpoint::Stop,
@@ -56,7 +56,9 @@ impl World {
 
     fn step(&mut self) {
         let p = Params::DEFAULT;
-        self.out = self.law.step(&self.e, &self.motion(), &self.wish, self.known, DT);
+        self.out = self
+            .law
+            .step(&self.e, &self.motion(), &self.command, self.known, DT);
         let Setpoint::Angle {
             roll, pitch, thrust, ..
         } = self.out
@@ -77,8 +79,8 @@ impl World {
             }
             let [[f, ..], [r, ..]] = self.tilt;
             let up = thrust / p.mass - GRAVITY;
-            let level = about_down(Vec3::new(f, r, 0.0), self.yaw + self.e.yaw_offset);
-            let a = level + self.wind - Vec3::new(0.0, 0.0, up);
+            let horizontal = about_down(Vec3::new(f, r, 0.0), self.yaw + self.e.yaw_offset);
+            let a = horizontal + self.wind - Vec3::new(0.0, 0.0, up);
             self.e.velocity += a * dt;
             self.e.position += self.e.velocity * dt;
         }
@@ -132,11 +134,11 @@ fn a_steady_wind_leaves_no_error_and_more_than_the_limit_is_not_fought() {
 #[test]
 fn sticks_ask_for_velocities_along_the_heading_and_centred_they_stop() {
     let mut w = World::new(1.0, 0.5);
-    w.wish.velocity = Vec3::new(1.0, 0.0, -0.4);
+    w.command.velocity = Vec3::new(1.0, 0.0, -0.4);
     let v = w.run(6.0).velocity;
-    let wanted = about_down(w.wish.velocity, 1.5);
+    let wanted = about_down(w.command.velocity, 1.5);
     assert!((v - wanted).norm() < 0.03, "{v:?} {wanted:?}");
-    w.wish = VelocityCommand::default();
+    w.command = VelocityCommand::default();
     w.run(5.0);
     let held = w.e.position;
     w.run(5.0);
@@ -153,22 +155,22 @@ fn at_a_turn_the_vehicle_follows_the_held_point() {
         // Speeds that change by 0.3 m/s², up to 0.25 m/s.
         let t = i as f32 * DT;
         let phase = (t / 2.0) % 2.0;
-        let wished = (0.6 * (phase - 1.0).abs() - 0.3).clamp(-0.25, 0.25);
-        w.wish.velocity = Vec3::new(0.0, wished, 0.0);
+        let commanded = (0.6 * (phase - 1.0).abs() - 0.3).clamp(-0.25, 0.25);
+        w.command.velocity = Vec3::new(0.0, commanded, 0.0);
         w.step();
-        led += about_down(w.wish.velocity, 0.7) * DT;
+        led += about_down(w.command.velocity, 0.7) * DT;
         off = off.max((w.e.position - w.law.anchor).norm());
     }
     assert!(off < 0.04, "{off}");
     // Where the wishes have led it is where it comes to rest.
     assert!((w.law.held() - led).norm() < 0.03, "{:?} {led:?}", w.law.held());
-    w.wish = VelocityCommand::default();
+    w.command = VelocityCommand::default();
     let goal = w.law.held();
     w.run(6.0);
     assert!((w.e.position - goal).norm() < 0.04, "{:?} {goal:?}", w.e.position);
 }
 
-/// Down onto a gate, as an approach does: without the change of the wish it fell behind by 5 cm, and sank at 0.26 m/s
+/// Down onto a gate, as an approach does: without the change of the command it fell behind by 5 cm, and sank at 0.26 m/s
 /// instead of 0.2 to catch up, past where it was to stop.
 #[test]
 fn on_the_way_down_it_follows_the_held_height() {
@@ -176,7 +178,7 @@ fn on_the_way_down_it_follows_the_held_height() {
     w.run(1.0);
     let (mut off, mut fastest) = (0.0f32, 0.0f32);
     for i in 0..300 {
-        w.wish.velocity.z = if i < 150 { 0.2 } else { 0.0 };
+        w.command.velocity.z = if i < 150 { 0.2 } else { 0.0 };
         w.step();
         off = off.max((w.e.position.z - w.law.anchor.z).abs());
         fastest = fastest.max(w.e.velocity.z);
@@ -187,9 +189,9 @@ fn on_the_way_down_it_follows_the_held_height() {
 #[test]
 fn a_step_of_no_time_asks_for_a_finite_tilt() {
     let mut w = World::new(0.0, 0.0);
-    w.wish.velocity.y = 0.3;
+    w.command.velocity.y = 0.3;
     for dt in [DT, 0.0, DT] {
-        let asked = w.law.step(&w.e, &w.motion(), &w.wish, true, dt);
+        let asked = w.law.step(&w.e, &w.motion(), &w.command, true, dt);
         assert!(asked.is_finite(), "{dt}: {asked:?}");
     }
 }
@@ -203,7 +205,7 @@ fn what_is_touched_is_not_learnt_as_wind() {
     let learnt = w.law.wind;
     w.e.disturbance = Vec3::new(2.5, 0.0, 0.0);
     for _ in 0..200 {
-        w.law.step(&w.e, &w.motion(), &w.wish, true, DT);
+        w.law.step(&w.e, &w.motion(), &w.command, true, DT);
     }
     assert_eq!(w.law.wind, learnt);
     let carried = BodyMotion {
@@ -212,7 +214,7 @@ fn what_is_touched_is_not_learnt_as_wind() {
     };
     w.e.disturbance = Vec3::new(0.6, 0.0, 0.0);
     for _ in 0..200 {
-        w.law.step(&w.e, &carried, &w.wish, true, DT);
+        w.law.step(&w.e, &carried, &w.command, true, DT);
     }
     assert_eq!(w.law.wind, learnt);
 }
@@ -233,20 +235,20 @@ fn a_jump_of_the_origin_moves_the_held_point_and_a_push_leaves_it_in_reach() {
 #[test]
 fn sinking_onto_something_hands_over_the_weight() {
     let mut w = World::new(0.0, 0.0);
-    w.wish.velocity.z = CLIMB_MAX;
+    w.command.velocity.z = CLIMB_MAX;
     let carried = BodyMotion {
         carried: true,
         ..w.motion()
     };
     let mut thrust = f32::MAX;
     for _ in 0..300 {
-        thrust = w.law.step(&w.e, &carried, &w.wish, true, DT).thrust();
+        thrust = w.law.step(&w.e, &carried, &w.command, true, DT).thrust();
     }
     assert!(thrust < 0.5, "{thrust}");
     // Lifted again, it carries at once.
-    w.wish.velocity.z = 0.0;
+    w.command.velocity.z = 0.0;
     for _ in 0..100 {
-        thrust = w.law.step(&w.e, &carried, &w.wish, true, DT).thrust();
+        thrust = w.law.step(&w.e, &carried, &w.command, true, DT).thrust();
     }
     assert!(thrust > 0.4 * Params::DEFAULT.mass * GRAVITY, "{thrust}");
 }

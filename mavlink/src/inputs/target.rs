@@ -23,7 +23,7 @@ pub fn target(m: &LANDING_TARGET_DATA) -> Result<PipeTarget, Refusal> {
     let along = if given { rotation(m.q)? } else { None };
     let target = PipeTarget {
         at_us: 0,
-        crown: bounded([m.x, m.y, m.z], POSITION_MAX)?,
+        crown_position: bounded([m.x, m.y, m.z], POSITION_MAX)?,
         heading: match along {
             Some(q) => Some(PipeTarget::heading_of(q).ok_or(Refusal::Value)?),
             None => None,

@@ -15,6 +15,16 @@ use crate::wire::requests::{Command, Peer};
 use sophie_control::calibration::procedure::Procedure;
 use sophie_dialect::*;
 
+/// A received command, with its sender and the state of the vehicle.
+#[derive(Clone, Copy)]
+pub(crate) struct Received<'a> {
+    pub(crate) command: &'a Command,
+    pub(crate) from: Peer,
+    /// Time of receipt, µs.
+    pub(crate) now: u64,
+    pub(crate) vehicle: &'a Vehicle,
+}
+
 /// The answer to a command.
 pub(crate) struct Reply {
     pub(crate) result: MavResult,
@@ -39,14 +49,13 @@ impl From<Answer> for Reply {
 
 impl Services {
     /// Obeys a command; `None` if the acknowledgement comes later.
-    pub(crate) fn command(
-        &mut self,
-        command: &Command,
-        from: Peer,
-        now: u64,
-        vehicle: &Vehicle,
-        procedure: &mut Procedure,
-    ) -> Option<Reply> {
+    pub(crate) fn command(&mut self, received: &Received<'_>, procedure: &mut Procedure) -> Option<Reply> {
+        let Received {
+            command,
+            now,
+            vehicle,
+            ..
+        } = *received;
         let [first, second, ..] = command.params;
         let reply: Reply = match u32::from(command.number) {
             n if n == MavCmd::MAV_CMD_REQUEST_MESSAGE as u32 => self.once(first, second),
@@ -59,25 +68,19 @@ impl Services {
             }
             n if n == MavCmd::MAV_CMD_PREFLIGHT_STORAGE as u32 => self.storage(first, vehicle).into(),
             n if n == MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION as u32 => {
-                return self
-                    .guide_calibration(command, from, now, vehicle, procedure)
-                    .map(Reply::from);
+                return self.guide_calibration(received, procedure).map(Reply::from);
             }
             n if n == MavCmd::MAV_CMD_SOPHIE_REPORT as u32 => {
-                return self.report(command, from, now, vehicle).map(Reply::from);
+                return self.report(received).map(Reply::from);
             }
             n if n == MavCmd::MAV_CMD_SOPHIE_SET_BROWN_OUT as u32 => {
-                return self.brown_out(command, from, now, vehicle).map(Reply::from);
+                return self.brown_out(received).map(Reply::from);
             }
             n if n == MavCmd::MAV_CMD_SOPHIE_CALIBRATE as u32 => {
-                return self
-                    .calibrate(command, from, now, vehicle, procedure)
-                    .map(Reply::from);
+                return self.calibrate(received, procedure).map(Reply::from);
             }
             _ => {
-                return self
-                    .order_by(command, from, now, vehicle, procedure)
-                    .map(Reply::from);
+                return self.order_by(received, procedure).map(Reply::from);
             }
         };
         Some(reply)

@@ -65,7 +65,7 @@ fn most(station: &Station, window: u64) -> usize {
 }
 
 #[test]
-fn no_wish_of_a_ground_station_exceeds_the_budget_and_heartbeats_and_answers_come_first() {
+fn requested_streams_stay_within_the_budget_and_heartbeats_and_answers_come_first() {
     let mut station = Station::with(1500);
     station.vehicle = vehicle(Mode::Flight);
     for stream in STREAMS.iter().filter(|s| s.id != 0) {

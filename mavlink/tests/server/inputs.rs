@@ -480,7 +480,7 @@ fn what_is_no_flow_looks_elsewhere_or_is_old_is_refused_and_counted() {
 }
 
 #[test]
-fn a_reach_that_is_not_given_is_no_range_of_nothing() {
+fn a_distance_of_zero_or_without_limits_is_no_measurement() {
     // Many sensors say 0 where they see nothing: from 0 on none measures.
     for (distance, seen_at) in [(0, None), (1, None), (120, Some(1.2))] {
         let m = DISTANCE_SENSOR_DATA {
@@ -500,7 +500,7 @@ fn a_reach_that_is_not_given_is_no_range_of_nothing() {
 }
 
 #[test]
-fn nothing_within_reach_is_no_distance() {
+fn a_range_without_a_target_in_reach_has_no_distance() {
     let none = [
         DISTANCE_SENSOR_DATA {
             current_distance: 800,
@@ -559,7 +559,7 @@ fn the_place_of_the_pipe_is_taken_with_its_time_and_direction() {
     let (target, counts) = placed(&pipe());
     let target = target.unwrap();
     assert_eq!(
-        (target.at_us, target.crown.to_array()),
+        (target.at_us, target.crown_position.to_array()),
         (4_990_000, [2.0, 0.0, -1.5])
     );
     assert!((target.heading.unwrap() - 0.25 * core::f32::consts::PI).abs() < 1e-3);

@@ -241,7 +241,7 @@ fn each_sick_part_loses_its_bit_and_arming_with_it() {
 }
 
 #[test]
-fn outputs_are_pulses_and_what_is_not_driven_is_none() {
+fn outputs_are_pulses_and_zero_where_not_driven() {
     let mut v = vehicle(Mode::Flight);
     v.motors = Some([0.0, 0.25, 0.5, 1.0]);
     v.servos = Some([550.0, 1500.4, 1500.6, 2450.0]);

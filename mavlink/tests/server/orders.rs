@@ -5,8 +5,8 @@ use sophie_control::chain::setpoint::Setpoint;
 use sophie_control::gripper::grip::GripState;
 use sophie_control::mode::{Inputs, Mode, ModeLogic, Outputs};
 use sophie_control::params::Params;
-use sophie_control::pilot::bench_orders::{
-    BenchAnswer, BenchRequest, BenchState, BenchView, PULSE_MAX_US, SPIN_TIME,
+use sophie_control::pilot::actuator_test::{
+    ActuatorTestAnswer, ActuatorTestRequest, ActuatorTestState, ActuatorTestView, PULSE_MAX_US, SPIN_TIME,
 };
 use sophie_control::pilot::rc::Sticks;
 use sophie_control::pilot::remote::RemoteRequest;
@@ -29,7 +29,7 @@ struct Craft {
     out: Outputs,
     /// The commander takes orders.
     listens: bool,
-    bench: Option<BenchRequest>,
+    actuator_test: Option<ActuatorTestRequest>,
     remote: Option<RemoteRequest>,
     /// Periods in which a motor was driven.
     spun: u32,
@@ -58,7 +58,7 @@ impl Craft {
             inputs,
             out: Outputs::default(),
             listens: true,
-            bench: None,
+            actuator_test: None,
             remote: None,
             spun: 0,
         };
@@ -73,13 +73,17 @@ impl Craft {
 
     fn run(&mut self, ms: u64) {
         for _ in 0..ms / 20 {
-            let CommanderRequests { remote, bench } = {
+            let CommanderRequests {
+                remote,
+                actuator_test,
+            } = {
                 let station = &mut self.station;
                 station.server.requests(station.now, &station.vehicle)
             };
-            (self.remote, self.bench) = (remote.or(self.remote), bench.or(self.bench));
+            (self.remote, self.actuator_test) =
+                (remote.or(self.remote), actuator_test.or(self.actuator_test));
             if self.listens {
-                (self.inputs.remote, self.inputs.bench) = (remote, bench);
+                (self.inputs.remote, self.inputs.actuator_test) = (remote, actuator_test);
             }
             for _ in 0..2 {
                 self.out = self.logic.step(&self.inputs, 0.01);
@@ -92,10 +96,10 @@ impl Craft {
                 inhibits: self.out.inhibits,
             });
             self.station.vehicle.answers = Answers {
-                bench: BenchView {
-                    newest: self.bench.map_or(0, |b| b.number),
-                    renewed: bench.is_some(),
-                    answer: self.out.bench,
+                actuator_test: ActuatorTestView {
+                    newest: self.actuator_test.map_or(0, |b| b.number),
+                    renewed: actuator_test.is_some(),
+                    answer: self.out.actuator_test,
                 },
                 newest: self.remote.map_or(0, |r| r.number),
                 renewed: remote.is_some(),
@@ -234,17 +238,17 @@ fn force_is_acknowledged_by_the_commander_alone_whatever_ran_before() {
     for (command, params) in begun {
         let mut craft = Craft::new();
         craft.listens = false;
-        (craft.inputs.remote, craft.inputs.bench) = (None, None);
+        (craft.inputs.remote, craft.inputs.actuator_test) = (None, None);
         craft.station.sent.clear();
         craft.station.say(&long(command, &params));
         craft.run(40);
         craft.station.say(&long(ARM, &[0.0, FORCED]));
         craft.run(40);
-        // The report ends, and the commander answers the bench order that it took before; it has not seen the force.
+        // The report ends, and the commander answers the actuator test that it took before; it has not seen the force.
         craft.station.server.row(None, 0);
-        craft.station.vehicle.answers.bench.answer = BenchAnswer {
-            number: craft.bench.map_or(0, |bench| bench.number),
-            state: BenchState::Done,
+        craft.station.vehicle.answers.actuator_test.answer = ActuatorTestAnswer {
+            number: craft.actuator_test.map_or(0, |test| test.number),
+            state: ActuatorTestState::Done,
         };
         let station = &mut craft.station;
         let _ = station.server.requests(station.now, &station.vehicle);

@@ -76,7 +76,7 @@ fn of_version_1_a_heartbeat_alone_takes_the_line() {
 }
 
 #[test]
-fn a_frame_that_is_not_sound_or_does_not_go_on_leaves_the_line_as_it_was() {
+fn a_damaged_or_unfinished_frame_does_not_switch_the_line_to_mavlink() {
     let beat = frame(&HEARTBEAT_DATA::DEFAULT);
     for cut in 1..beat.len() {
         let (mut detector, mut now) = (ProtocolDetector::new(), 0);

@@ -268,7 +268,7 @@ fn a_time_of_32_bits_is_aged_modulo_its_range() {
 }
 
 #[test]
-fn a_sender_that_starts_again_with_another_clock_is_late_until_it_has_answered() {
+fn a_restarted_sender_with_another_clock_is_late_until_it_answers_a_timesync() {
     let mut station = known();
     let again = Sender {
         ahead: 1_000_000,
@@ -350,7 +350,7 @@ fn another_source_comes_after_two_seconds_of_silence_as_a_reset() {
 }
 
 #[test]
-fn no_stray_takes_the_clock_of_a_sender_that_is_heard() {
+fn another_sender_does_not_take_the_clock_of_an_active_one() {
     let module = Sender {
         component: 173,
         ..VIO

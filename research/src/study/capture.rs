@@ -94,7 +94,7 @@ pub struct Request {
     pub seed: u64,
     /// Largest heading off the pipe, rad.
     pub heading: f64,
-    /// Every touch is of another vehicle: stiffness, arms and tendons are drawn. Otherwise all are of the default one.
+    /// Every touch is of another vehicle: stiffness, arms and tendons are sampled. Otherwise all are of the default one.
     pub uncertain: bool,
 }
 

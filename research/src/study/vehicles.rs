@@ -16,7 +16,7 @@ pub use self::sampling::{SampledVehicle, sample};
 #[derive(Clone, Debug)]
 pub struct Flown {
     /// The vehicle.
-    pub drawn: SampledVehicle,
+    pub sampled: SampledVehicle,
     /// Rows of the check that it fails, each with value and limit; none: it can fly.
     pub check: Vec<String>,
     /// Of its flight.
@@ -42,16 +42,16 @@ impl Flown {
 /// # Errors
 /// One line: a vehicle that does not make a valid scenario.
 pub fn fly(count: u64, seed: u64, spread: f64) -> Result<Vec<Flown>, String> {
-    let drawn = (0..count)
+    let sampled = (0..count)
         .map(|i| sample(seed.saturating_add(i), spread))
         .collect::<Result<Vec<_>, _>>()?;
-    Ok(parallel::each(&drawn, |drawn| Flown {
-        drawn: drawn.clone(),
-        check: Check::of(&drawn.scenario)
+    Ok(parallel::each(&sampled, |sampled| Flown {
+        sampled: sampled.clone(),
+        check: Check::of(&sampled.scenario)
             .failing()
             .map(|row| row.shortfall())
             .collect(),
-        outcome: sophie_sim::flight::fly(&drawn.scenario, &mut Silent).outcome,
+        outcome: sophie_sim::flight::fly(&sampled.scenario, &mut Silent).outcome,
     }))
 }
 

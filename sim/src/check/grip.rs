@@ -10,7 +10,7 @@ use crate::plant::beam::{BeamSpec, Masses, TENDON_LEVER};
 use crate::plant::flexible::ArmBending;
 use crate::plant::{arm_spec, beam_spec};
 use crate::scenario::{Scenario, Step};
-use crate::test_stands::arm_bench::{BenchArm, Tried, try_grip};
+use crate::test_stands::arm_stand::{StandArm, Tried, try_grip};
 
 /// Closing throttle of a mission that names none: a scenario file's default.
 const THROTTLE: f64 = 0.3;
@@ -30,29 +30,29 @@ pub struct TriedArm {
 /// Tries every arm that the scenario closes; equal arms once.
 #[must_use]
 pub fn tries(scenario: &Scenario) -> Vec<TriedArm> {
-    let mut done: Vec<(BenchArm, TriedArm)> = Vec::new();
+    let mut done: Vec<(StandArm, TriedArm)> = Vec::new();
     for arm in (0..4).filter(|arm| scenario.arms.mask()[*arm]) {
-        let bench = bench(scenario, arm);
+        let stand = stand(scenario, arm);
         let alike = done
             .iter()
-            .find(|(other, _)| other.is_like(&bench))
+            .find(|(other, _)| other.is_like(&stand))
             .map(|(_, tried)| *tried);
         let tried = alike.map_or_else(
-            || try_grip(&bench, f64::from(scenario.params.clamp_timeout)),
+            || try_grip(&stand, f64::from(scenario.params.clamp_timeout)),
             |t| t.tried,
         );
-        done.push((bench, TriedArm { arm, tried }));
+        done.push((stand, TriedArm { arm, tried }));
     }
     done.into_iter().map(|(_, tried)| tried).collect()
 }
 
-fn bench(scenario: &Scenario, arm: usize) -> BenchArm {
+fn stand(scenario: &Scenario, arm: usize) -> StandArm {
     let (v, w, p) = (&scenario.vehicle, &scenario.world, scenario.params);
     let wanted = scenario.steps.iter().find_map(|step| match step {
         Step::Perch { throttle } | Step::Clamp { throttle } => Some(*throttle),
         _ => None,
     });
-    BenchArm {
+    StandArm {
         arm,
         spec: arm_spec(v, arm),
         beam: (v.arm_bending == ArmBending::Beam).then(|| beam_spec(v, arm)),
@@ -80,7 +80,7 @@ pub fn rows(scenario: &Scenario, tries: &[TriedArm]) -> Vec<Row> {
         let value = if holds {
             tried.asked
         } else {
-            needed(scenario, arm, bench(scenario, arm).thrust, target)
+            needed(scenario, arm, stand(scenario, arm).thrust, target)
                 .map_or(f64::INFINITY, |n| n.max(tried.asked))
         };
         let mut row = Row::new(
@@ -119,7 +119,7 @@ mod tests {
     use super::*;
     use crate::plant::tendon::ServoProfile;
     use crate::plant::tendon::TendonSpec;
-    use crate::test_stands::arm_bench::{Closing, close};
+    use crate::test_stands::arm_stand::{Closing, close};
 
     #[test]
     fn the_needed_force_equals_that_of_a_closing_arm() {

@@ -79,8 +79,8 @@ impl Companion {
             if let Some(at) = measured.at_us.checked_sub(start) {
                 let pose = self.pose(&measured, at);
                 self.line.receive(&pose);
-                if let Some((crown, heading)) = measured.target {
-                    let target = self.target(crown, heading, at);
+                if let Some((crown_position, heading)) = measured.target {
+                    let target = self.target(crown_position, heading, at);
                     self.line.receive(&target);
                 }
             }
@@ -115,8 +115,8 @@ impl Companion {
         })
     }
 
-    fn target(&mut self, crown: DVec3, heading: f64, at_us: u64) -> Vec<u8> {
-        let [x, y, z] = crown.as_vec3().to_array();
+    fn target(&mut self, crown_position: DVec3, heading: f64, at_us: u64) -> Vec<u8> {
+        let [x, y, z] = crown_position.as_vec3().to_array();
         let q = DQuat::from_rotation_z(heading).as_quat();
         self.frame(&LANDING_TARGET_DATA {
             time_usec: at_us,

@@ -127,10 +127,10 @@ impl Guidance {
             -GRAVITY * (pitch * self.stick_angle).tan(),
             GRAVITY * (roll * self.stick_angle).tan(),
         );
-        let level = DVec2::from_angle(seen.yaw).rotate(body) - self.wind;
+        let horizontal = DVec2::from_angle(seen.yaw).rotate(body) - self.wind;
         let upright = (roll * self.stick_angle).cos() * (pitch * self.stick_angle).cos();
         let down = GRAVITY * (1.0 - throttle * upright / self.hover);
-        self.foresight.note(now, level, down, dt);
+        self.foresight.note(now, horizontal, down, dt);
         self.ahead = self.foresight.ahead(seen, dt);
     }
 
@@ -143,8 +143,8 @@ impl Guidance {
         if away.length() < WIND_NEAR {
             self.wind = (self.wind + error * (WIND_GAIN * dt)).clamp_length_max(WIND_MAX);
         }
-        let level = (error * SPEED_GAIN + self.wind).clamp_length_max(ACCELERATION_MAX);
-        let body = DVec2::from_angle(-seen.yaw).rotate(level);
+        let horizontal = (error * SPEED_GAIN + self.wind).clamp_length_max(ACCELERATION_MAX);
+        let body = DVec2::from_angle(-seen.yaw).rotate(horizontal);
         let (pitch, roll) = (-(body.x / GRAVITY).atan(), (body.y / GRAVITY).atan());
         StickTarget {
             roll: roll / self.stick_angle,

@@ -73,7 +73,7 @@ pub struct Foresight {
     /// Accelerations over the last `delay`: (time, north-east, down), m/s².
     past: VecDeque<(f64, DVec2, f64)>,
     /// Present acceleration, which follows the sticks with a lag.
-    level: DVec2,
+    horizontal: DVec2,
     down: f64,
 }
 
@@ -81,7 +81,7 @@ pub struct Foresight {
 const LEAN_TIME: f64 = 0.35;
 const THRUST_TIME: f64 = 0.08;
 /// Prediction ahead of the present, s: lag of the sticks and half of the lean.
-const AHEAD_LEVEL: f64 = 0.25;
+const AHEAD_HORIZONTAL: f64 = 0.25;
 const AHEAD_DOWN: f64 = 0.12;
 
 impl Foresight {
@@ -90,16 +90,16 @@ impl Foresight {
         Self {
             delay,
             past: VecDeque::new(),
-            level: DVec2::ZERO,
+            horizontal: DVec2::ZERO,
             down: 0.0,
         }
     }
 
     /// Records the accelerations commanded by the sticks, m/s², without the trims against wind and weight.
-    pub fn note(&mut self, t: f64, level: DVec2, down: f64, dt: f64) {
-        self.level += (level - self.level) * (dt / (dt + LEAN_TIME));
+    pub fn note(&mut self, t: f64, horizontal: DVec2, down: f64, dt: f64) {
+        self.horizontal += (horizontal - self.horizontal) * (dt / (dt + LEAN_TIME));
         self.down += (down - self.down) * (dt / (dt + THRUST_TIME));
-        self.past.push_back((t, self.level, self.down));
+        self.past.push_back((t, self.horizontal, self.down));
         while self.past.front().is_some_and(|p| p.0 <= t - self.delay) {
             self.past.pop_front();
         }
@@ -113,13 +113,13 @@ impl Foresight {
     /// Position and velocity, NED, predicted for when the sticks act.
     pub fn ahead(&self, seen: &VisibleState, dt: f64) -> (DVec3, DVec3) {
         let (mut position, mut velocity) = (seen.position, seen.velocity);
-        for (_, level, down) in &self.past {
-            velocity += level.extend(*down) * dt;
+        for (_, horizontal, down) in &self.past {
+            velocity += horizontal.extend(*down) * dt;
             position += velocity * dt;
         }
         // Constant velocity for the part of the delay without a record.
         position += velocity * (self.delay - self.past.len() as f64 * dt).max(0.0);
-        velocity += (self.level * AHEAD_LEVEL).extend(self.down * AHEAD_DOWN);
+        velocity += (self.horizontal * AHEAD_HORIZONTAL).extend(self.down * AHEAD_DOWN);
         (position, velocity)
     }
 }

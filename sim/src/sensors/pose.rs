@@ -123,12 +123,12 @@ impl PoseSource {
         }
     }
 
-    /// The same with a search for the pipe, whose crown is assumed at `crown` in world axes, m.
+    /// The same with a search for the pipe, whose crown is assumed at `crown_position` in world axes, m.
     #[must_use]
-    pub fn seeing(self, crown: DVec3, streams: Streams) -> Self {
+    pub fn seeing(self, crown_position: DVec3, streams: Streams) -> Self {
         let off = normal(&mut streams.of("pose.target")) * TARGET_CONSTANT;
         Self {
-            pipe: Some(crown + off),
+            pipe: Some(crown_position + off),
             ..self
         }
     }

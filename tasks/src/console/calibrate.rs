@@ -4,14 +4,13 @@
 //! them.
 
 use embassy_time::{Duration, Instant, Timer};
+use sophie_control::calibration::Face;
 use sophie_control::calibration::procedure::{Finding, MOUNTING_SIDES, Outcome};
 use sophie_control::calibration::step::{Calibration, Step};
-use sophie_control::calibration::{Face, Unfit};
 use sophie_control::maths::decimal::{self, Decimal};
 use sophie_control::params::Params;
 
 use super::Console;
-use crate::storage::parameters::Unit;
 use sophie_ports::chip::Chip;
 use sophie_ports::serial::{SerialInput, SerialOutput};
 use sophie_ports::storage::Storage;
@@ -122,21 +121,8 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
                     }
                 }
             }
-            (Err(unfit), _) => self.unfit(unfit).await,
+            (Err(unfit), _) => self.out.line(format_args!("not taken: {unfit}")).await,
         }
-    }
-
-    async fn unfit(&mut self, unfit: Unfit) {
-        let Unfit {
-            what, value, unit, ..
-        } = unfit;
-        let [value, least, most] = [value, unfit.allowed[0], unfit.allowed[1]].map(Decimal);
-        let unit = Unit(if unit.is_empty() { "1" } else { unit });
-        self.out
-            .line(format_args!(
-                "not taken: {what} is {value:.2}; {least:.2} to {most:.2}{unit} allowed"
-            ))
-            .await;
     }
 }
 

@@ -46,7 +46,7 @@ const BURST: u32 = 8;
 /// Pause after a line error or an empty read, so that a dead line cannot take the processor.
 const PAUSE: Duration = Duration::from_millis(1);
 /// Delay of the restart with a new brown-out level: the acknowledgement is sent first.
-const LAST_WORDS: Duration = Duration::from_millis(300);
+const RESTART_DELAY: Duration = Duration::from_millis(300);
 
 /// The serial lines that carry MAVLink.
 pub struct Lines<I, O, const N: usize> {
@@ -281,7 +281,7 @@ async fn obey<const N: usize>(
                 if let Some(due) = link.due.get(at) {
                     due.signal(());
                 }
-                Timer::after(LAST_WORDS).await;
+                Timer::after(RESTART_DELAY).await;
                 chip.restart();
             }
         }
@@ -466,8 +466,8 @@ fn give(links: &Links, at: Instant, requests: CommanderRequests) {
     if let Some(request) = requests.remote {
         links.remote.send(at, request);
     }
-    if let Some(request) = requests.bench {
-        links.bench.send(at, request);
+    if let Some(request) = requests.actuator_test {
+        links.actuator_test.send(at, request);
     }
 }
 
@@ -535,7 +535,7 @@ fn picture(links: &Links, reels: &PerArm<Reel>) -> Vehicle {
 /// Replies to the latest orders, of any line.
 fn answers(links: &Links) -> Answers {
     Answers {
-        bench: links.bench_view(),
+        actuator_test: links.actuator_test_view(),
         newest: links.remote.look(|m| m.value.number).unwrap_or(0),
         renewed: links.remote.fresh().is_some(),
         remote: links.remote_answer.fresh().unwrap_or_default(),

@@ -1,7 +1,7 @@
 //! Tendon forces demanded by the clamp, and the input that they are based on.
 
 use sophie_control::allocation::wrench::PerArm;
-use sophie_control::pilot::bench_orders::Place;
+use sophie_control::pilot::actuator_test::Place;
 
 /// Demanded tendon forces, by the input that they are based on; the message is stamped with that input's time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,7 +12,7 @@ pub enum TendonOrder {
     Blind(TendonForces),
     /// Retained from before a restart, sent once at the start: the servos hold their position until a command arrives.
     Resumed(TendonForces),
-    /// Bench test: one servo at a given pulse; the forces of the others are zero.
+    /// Actuator test: one servo at a given pulse; the forces of the others are zero.
     Placed {
         /// Per arm.
         forces: TendonForces,
@@ -38,8 +38,8 @@ impl TendonOrder {
 pub struct TendonForces {
     /// Per arm.
     pub arms: PerArm<TendonForce>,
-    /// The tendons were found wound at power-on: the servo angles must be derived from the tilt.
-    pub found: bool,
+    /// The tendons were wound at power-on: the servo angles must be derived from the tilt.
+    pub wound_at_power_on: bool,
 }
 
 /// Demand on one tendon.
@@ -48,5 +48,5 @@ pub struct TendonForce {
     /// Tension, N; 0 is slack.
     pub force: f32,
     /// Hold the servo's position and ignore the force.
-    pub stay: bool,
+    pub hold_position: bool,
 }

@@ -23,11 +23,11 @@ pub async fn run(links: &Links) -> ! {
         let now = rate.next().await.started;
         // The link's lock masks interrupts: copies the needed fields only and computes after it.
         let attitude = &links.attitude;
-        let felt = attitude.look(|m| {
+        let inertial = attitude.look(|m| {
             let fresh = m.is_fresh(now, attitude.stale_after);
             fresh.then_some((m.at, m.value.q, m.value.accel))
         });
-        let Some((at, q, accel)) = felt.flatten() else {
+        let Some((at, q, accel)) = inertial.flatten() else {
             continue;
         };
         let seen = links.external_pose.look(|m| Seen::of(&m.value));

@@ -33,7 +33,6 @@ pub async fn run(links: &Links) -> ! {
     let mut rate = FixedRate::of(links, TaskId::Clamp);
     let config = Config::from_params(&links.params);
     let mut gripper = begin(links);
-    let mut found = false;
     loop {
         let tick = rate.next().await;
         let Some(Newest::Fresh(command)) = links.clamp_command.newest() else {
@@ -51,7 +50,11 @@ pub async fn run(links: &Links) -> ! {
             ClampCommand::Tighten { times, .. } => config.tightened(times),
             _ => config,
         };
-        let out = gripper.step(&config, &inputs(links, close, contact), tick.dt);
+        let inputs = inputs(links, close, contact);
+        let out = match command.value {
+            ClampCommand::Keep => gripper.step_without_pulses(&config, &inputs, tick.dt),
+            _ => gripper.step(&config, &inputs, tick.dt),
+        };
         let at = contact.map_or(command.at, |contact| contact.at);
         let grip = GripState {
             proven: out.proven,
@@ -59,18 +62,13 @@ pub async fn run(links: &Links) -> ! {
             released: out.released,
             arms: out.arms.map(|arm| arm.grip),
         };
-        if command.value == ClampCommand::Keep {
-            found = grip
-                .arms
-                .iter()
-                .any(|arm| arm.pressure > links.params.release_pressure);
-        } else {
+        if command.value != ClampCommand::Keep {
             let forces = TendonForces {
                 arms: out.arms.map(|arm| TendonForce {
                     force: arm.grip.force,
-                    stay: arm.hold_position,
+                    hold_position: arm.hold_position,
                 }),
-                found,
+                wound_at_power_on: out.wound_at_power_on,
             };
             let order = match command.value {
                 ClampCommand::Place(place) => TendonOrder::Placed { forces, place },
@@ -95,8 +93,11 @@ fn begin(links: &Links) -> Gripper {
             ..
         }) => {
             let forces = TendonForces {
-                arms: force.map(|force| TendonForce { force, stay: true }),
-                found: false,
+                arms: force.map(|force| TendonForce {
+                    force,
+                    hold_position: true,
+                }),
+                wound_at_power_on: false,
             };
             links.tendons.send(Instant::now(), TendonOrder::Resumed(forces));
             Gripper::resume(force, fault, response)

@@ -4,7 +4,7 @@
 //! vehicle is on the pipe at power-up, the gears hold. After a restart the drives resume from the retained angles.
 //! With stale forces the servos hold; also with a missing tilt, unless the arm is to be released.
 //!
-//! A servo with uncalibrated marks gets pulses only in bench tests: the default marks may lie beyond an end stop,
+//! A servo with uncalibrated marks gets pulses only in actuator tests: the default marks may lie beyond an end stop,
 //! where the stall current would burn the servo.
 //!
 //! The task ends the chain from contact pressure to pulse and measures it (`ChainWatch`).
@@ -86,21 +86,21 @@ struct Tendon {
 
 impl Tendon {
     fn step(&mut self, asked: TendonForce, tilt: Option<f32>, dt: f32) -> Drive {
-        if asked.stay {
-            self.stay(tilt, dt)
+        if asked.hold_position {
+            self.hold_position(tilt, dt)
         } else {
             self.drive.step(&self.reel, asked.force, tilt, dt)
         }
     }
 
-    fn stay(&mut self, tilt: Option<f32>, dt: f32) -> Drive {
+    fn hold_position(&mut self, tilt: Option<f32>, dt: f32) -> Drive {
         self.drive.hold_position(&self.reel, tilt, dt)
     }
 }
 
 struct Tendons {
     arms: PerArm<Tendon>,
-    /// An order has arrived: the angles of arms found wound are set.
+    /// An order has arrived: the angles of tendons wound at power-on are set.
     begun: bool,
 }
 
@@ -150,7 +150,7 @@ impl Tendons {
                 ..
             }) => {
                 for (arm, (((tendon, tilt), out), asked)) in arms.zip(forces.arms).enumerate() {
-                    if forces.found && !self.begun {
+                    if forces.wound_at_power_on && !self.begun {
                         tendon.drive.seed_from_tilt(&tendon.reel, tilt);
                     }
                     *out = match placed.filter(|place| place.servo == arm) {
@@ -166,7 +166,7 @@ impl Tendons {
             })
             | Newest::Held(_) => {
                 for ((tendon, tilt), out) in arms {
-                    *out = tendon.stay(tilt, dt);
+                    *out = tendon.hold_position(tilt, dt);
                 }
             }
         }

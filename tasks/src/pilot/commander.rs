@@ -40,13 +40,13 @@ pub async fn run(links: &Links) -> ! {
             grip_memory,
             reason,
             inhibits,
-            bench,
+            actuator_test,
             remote,
         } = logic.step(&inputs, tick.dt);
         links.setpoint.send(tick.started, rotors);
         links.clamp_command.send(tick.started, tendons);
         links.grip_memory.send(tick.started, grip_memory);
-        links.bench_answer.send(tick.started, bench);
+        links.actuator_test_answer.send(tick.started, actuator_test);
         links.remote_answer.send(tick.started, remote);
         let limit = flow_limit.step(links, mode, tick.started);
         let warning = warning(links, mode, limit);
@@ -115,7 +115,7 @@ fn collect(links: &Links, late: bool) -> Inputs {
         servo_supply: links.servo_supply(),
         late,
         hardware: links.hardware(),
-        bench: links.bench.fresh(),
+        actuator_test: links.actuator_test.fresh(),
         remote: links.remote.fresh(),
         position: links.position.fresh(),
         target: links.pipe_target.fresh(),

@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn an_empty_one_says_nothing() {
+    fn an_empty_histogram_is_all_zeros() {
         let none = Histogram::EMPTY;
         assert_eq!(
             (none.count(), none.min(), none.max(), none.quantile(500)),

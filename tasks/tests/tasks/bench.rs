@@ -7,7 +7,7 @@ use embassy_time::Instant;
 use sophie_control::allocation::mixer::Flexible;
 use sophie_control::allocation::wrench::{Configuration, PerArm};
 use sophie_control::params::{Params, ServoMarks};
-use sophie_control::pilot::bench_orders::{BenchOrder, BenchRequest, PLACE_TIME, Spin};
+use sophie_control::pilot::actuator_test::{ActuatorTest, ActuatorTestRequest, PLACE_TIME, Spin};
 use sophie_control::pilot::rc::Sticks;
 use sophie_fakes::{Answer, FakeAnalog, FakeArms, FakeImu, FakeLine, FakeMotors, FakeServos};
 use sophie_ports::receiver::RcState;
@@ -235,10 +235,10 @@ fn a_console_or_a_sensor_that_dies_stops_a_motor() {
     let mut table = Table::set();
     table.says("propellers off", 200);
     // A console that orders and is heard of no more.
-    let order = BenchOrder::Spin(Spin::at(2, 0.08));
+    let order = ActuatorTest::Spin(Spin::at(2, 0.08));
     table.begins("");
-    let request = BenchRequest { number: 1000, order };
-    table.rig.links.bench.send(Instant::now(), request);
+    let request = ActuatorTestRequest { number: 1000, order };
+    table.rig.links.actuator_test.send(Instant::now(), request);
     table.run(2000);
     assert!((100..=170).contains(&table.turned[2]), "{:?}", table.turned);
 
@@ -475,7 +475,7 @@ fn the_self_test_names_each_part_and_what_is_wrong_with_it() {
 }
 
 #[test]
-fn nothing_of_it_moves_a_vehicle_that_is_armed() {
+fn no_actuator_test_runs_while_armed() {
     let mut table = Table::set();
     table.says("propellers off", 200);
     table.sticks.set(Some(Sticks::default()));

@@ -248,7 +248,7 @@ fn the_pulse_that_turns_a_motor_is_found_by_hand() {
 }
 
 #[test]
-fn pulses_out_of_order_turn_nothing() {
+fn motor_pulses_out_of_order_turn_no_motor() {
     let params = Params {
         motor_pulse_idle: 1070.0,
         ..dji()

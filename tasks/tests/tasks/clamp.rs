@@ -107,8 +107,8 @@ impl Bench {
 }
 
 #[test]
-fn arms_that_pressed_while_they_were_kept_are_told_to_the_servos_as_found() {
-    for (kept, command, found) in [
+fn arms_that_press_before_the_first_pulse_are_reported_as_wound_at_power_on() {
+    for (kept, command, wound) in [
         // More than 80 Pa press.
         (&[500.0][..], ClampCommand::Release, true),
         (&[500.0], CLOSE, true),
@@ -128,7 +128,11 @@ fn arms_that_pressed_while_they_were_kept_are_told_to_the_servos_as_found() {
             );
         }
         bench.run(30, &World::new(command, 500.0));
-        assert_eq!(fresh(bench.0.links).unwrap().found, found, "{kept:?} {command:?}");
+        assert_eq!(
+            fresh(bench.0.links).unwrap().wound_at_power_on,
+            wound,
+            "{kept:?} {command:?}"
+        );
     }
     let mut bench = Bench::new();
     let mut world = World::new(ClampCommand::Keep, 0.0);
@@ -136,7 +140,7 @@ fn arms_that_pressed_while_they_were_kept_are_told_to_the_servos_as_found() {
     bench.run(300, &world);
     world.command = Some(ClampCommand::Release);
     bench.run(30, &world);
-    assert!(fresh(bench.0.links).unwrap().found);
+    assert!(fresh(bench.0.links).unwrap().wound_at_power_on);
 }
 
 #[test]
@@ -167,7 +171,7 @@ fn nothing_is_sent_before_the_first_command_and_forces_are_held_without_one() {
 }
 
 #[test]
-fn what_is_missing_of_one_arm_holds_that_arm_alone() {
+fn a_missing_input_of_one_arm_holds_that_arm_alone() {
     let mut bench = Bench::new();
     let mut world = World::new(CLOSE, 0.0);
     let before = bench.run(500, &world);
@@ -189,7 +193,7 @@ fn what_is_missing_of_one_arm_holds_that_arm_alone() {
 }
 
 #[test]
-fn pressures_older_than_20_ms_are_none() {
+fn pressures_older_than_20_ms_are_not_used() {
     let mut bench = Bench::new();
     let mut world = World::new(CLOSE, 0.0);
     bench.run(300, &world);
@@ -203,7 +207,7 @@ fn pressures_older_than_20_ms_are_none() {
 }
 
 #[test]
-fn only_rotors_that_run_are_met_by_the_tendons() {
+fn tendons_compensate_the_thrust_of_running_rotors_alone() {
     let mut bench = Bench::new();
     let mut world = World::new(CLOSE, 0.0);
     world.mix = MixOutput {
@@ -248,15 +252,18 @@ fn after_a_restart_closed_arms_are_sent_their_force_at_once_and_all_others_nothi
         let forces = fresh(rig.links);
         assert_eq!(forces.is_some(), sent, "{grip_memory:?}");
         if let Some(forces) = forces {
-            let asked = retained.force.map(|force| TendonForce { force, stay: true });
+            let asked = retained.force.map(|force| TendonForce {
+                force,
+                hold_position: true,
+            });
             assert_eq!(forces.arms, asked);
-            assert!(!forces.found);
+            assert!(!forces.wound_at_power_on);
         }
     }
 }
 
 #[test]
-fn forces_and_judgement_carry_the_time_of_their_pressures() {
+fn forces_and_grip_state_carry_the_time_of_their_pressures() {
     let mut bench = Bench::new();
     let mut world = World::new(CLOSE, 500.0);
     world.contact = false;

@@ -289,7 +289,7 @@ fn what_must_be_known_is_said_where_it_matters() {
 }
 
 #[test]
-fn a_link_that_falls_silent_counts_as_none() {
+fn a_silent_link_counts_as_absent() {
     let mut bench = Bench::new();
     bench.rig.run(1000);
     assert_eq!(

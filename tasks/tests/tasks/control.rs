@@ -166,7 +166,7 @@ fn a_rate_that_is_not_there_is_asked_for_and_integrated_only_where_it_is_given()
 }
 
 #[test]
-fn what_was_integrated_outlives_a_change_between_rate_and_angle_and_no_stop_or_escape() {
+fn integrals_outlive_a_change_between_rate_and_angle_but_no_stop_or_escape() {
     let idle = Setpoint::Idle;
     let rest = Setpoint::Rate {
         rate: Vec3::ZERO,

@@ -142,7 +142,7 @@ fn the_accelerometers_bias_is_taken_off_and_the_gyro_is_left_to_the_estimator() 
 }
 
 #[test]
-fn the_time_since_the_sample_before_is_told_up_to_five_milliseconds() {
+fn a_sample_carries_the_time_since_the_previous_one_up_to_five_milliseconds() {
     for (gap, dt) in [(0, 1e-3), (1000, 2e-3), (1500, 2.5e-3), (2500, 3.5e-3)] {
         let part = Part::new(1000.0, 1);
         let mut rig = started(Params::default(), &part);

@@ -27,8 +27,11 @@ fn speak(links: &Links, running: bool, calibrated: bool) {
     links.grip_memory.send(now, GRIP);
     links.reel_angle.send(now, [2.0, 2.1, 2.2, 2.3]);
     let forces = TendonForces {
-        arms: [50.0, 51.0, 52.0, 5.0].map(|force| TendonForce { force, stay: false }),
-        found: false,
+        arms: [50.0, 51.0, 52.0, 5.0].map(|force| TendonForce {
+            force,
+            hold_position: false,
+        }),
+        wound_at_power_on: false,
     };
     links.tendons.send(now, TendonOrder::Measured(forces));
     let mut grip = GripState::default();
@@ -104,7 +107,7 @@ fn the_gyros_bias_is_kept_as_the_part_has_it() {
 }
 
 #[test]
-fn a_bias_before_calibration_is_none() {
+fn before_calibration_there_is_no_bias() {
     let (rig, memory) = (Rig::new(), FakeMemory::default());
     speak(rig.links, false, false);
     RetainedStore::new(rig.links, memory.clone()).keep(rig.links);
@@ -171,9 +174,9 @@ fn forces_that_are_resumed_or_old_are_not_kept_as_news() {
     let forces = TendonForces {
         arms: [TendonForce {
             force: 60.0,
-            stay: false,
+            hold_position: false,
         }; 4],
-        found: false,
+        wound_at_power_on: false,
     };
     rig.links
         .tendons

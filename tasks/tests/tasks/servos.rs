@@ -5,7 +5,7 @@ use sophie_control::allocation::wrench::PerArm;
 use sophie_control::arming::ArmingInhibit;
 use sophie_control::gripper::retained_grip::GripMemory;
 use sophie_control::params::{Params, ServoMarks};
-use sophie_control::pilot::bench_orders::Place;
+use sophie_control::pilot::actuator_test::Place;
 use sophie_control::pilot::rc::ArmChoice;
 use sophie_ports::retained::StartCause;
 use sophie_tasks::links::Links;
@@ -44,10 +44,13 @@ fn speak(links: &Links, at: Instant, forces: Option<TendonForces>, tilt: f32) {
     links.arms.send(at, ArmAngles::at(at, [Some(tilt); 4]));
 }
 
-fn forces(force: f32, found: bool) -> TendonForces {
+fn forces(force: f32, wound_at_power_on: bool) -> TendonForces {
     TendonForces {
-        arms: [TendonForce { force, stay: false }; 4],
-        found,
+        arms: [TendonForce {
+            force,
+            hold_position: false,
+        }; 4],
+        wound_at_power_on,
     }
 }
 
@@ -114,7 +117,7 @@ fn frames_come_at_the_servos_rate() {
 }
 
 #[test]
-fn arms_found_wound_pay_out_slowly_from_where_their_tendons_are_taut() {
+fn tendons_wound_at_power_on_pay_out_slowly_from_where_they_are_taut() {
     // Just taut at -1.2 rad: 15 mm/15 mm·(0.4 + 1.2) = 1.6 rad, 1195 µs; from there 3 rad/s, 0.06 rad a frame.
     let (mut rig, port) = started(Start::COLD);
     rig.run_with(100, |links, at| speak(links, at, None, CLOSED));
@@ -135,12 +138,12 @@ fn arms_found_wound_pay_out_slowly_from_where_their_tendons_are_taut() {
             pulse(angle)
         );
     }
-    // Home for good after 0.53 s, though the arms are still reported as found.
+    // Home for good after 0.53 s, though the tendons are still reported as wound.
     assert!(pulses.len() == 60 && near(pulses[59], 550.0));
 }
 
 #[test]
-fn arms_not_found_wound_are_at_release_from_the_first_pulse_on() {
+fn tendons_not_wound_at_power_on_are_at_release_from_the_first_pulse_on() {
     let (mut rig, port) = started(Start::COLD);
     rig.run_with(200, |links, at| {
         speak(links, at, Some(forces(0.0, false)), CLOSED)
@@ -180,14 +183,14 @@ fn forces_wind_at_nine_tenths_of_the_servos_speed_and_old_ones_hold() {
 }
 
 #[test]
-fn an_arm_that_is_to_stay_stays_whatever_its_force() {
+fn an_arm_that_holds_position_ignores_its_force() {
     let (mut rig, port) = started(Start::COLD);
     rig.run_with(2000, |links, at| {
         speak(links, at, Some(forces(60.0, false)), CLOSED)
     });
     let mut order = forces(0.0, false);
-    for (arm, stay) in order.arms.iter_mut().zip([false, true, false, true]) {
-        arm.stay = stay;
+    for (arm, hold_position) in order.arms.iter_mut().zip([false, true, false, true]) {
+        arm.hold_position = hold_position;
     }
     rig.run_with(2000, |links, at| speak(links, at, Some(order), CLOSED));
     let [a, b, c, d] = port.now();
@@ -218,9 +221,9 @@ fn after_a_restart_the_drives_go_on_where_they_were_unless_only_the_gears_know()
         let order = TendonForces {
             arms: [TendonForce {
                 force: 0.0,
-                stay: true,
+                hold_position: true,
             }; 4],
-            found: false,
+            wound_at_power_on: false,
         };
         rig.run_with(30, |links, at| speak(links, at, Some(order), CLOSED));
         assert!(near(port.now(), first), "{grip_memory:?}: {:?}", port.now());

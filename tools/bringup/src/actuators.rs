@@ -7,7 +7,7 @@ use sophie_control::allocation::wrench::PerArm;
 use sophie_control::calibration::step::Calibration;
 use sophie_control::gripper::tendon::Reel;
 use sophie_control::params::{MotorMap, Params};
-use sophie_control::pilot::bench_orders::{
+use sophie_control::pilot::actuator_test::{
     PLACE_TIME, PULSE_MAX_US, PULSE_MIN_US, SPIN_DRIVE, SPIN_DRIVE_MAX, SPIN_TIME,
 };
 use sophie_dialect::{MavCmd, MotorTestThrottleType};

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use sophie_board_link::Failure;
 use sophie_board_link::vehicle::Vehicle;
-use sophie_control::calibration::procedure;
 use sophie_control::calibration::step::Calibration;
+use sophie_control::calibration::{Unfit, procedure};
 use sophie_control::params::Params;
 use sophie_dialect::{
     MavCmd, MavMessage, MavResult, SOPHIE_CALIBRATION_RESULT_DATA, SophieCalibrationOutcome,
@@ -305,19 +305,13 @@ pub(super) fn number(value: f32) -> f64 {
 
 /// Why a step is not taken.
 fn unfit(result: &SOPHIE_CALIBRATION_RESULT_DATA) -> String {
-    let (quantity, unit) = (
-        result.quantity.to_str().unwrap_or_default(),
-        result.unit.to_str().unwrap_or_default(),
-    );
-    let SOPHIE_CALIBRATION_RESULT_DATA {
-        value, least, most, ..
-    } = result;
-    let unit = if unit.is_empty() {
-        String::new()
-    } else {
-        format!(" {unit}")
+    let unfit = Unfit {
+        what: result.quantity.to_str().unwrap_or_default(),
+        value: result.value,
+        allowed: [result.least, result.most],
+        unit: result.unit.to_str().unwrap_or_default(),
     };
-    format!("not taken: {quantity} is {value:.2}; {least:.2} to {most:.2}{unit} allowed")
+    format!("not taken: {unfit}")
 }
 
 /// True where the calibration is complete.

@@ -48,13 +48,13 @@ impl<'a> Way<'a> {
         };
         let length = after.iter().position(|s| !part(s)).unwrap_or(after.len());
         let samples = after.get(..length)?;
-        let crown = record.scenario.world.pipe_position[1];
+        let crown_east = record.scenario.world.pipe_position[1];
         let touches = samples
             .windows(2)
             .filter_map(|pair| match pair {
                 [a, b] if a.mode == Mode::Approach && b.mode == Mode::Contact => Some(Touch {
                     t: b.t,
-                    off: b.position[1] - crown,
+                    off: b.position[1] - crown_east,
                     at: b.position,
                 }),
                 _ => None,
@@ -108,14 +108,14 @@ fn caption(way: &Way<'_>) -> String {
 /// The views from above and from behind, to one scale.
 fn views(record: &FlightRecord, way: &Way<'_>) -> [View; 2] {
     let world = &record.scenario.world;
-    let crown = world.pipe_position[1];
+    let crown_east = world.pipe_position[1];
     let bounds = |values: &dyn Fn(&Sample) -> f64, low: f64, high: f64| {
         let (low, high) = way.samples.iter().fold((low, high), |(low, high), s| {
             (low.min(values(s)), high.max(values(s)))
         });
         (low - MARGIN, high + MARGIN)
     };
-    let east = bounds(&|s| s.position[1], crown - BESIDE, crown + BESIDE);
+    let east = bounds(&|s| s.position[1], crown_east - BESIDE, crown_east + BESIDE);
     let north = bounds(&|s| s.position[0], f64::MAX, f64::MIN);
     let height = bounds(
         &|s| -s.position[2],
@@ -202,14 +202,14 @@ impl View {
         }
         let (left, top) = self.at(east - radius, to);
         let (right, bottom) = self.at(east + radius, from);
-        let (crown, _) = self.at(east, 0.0);
+        let (middle, _) = self.at(east, 0.0);
         let area = Rect {
             x: left,
             y: top,
             width: right - left,
             height: bottom - top,
         };
-        rect(area, "pipe faint", "") + &line(crown, top, crown, bottom, "level")
+        rect(area, "pipe faint", "") + &line(middle, top, middle, bottom, "level")
     }
 
     fn pipe_from_behind(&self, record: &FlightRecord) -> String {
@@ -286,7 +286,7 @@ pub(super) mod tests {
     /// The synthetic flight as an autonomous approach, from 5 to 3 cm over its pipe in two tries.
     pub fn flown() -> FlightRecord {
         let mut record = synthetic::record();
-        let crown = record.scenario.world.pipe_position[1];
+        let crown_east = record.scenario.world.pipe_position[1];
         for s in &mut record.samples {
             s.mode = match s.t {
                 t if (20.0..24.0).contains(&t) || (25.0..28.0).contains(&t) => Mode::Approach,
@@ -294,7 +294,7 @@ pub(super) mod tests {
                 t if (24.5..25.0).contains(&t) => Mode::Escaping,
                 _ => s.mode,
             };
-            s.position[1] = crown + if s.t < 25.0 { -0.05 } else { 0.03 };
+            s.position[1] = crown_east + if s.t < 25.0 { -0.05 } else { 0.03 };
             s.position_estimate = Some(s.position);
             s.range_measured = Some(0.2);
         }

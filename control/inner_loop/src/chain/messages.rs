@@ -14,7 +14,7 @@ pub enum Demand {
     Stop,
     /// Rotors at idle.
     Idle,
-    /// One motor on the bench.
+    /// Test of one motor.
     Spin(Spin),
     /// A wrench, yaw included.
     Wrench(Wrench),

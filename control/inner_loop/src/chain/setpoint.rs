@@ -12,7 +12,7 @@ pub enum Setpoint {
     Stop,
     /// Idle, controllers reset.
     Idle,
-    /// One motor on the bench, the others stopped, controllers reset.
+    /// Test of one motor, the others stopped, controllers reset.
     Spin(Spin),
     /// Held roll and pitch, yaw rate, collective thrust.
     Angle {
@@ -65,7 +65,7 @@ impl Setpoint {
         self != Self::Stop
     }
 
-    /// Collective thrust, N; 0 when stopped, idle or on the bench.
+    /// Collective thrust, N; 0 when stopped, idle or in a test of one motor.
     pub fn thrust(self) -> f32 {
         match self {
             Self::Stop | Self::Idle | Self::Spin(_) => 0.0,

@@ -1,10 +1,10 @@
-//! One motor on the bench.
+//! Test of one motor.
 
 use crate::allocation::wrench::PerArm;
 
 /// Longest spin of a motor, s: enough to see which one turns and in which direction.
 pub const SPIN_TIME: f32 = 2.0;
-/// Largest drive of a motor on the bench, share of full drive: 0.34 N of the 8.3 N that a rotor has at most, a fiftieth
+/// Largest drive of a motor under test, share of full drive: 0.34 N of the 8.3 N that a rotor has at most, a fiftieth
 /// of the lift-off thrust, should a propeller still be on.
 pub const SPIN_DRIVE_MAX: f32 = 0.12;
 /// Smallest drive, share of full drive: controllers do not start a motor below it.

@@ -11,7 +11,7 @@ const REACH: f32 = 2.5;
 struct World {
     heading: f32,
     right: f32,
-    crown: f32,
+    crown_z: f32,
     ground: Option<f32>,
     radius: f32,
     /// Of the ends from the origin, along the heading, m.
@@ -27,7 +27,7 @@ struct World {
 const WORLD: World = World {
     heading: 0.4,
     right: 0.3,
-    crown: 0.7,
+    crown_z: 0.7,
     ground: Some(2.2),
     radius: 0.15,
     ends: (-1.0, 1.0),
@@ -54,7 +54,7 @@ impl World {
         let on = y.abs() < self.radius
             && (self.ends.0..self.ends.1).contains(&x)
             && !(self.missed.0..self.missed.1).contains(&x);
-        let pipe = self.crown + self.radius - (self.radius * self.radius - y * y).max(0.0).sqrt();
+        let pipe = self.crown_z + self.radius - (self.radius * self.radius - y * y).max(0.0).sqrt();
         let dip = if y > self.dip.1 { self.dip.0 } else { 0.0 };
         let z = if on {
             Some(pipe)
@@ -66,14 +66,14 @@ impl World {
     }
 }
 
-/// How a try ends: the law, where the vehicle is then, and after how long.
-fn flown(world: World, law: ApproachPlanner) -> (Result<(), ApproachAbort>, Vec3, ApproachPlanner, f32) {
-    let (mut law, mut held, mut speed) = (law, law.origin, Vec3::ZERO);
+/// How a try ends: the planner, where the vehicle is then, and after how long.
+fn flown(world: World, planner: ApproachPlanner) -> (Result<(), ApproachAbort>, Vec3, ApproachPlanner, f32) {
+    let (mut planner, mut held, mut speed) = (planner, planner.origin, Vec3::ZERO);
     let mut foot = RangeHit::default();
     for i in 0..12_000 {
         if i % 2 == 0 {
             foot = RangeHit {
-                surface_point: world.below_lens(held, law.lens).and_then(|point| {
+                surface_point: world.below_lens(held, planner.lens).and_then(|point| {
                     let (from, until, scale) = world.scaled;
                     let wrong = (from..until).contains(&(i as f32 * DT));
                     let scale = if wrong { scale } else { 1.0 };
@@ -94,26 +94,26 @@ fn flown(world: World, law: ApproachPlanner) -> (Result<(), ApproachAbort>, Vec3
             range_hit: foot,
             target: None,
         };
-        match law.step(&view, DT) {
-            Ok(wish) => {
-                let wished = about_down(wish.velocity, world.heading);
+        match planner.step(&view, DT) {
+            Ok(command) => {
+                let commanded = about_down(command.velocity, world.heading);
                 let slew = |a: f32, b: f32| scalar::slew(a, b, DT);
                 speed = Vec3::new(
-                    slew(speed.x, wished.x),
-                    slew(speed.y, wished.y),
-                    slew(speed.z, wished.z),
+                    slew(speed.x, commanded.x),
+                    slew(speed.y, commanded.y),
+                    slew(speed.z, commanded.z),
                 );
                 held += speed * DT;
             }
-            Err(doubt) => return (Err(doubt), held, law, i as f32 * DT),
+            Err(doubt) => return (Err(doubt), held, planner, i as f32 * DT),
         }
         let (y, _) = world.beside(held);
-        let touches = y.abs() < world.radius && held.z > world.crown - 0.05;
-        if law.has_left() || (touches && law.committed()) {
-            return (Ok(()), held, law, i as f32 * DT);
+        let touches = y.abs() < world.radius && held.z > world.crown_z - 0.05;
+        if planner.has_left() || (touches && planner.committed()) {
+            return (Ok(()), held, planner, i as f32 * DT);
         }
     }
-    panic!("neither touch nor doubt in 120 s: {law:?}");
+    panic!("neither touch nor doubt in 120 s: {planner:?}");
 }
 
 fn begun(world: &World) -> ApproachPlanner {
@@ -142,9 +142,9 @@ fn it_touches_on_the_crown_from_wherever_the_search_begins() {
                 ground,
                 ..WORLD
             };
-            let (end, at, law, seconds) = flown(world, begun(&world));
+            let (end, at, planner, seconds) = flown(world, begun(&world));
             let (y, x) = world.beside(at);
-            assert_eq!(end, Ok(()), "{right} {ground:?} {law:?}");
+            assert_eq!(end, Ok(()), "{right} {ground:?} {planner:?}");
             assert!(y.abs() < 0.015 && x.abs() < 0.05, "{right} {ground:?}: {y} {x}");
             assert!(seconds < 60.0, "{right} {ground:?}: {seconds} s");
         }
@@ -163,9 +163,9 @@ fn with_the_lens_beside_its_centre_it_touches_on_the_crown_as_far_from_the_ends(
         };
         for (ends, wanted) in [((-1.0, 1.0), 0.0), ((-1.0, 0.2), -0.1), ((-0.1, 2.0), 0.2)] {
             let world = World { ends, ..WORLD };
-            let (end, at, law, _) = flown(world, begun_by(&world, &p));
+            let (end, at, planner, _) = flown(world, begun_by(&world, &p));
             let (right, ahead) = world.beside(at);
-            assert_eq!(end, Ok(()), "{x} {y} {z} {ends:?} {law:?}");
+            assert_eq!(end, Ok(()), "{x} {y} {z} {ends:?} {planner:?}");
             assert!(
                 right.abs() < 0.015 && (ahead - wanted).abs() < 0.05,
                 "{x} {y} {z} {ends:?}: {right} {ahead}"
@@ -186,7 +186,7 @@ fn with_the_lens_beside_its_centre_it_touches_on_the_crown_as_far_from_the_ends(
 #[test]
 fn it_sinks_no_faster_than_it_may_and_only_over_the_crown() {
     let world = WORLD;
-    let (mut law, mut held) = (begun(&world), Vec3::ZERO);
+    let (mut planner, mut held) = (begun(&world), Vec3::ZERO);
     for i in 0..6000u32 {
         let view = View {
             position: held,
@@ -201,28 +201,28 @@ fn it_sinks_no_faster_than_it_may_and_only_over_the_crown() {
             },
             target: None,
         };
-        let wish = law.step(&view, DT).unwrap();
-        let v = wish.velocity;
+        let command = planner.step(&view, DT).unwrap();
+        let v = command.velocity;
         assert!(v.z <= DESCENT && v.x.hypot(v.y) < 0.5, "{v:?}");
         held += about_down(v, world.heading) * DT;
         let (y, _) = world.beside(held);
-        let range = world.crown - held.z;
+        let range = world.crown_z - held.z;
         assert!(range > LOW - 0.1 || y.abs() < 0.05, "{range} m over it at {y} m");
-        if law.phase == Phase::Commit {
+        if planner.phase == Phase::Commit {
             assert!(v.y.abs() <= CORRECT_SPEED, "{v:?}");
             return;
         }
     }
-    panic!("never at the gate: {law:?}");
+    panic!("never at the gate: {planner:?}");
 }
 
 #[test]
 fn it_keeps_away_from_an_end_and_refuses_a_pipe_that_is_too_short() {
     for (ends, wanted) in [((-1.0, 0.2), -0.1), ((-0.1, 2.0), 0.2), ((-0.31, 0.31), 0.0)] {
         let world = World { ends, ..WORLD };
-        let (end, at, law, _) = flown(world, begun(&world));
+        let (end, at, planner, _) = flown(world, begun(&world));
         let (y, x) = world.beside(at);
-        assert_eq!(end, Ok(()), "{ends:?} {law:?}");
+        assert_eq!(end, Ok(()), "{ends:?} {planner:?}");
         assert!(y.abs() < 0.015 && (x - wanted).abs() < 0.03, "{ends:?}: {y} {x}");
     }
     let short = World {
@@ -236,9 +236,9 @@ fn it_keeps_away_from_an_end_and_refuses_a_pipe_that_is_too_short() {
 fn what_the_beam_comes_back_onto_has_not_ended() {
     for missed in [(0.1, 0.2), (-0.25, -0.15)] {
         let world = World { missed, ..WORLD };
-        let (end, at, law, _) = flown(world, begun(&world));
+        let (end, at, planner, _) = flown(world, begun(&world));
         let (y, x) = world.beside(at);
-        assert_eq!(end, Ok(()), "{missed:?} {law:?}");
+        assert_eq!(end, Ok(()), "{missed:?} {planner:?}");
         assert!(y.abs() < 0.015 && x.abs() < 0.03, "{missed:?}: {y} {x}");
     }
 }
@@ -266,13 +266,13 @@ fn a_range_that_shows_higher_steps_than_before_ends_it() {
                 scaled: (f32::from(from), f32::MAX, 1.6),
                 ..WORLD
             };
-            let (end, at, law, seconds) = flown(world, begun(&world));
+            let (end, at, planner, seconds) = flown(world, begun(&world));
             let found = matches!(
                 end,
                 Err(ApproachAbort::RangeLong | ApproachAbort::RangeMisfit | ApproachAbort::PipeLost)
             );
-            assert!(found, "{from} {ground}: {end:?} {law:?}");
-            let above = world.crown - at.z;
+            assert!(found, "{from} {ground}: {end:?} {planner:?}");
+            let above = world.crown_z - at.z;
             assert!(
                 above > 0.15 && seconds < f32::from(from) + 6.0,
                 "{from} {ground}: {above} m, {seconds} s"
@@ -283,7 +283,7 @@ fn a_range_that_shows_higher_steps_than_before_ends_it() {
 
 /// Called too long at its first jump, one that jumps was never named.
 #[test]
-fn a_range_that_is_back_soon_is_no_other_step() {
+fn a_range_that_returns_soon_is_no_surface_step() {
     for from in 7..26u8 {
         for ground in [2.2, 1.3] {
             let from = f32::from(from);
@@ -308,8 +308,8 @@ fn uneven_ground_and_a_range_that_is_a_little_off_are_no_other_steps() {
             dip,
             ..WORLD
         };
-        let (end, at, law, _) = flown(world, begun(&world));
-        assert_eq!(end, Ok(()), "{dip:?} {law:?}");
+        let (end, at, planner, _) = flown(world, begun(&world));
+        assert_eq!(end, Ok(()), "{dip:?} {planner:?}");
         assert!(world.beside(at).0.abs() < 0.03, "{dip:?}: {at:?}");
     }
     for scale in [0.85, 1.15] {
@@ -328,30 +328,30 @@ fn uneven_ground_and_a_range_that_is_a_little_off_are_no_other_steps() {
 /// What has been learnt of the steps goes along to the next try.
 #[test]
 fn another_try_knows_the_steps_of_the_first() {
-    let mut law = begun(&WORLD);
-    (law.steps, law.farthest) = ([1.5, 1.4], 2.0);
+    let mut planner = begun(&WORLD);
+    (planner.steps, planner.farthest) = ([1.5, 1.4], 2.0);
     let view = descending(0.4, 0.0, 0.02).1;
-    let next = law.retried(&Params::default(), &view, WORLD.heading, 0);
-    assert!(next.steps == law.steps && next.farthest == law.farthest);
+    let next = planner.retried(&Params::default(), &view, WORLD.heading, 0);
+    assert!(next.steps == planner.steps && next.farthest == planner.farthest);
 }
 
 #[test]
-fn only_over_the_crown_and_near_it_nothing_but_the_pipes_back_is_below() {
+fn near_crown_holds_low_over_it_alone() {
     for (range, aside, near) in [(0.2, 0.0, true), (0.35, 0.0, false), (0.2, 0.08, false)] {
-        let (mut law, mut view) = descending(range, 0.0, 0.02);
-        law.look(&view);
+        let (mut planner, mut view) = descending(range, 0.0, 0.02);
+        planner.take_range(&view);
         view.range_hit.count = 2;
-        law.look(&view);
+        planner.take_range(&view);
         view.position = about_down(Vec3::new(0.0, aside, 0.0), WORLD.heading) + view.position;
-        assert_eq!(law.near_crown(&view), near, "{range} {aside}");
-        law.phase = Phase::Cross;
-        assert!(!law.near_crown(&view));
+        assert_eq!(planner.near_crown(&view), near, "{range} {aside}");
+        planner.phase = Phase::Cross;
+        assert!(!planner.near_crown(&view));
     }
 }
 
 #[test]
 fn without_a_range_and_where_nothing_is_touched_it_gives_up() {
-    let mut law = begun(&WORLD);
+    let mut planner = begun(&WORLD);
     let mut view = View {
         position: Vec3::ZERO,
         velocity: Vec3::ZERO,
@@ -364,21 +364,23 @@ fn without_a_range_and_where_nothing_is_touched_it_gives_up() {
         },
         target: None,
     };
-    assert!(law.step(&view, DT).is_ok());
+    assert!(planner.step(&view, DT).is_ok());
     view.range_hit.age = RANGE_AGE + 0.01;
-    assert_eq!(law.step(&view, DT), Err(ApproachAbort::RangeStale));
-    law.phase = Phase::Commit;
-    let steps = (0..1000).take_while(|_| law.step(&view, DT).is_ok()).count();
+    assert_eq!(planner.step(&view, DT), Err(ApproachAbort::RangeStale));
+    planner.phase = Phase::Commit;
+    let steps = (0..1000).take_while(|_| planner.step(&view, DT).is_ok()).count();
     assert!((steps as f32 * DT - TOUCH_WAIT).abs() < 0.05, "{steps}");
     view.position.y = 0.2;
-    law.since = 0.0;
-    assert_eq!(law.step(&view, DT), Err(ApproachAbort::NotCentred));
+    planner.since = 0.0;
+    assert_eq!(planner.step(&view, DT), Err(ApproachAbort::NotCentred));
     // The wind keeps it from sweeping.
-    let mut law = begun(&WORLD);
+    let mut planner = begun(&WORLD);
     view.range_hit.age = 0.0;
-    let steps = (0..10_000).take_while(|_| law.step(&view, DT).is_ok()).count();
+    let steps = (0..10_000)
+        .take_while(|_| planner.step(&view, DT).is_ok())
+        .count();
     assert!((steps as f32 * DT - SEARCH_TIME).abs() < 0.1, "{steps}");
-    assert_eq!(law.step(&view, DT), Err(ApproachAbort::NoPipe));
+    assert_eq!(planner.step(&view, DT), Err(ApproachAbort::NoPipe));
 }
 
 #[test]
@@ -393,12 +395,12 @@ fn another_try_climbs_before_it_searches_and_leaving_only_climbs() {
         range_hit: RangeHit::default(),
         target: None,
     };
-    let law = ApproachPlanner::again(&Params::default(), &view, world.heading, 0, true);
-    let (end, at, ..) = flown(world, law);
+    let planner = ApproachPlanner::again(&Params::default(), &view, world.heading, 0, true);
+    let (end, at, ..) = flown(world, planner);
     assert_eq!(end, Ok(()));
     assert!((at.z - 0.5 + HIGH).abs() < 0.1, "{at:?}");
-    let law = ApproachPlanner::again(&Params::default(), &view, world.heading, 0, false);
-    let (end, at, ..) = flown(world, law);
+    let planner = ApproachPlanner::again(&Params::default(), &view, world.heading, 0, false);
+    let (end, at, ..) = flown(world, planner);
     assert_eq!(end, Ok(()));
     assert!(world.beside(at).0.abs() < 0.015, "{at:?}");
 }
@@ -406,13 +408,13 @@ fn another_try_climbs_before_it_searches_and_leaving_only_climbs() {
 /// From 0.65 m over the crown another try climbed by 0.4 m more, from where the ground was out of the range's reach.
 #[test]
 fn another_try_from_a_search_climbs_no_higher_than_over_what_it_has_met() {
-    for (crown, climbs) in [(0.3, HIGH - 0.3), (0.65, 0.0)] {
+    for (crown_z, climbs) in [(0.3, HIGH - 0.3), (0.65, 0.0)] {
         let world = World {
             right: 0.0,
-            crown,
+            crown_z,
             ..WORLD
         };
-        let mut law = begun(&world);
+        let mut planner = begun(&world);
         let mut view = View {
             position: Vec3::ZERO,
             velocity: Vec3::ZERO,
@@ -426,23 +428,23 @@ fn another_try_from_a_search_climbs_no_higher_than_over_what_it_has_met() {
             },
             target: None,
         };
-        law.step(&view, DT).unwrap();
+        planner.step(&view, DT).unwrap();
         // The ground is met at the side since.
         view.range_hit.surface_point = Some(Vec3::new(0.0, 0.0, 2.2));
         for count in 2..5 {
             view.range_hit.count = count;
-            law.step(&view, DT).unwrap();
+            planner.step(&view, DT).unwrap();
         }
-        assert_eq!(law.phase, Phase::Search);
-        let again = law.retried(&Params::default(), &view, world.heading, 0);
-        assert!((again.up + climbs).abs() < 1e-5, "{crown}: {}", again.up);
+        assert_eq!(planner.phase, Phase::Search);
+        let again = planner.retried(&Params::default(), &view, world.heading, 0);
+        assert!((again.up + climbs).abs() < 1e-5, "{crown_z}: {}", again.up);
     }
 }
 
 /// Over the crown on the way down: at `range` m, sinking at `sinks` m/s, the newest flow `age` s old.
 fn descending(range: f32, sinks: f32, age: f32) -> (ApproachPlanner, View) {
     let world = World { right: 0.0, ..WORLD };
-    let place = Vec3::new(0.0, 0.0, world.crown - range);
+    let place = Vec3::new(0.0, 0.0, world.crown_z - range);
     let view = View {
         position: place,
         velocity: Vec3::new(0.0, 0.0, sinks),
@@ -456,43 +458,43 @@ fn descending(range: f32, sinks: f32, age: f32) -> (ApproachPlanner, View) {
         },
         target: None,
     };
-    let mut law = begun(&world);
-    (law.phase, law.top) = (Phase::Descend, world.crown);
-    (law, view)
+    let mut planner = begun(&world);
+    (planner.phase, planner.crown_z) = (Phase::Descend, world.crown_z);
+    (planner, view)
 }
 
-/// What the law asks for after a tenth of a second there, m/s down, and in which part of the way it is then.
+/// What the planner asks for after a tenth of a second there, m/s down, and in which part of the way it is then.
 fn asks_at(range: f32, sinks: f32, age: f32) -> (f32, Phase) {
-    let (mut law, view) = descending(range, sinks, age);
-    let wish = (0..10).map(|_| law.step(&view, DT)).last();
-    (wish.unwrap().unwrap().velocity.z, law.phase)
+    let (mut planner, view) = descending(range, sinks, age);
+    let command = (0..10).map(|_| planner.step(&view, DT)).last();
+    (command.unwrap().unwrap().velocity.z, planner.phase)
 }
 
 /// From where a gust carries it aside, nearer than 8 cm flow would see nothing.
 #[test]
 fn it_stops_at_the_gate_where_it_is_not_known_to_touch_on_the_crown() {
     for gust in [0.30, 0.20, 0.17, 0.15, 0.13, 0.11] {
-        let (mut law, mut view) = descending(LOW, 0.0, 0.02);
+        let (mut planner, mut view) = descending(LOW, 0.0, 0.02);
         let (mut speed, mut nearest) = (0.0, f32::MAX);
         for i in 1..800u32 {
-            let range = WORLD.crown - view.position.z;
+            let range = WORLD.crown_z - view.position.z;
             nearest = nearest.min(range);
             view.velocity.y = if range < gust { 2.0 * GATE_SPEED } else { 0.0 };
             view.range_hit.count = (i % 256) as u8;
-            view.range_hit.surface_point = Some(Vec3::new(0.0, 0.0, WORLD.crown));
-            let wish = law.step(&view, DT).unwrap();
-            if law.phase == Phase::Commit {
+            view.range_hit.surface_point = Some(Vec3::new(0.0, 0.0, WORLD.crown_z));
+            let command = planner.step(&view, DT).unwrap();
+            if planner.phase == Phase::Commit {
                 break;
             }
             // The held point as the hold moves it, the vehicle a fifth of a second behind.
-            speed = scalar::slew(speed, wish.velocity.z, DT);
+            speed = scalar::slew(speed, command.velocity.z, DT);
             view.held.z += speed * DT;
             view.velocity.z += (speed - view.velocity.z) * (DT / 0.2);
             view.position.z += view.velocity.z * DT;
         }
         assert!(nearest > 0.085, "{gust}: {nearest} m");
-        let stands = (WORLD.crown - view.position.z - GATE).abs() < 0.01;
-        assert!(stands || law.phase == Phase::Commit, "{gust}: {view:?}");
+        let stands = (WORLD.crown_z - view.position.z - GATE).abs() < 0.01;
+        assert!(stands || planner.phase == Phase::Commit, "{gust}: {view:?}");
     }
 }
 
@@ -520,16 +522,16 @@ fn without_a_pose_it_climbs_from_the_pipe() {
         (0.0, BLIND + 0.1, true),
         (2.0 * NEAR_OFF, BLIND + 0.1, true),
     ] {
-        let (mut law, mut view) = descending(1.5 * GATE, 0.0, age);
+        let (mut planner, mut view) = descending(1.5 * GATE, 0.0, age);
         view.position.y += aside;
         let target = PipeTarget {
-            crown: Vec3::new(0.0, 0.0, WORLD.crown),
+            crown_position: Vec3::new(0.0, 0.0, WORLD.crown_z),
             ..PipeTarget::default()
         };
-        (law, view.target) = (law.to(&target), Some(target));
-        law.phase = Phase::Descend;
-        let wish = (0..10).map(|_| law.step(&view, DT)).last().unwrap().unwrap();
-        let up = -wish.velocity.z;
+        (planner, view.target) = (planner.to(&target), Some(target));
+        planner.phase = Phase::Descend;
+        let command = (0..10).map(|_| planner.step(&view, DT)).last().unwrap().unwrap();
+        let up = -command.velocity.z;
         assert_eq!(up > 0.3, climbs, "{aside} {age}: {up}");
     }
 }
@@ -538,7 +540,7 @@ fn without_a_pose_it_climbs_from_the_pipe() {
 fn a_search_about_where_the_pipe_was_finds_it_from_where_an_escape_ends() {
     let world = World {
         right: -2.3,
-        crown: 0.2,
+        crown_z: 0.2,
         ground: Some(1.7),
         ..WORLD
     };
@@ -558,10 +560,10 @@ fn a_search_about_where_the_pipe_was_finds_it_from_where_an_escape_ends() {
     );
     // The flow has drifted by as much as 0.6 m meanwhile.
     for drift in [-0.6, 0.0, 0.6] {
-        let crown = about_down(Vec3::new(0.1, world.right + drift, world.crown), world.heading);
-        let law = ApproachPlanner::back_to(crown, &p, &view, world.heading, 0);
-        let (end, at, law, seconds) = flown(world, law);
-        assert_eq!(end, Ok(()), "{drift}: {law:?}");
+        let crown_position = about_down(Vec3::new(0.1, world.right + drift, world.crown_z), world.heading);
+        let planner = ApproachPlanner::back_to(crown_position, &p, &view, world.heading, 0);
+        let (end, at, planner, seconds) = flown(world, planner);
+        assert_eq!(end, Ok(()), "{drift}: {planner:?}");
         let (y, x) = world.beside(at);
         assert!(y.abs() < 0.015 && (x - 0.1).abs() < 0.05, "{drift}: {y} {x}");
         assert!(seconds < 60.0, "{drift}: {seconds} s");
@@ -572,7 +574,7 @@ fn a_search_about_where_the_pipe_was_finds_it_from_where_an_escape_ends() {
 fn a_pipe_whose_edge_is_met_at_the_end_of_the_last_sweep_is_crossed() {
     let right = SWEEP_MAX - 0.03;
     let world = World { right, ..WORLD };
-    let (end, at, law, _) = flown(world, begun(&world));
-    assert_eq!(end, Ok(()), "{law:?}");
+    let (end, at, planner, _) = flown(world, begun(&world));
+    assert_eq!(end, Ok(()), "{planner:?}");
     assert!(world.beside(at).0.abs() < 0.015);
 }

@@ -11,17 +11,17 @@ use crate::navigation::estimate::Estimate;
 impl ApproachPlanner {
     /// `target` is near the vehicle, and below it.
     pub fn reaches(target: &PipeTarget, e: &Estimate) -> bool {
-        near(target.crown - e.position, TARGET_REACH)
+        near(target.crown_position - e.position, TARGET_REACH)
     }
 
     /// The approach to `target`, relative to the beginning of the attempt.
     pub(super) fn to(self, target: &PipeTarget) -> Self {
-        let crown = about_down(target.crown - self.origin, -self.heading);
+        let crown = about_down(target.crown_position - self.origin, -self.heading);
         Self {
             phase: Phase::Over,
             has_target: true,
-            crown: crown.y,
-            top: crown.z,
+            crown_y: crown.y,
+            crown_z: crown.z,
             along: crown.x,
             ..self
         }
@@ -33,16 +33,16 @@ impl ApproachPlanner {
         let target = v.target.ok_or(ApproachAbort::TargetStale)?;
         let reach = if self.returns { TARGET_RETURN } else { TARGET_REACH };
         // A climb begins beside the pipe, or under its crown: its reach is not checked.
-        if self.phase != Phase::Climb && !near(target.crown - v.position, reach) {
+        if self.phase != Phase::Climb && !near(target.crown_position - v.position, reach) {
             return Err(ApproachAbort::TargetFar);
         }
-        let known = Vec3::new(self.along, self.crown, self.top);
-        let off = about_down(target.crown - self.origin, -self.heading) - known;
+        let known = Vec3::new(self.along, self.crown_y, self.crown_z);
+        let off = about_down(target.crown_position - self.origin, -self.heading) - known;
         if off.norm_squared() > TARGET_STEP * TARGET_STEP {
             return Err(ApproachAbort::TargetJumps);
         }
         let now = known + off * (dt / (dt + TARGET_TIME));
-        (self.along, self.crown, self.top) = (now.x, now.y, now.z);
+        (self.along, self.crown_y, self.crown_z) = (now.x, now.y, now.z);
         Ok(())
     }
 
@@ -50,7 +50,7 @@ impl ApproachPlanner {
     /// mass does not lower it: the belly is below.
     pub(super) fn clearance(&self, at: Vec3) -> f32 {
         let surface = if self.has_target {
-            self.top - UNDER + LOWER
+            self.crown_z - UNDER + LOWER
         } else {
             // Beside the crown the beam meets the pipe's round back, by so much below it.
             let (half, square) = (self.half, self.lens.y * self.lens.y);
@@ -61,9 +61,9 @@ impl ApproachPlanner {
     }
 }
 
-/// The vehicle can fly by `off`: level at most `reach` m, and down within [`TARGET_BELOW`].
+/// The vehicle can fly by `off`: horizontally at most `reach` m, and down within [`TARGET_BELOW`].
 fn near(off: Vec3, reach: f32) -> bool {
     let (least, most) = TARGET_BELOW;
-    let level = off.x * off.x + off.y * off.y;
-    level <= reach * reach && (least..=most).contains(&off.z)
+    let horizontal = off.x * off.x + off.y * off.y;
+    horizontal <= reach * reach && (least..=most).contains(&off.z)
 }

@@ -3,13 +3,13 @@
 use super::Reel;
 use crate::maths::filter::CascadedLowPass;
 use crate::maths::scalar;
-use crate::pilot::bench_orders::{PULSE_MAX_US, PULSE_MIN_US};
+use crate::pilot::actuator_test::{PULSE_MAX_US, PULSE_MIN_US};
 
 /// Least tension reported until the servo is back at its release position, N.
 const RESIDUAL_TENSION: f32 = 0.5;
 /// Pay-out speed, rad/s: half the servo's, so that the arms spring back gently.
 const PAY_OUT_SPEED: f32 = 3.0;
-/// Servo speed on the bench, rad/s: half a second until the stop key is pressed moves it by half a radian.
+/// Servo speed in an actuator test, rad/s: half a second until the stop key is pressed moves it by half a radian.
 pub const BENCH_SPEED: f32 = 1.0;
 /// Cut-off of each of the two tilt low-passes, rad/s: a loop gain below 1 at the taut arm's mode (8 Hz, Q about 5) with
 /// the static gain k h² / (k h² + arm) of 0.7 to 0.85.
@@ -43,7 +43,7 @@ pub struct TendonDrive {
     tilt: Option<CascadedLowPass>,
     /// Cut-off at the last step, rad/s.
     cutoff: f32,
-    /// A bench pulse has moved it, perhaps beyond the travel, and it has not returned to release.
+    /// A test pulse has moved it, perhaps beyond the travel, and it has not returned to release.
     placed: bool,
 }
 

@@ -4,7 +4,7 @@ use super::ForceLimit;
 use crate::allocation::wrench::PerArm;
 use crate::maths::scalar;
 use crate::params::Params;
-use crate::pilot::bench_orders;
+use crate::pilot::actuator_test;
 
 /// Bounds of a servo's release and full pulse, µs: the usual 500 to 2500 with room for a trim.
 const PULSE_MIN_US: f32 = 550.0;
@@ -93,10 +93,10 @@ impl Reel {
         self.release_us + self.span_us * scalar::clamp(angle / self.range, 0.0, 1.0)
     }
 
-    /// Like [`Self::pulse`] up to the limits of servos, for finding the travel on the bench.
+    /// Like [`Self::pulse`] up to the limits of servos, for finding the travel in actuator tests.
     pub fn pulse_beyond(&self, angle: f32) -> f32 {
         let pulse = self.release_us + self.span_us * (angle / self.range);
-        scalar::clamp(pulse, bench_orders::PULSE_MIN_US, bench_orders::PULSE_MAX_US)
+        scalar::clamp(pulse, actuator_test::PULSE_MIN_US, actuator_test::PULSE_MAX_US)
     }
 
     /// Servo angle (rad from release) for a pulse (µs).

@@ -157,3 +157,26 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn one_arm_that_presses_before_the_first_pulse_means_wound_tendons() {
+    let cfg = config();
+    // Above 80 Pa.
+    for (pressure, wound) in [
+        ([0.0; 4], false),
+        ([0.0, 0.0, 300.0, 0.0], true),
+        ([70.0; 4], false),
+    ] {
+        let mut gripper = Gripper::default();
+        let inputs = pressure.map(|pressure| ArmInput {
+            pressure: Pressure::Known(pressure),
+            ..ArmInput::default()
+        });
+        for _ in 0..30 {
+            gripper.step_without_pulses(&cfg, &inputs, DT);
+        }
+        let light = [ArmInput::default(); 4];
+        let out = gripper.step(&cfg, &light, DT);
+        assert_eq!(out.wound_at_power_on, wound, "{pressure:?}");
+    }
+}

@@ -8,6 +8,16 @@ use crate::pilot::stick_positions::{THROTTLE_CENTRE, centred};
 
 /// Number of tries after which the vehicle is handed back to the pilot.
 pub const TRIES: u8 = 5;
+
+/// The crown of the pipe as assumed at a descent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LastCrown {
+    /// Position in the estimate's axes, m.
+    pub position: Vec3,
+    /// The estimate's reset counter at that time.
+    pub reset_count: u8,
+}
+
 /// State of autonomous perching.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AutoPerch {
@@ -23,9 +33,8 @@ pub struct AutoPerch {
     pub misfit: bool,
     /// Heading of the pipe, taken at the first try, by the vehicle's own attitude, rad.
     pub heading: f32,
-    /// Assumed position of the crown at the last descent, in the estimate's axes, m, and the estimate's reset counter
-    /// then.
-    pub crown: Option<(Vec3, u8)>,
+    /// The crown at the last descent.
+    pub last_crown: Option<LastCrown>,
 }
 
 impl AutoPerch {

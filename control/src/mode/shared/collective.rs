@@ -69,14 +69,18 @@ impl Collective {
     }
 
     /// Hands the collective over, limits it to the thrust of four rotors, and stops if it is not finite.
-    pub fn finish(&mut self, wish: Setpoint, p: &Params, dt: f32) -> Setpoint {
+    pub fn finish(&mut self, setpoint: Setpoint, p: &Params, dt: f32) -> Setpoint {
         let begins = self.pending.take();
-        if matches!(wish, Setpoint::Stop | Setpoint::Idle | Setpoint::Spin(_)) || !wish.is_finite() {
+        if matches!(setpoint, Setpoint::Stop | Setpoint::Idle | Setpoint::Spin(_)) || !setpoint.is_finite() {
             *self = Self::default();
-            return if wish.is_finite() { wish } else { Setpoint::Stop };
+            return if setpoint.is_finite() {
+                setpoint
+            } else {
+                Setpoint::Stop
+            };
         }
         let full = 4.0 * p.thrust_max;
-        let target = wish.thrust();
+        let target = setpoint.thrust();
         if let Some(time) = begins {
             self.offset = self.last.map_or(0.0, |last| last - target);
             (self.time, self.left) = (time, time);
@@ -89,7 +93,7 @@ impl Collective {
         };
         let thrust = clamp(target + rest, 0.0, full);
         self.last = Some(thrust);
-        with_thrust(wish, thrust)
+        with_thrust(setpoint, thrust)
     }
 }
 

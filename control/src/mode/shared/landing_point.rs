@@ -25,7 +25,7 @@ const ASIDE_MAX: f32 = 4.0;
 /// The sidestep off the pipe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Aside {
-    /// Level unit vector in the estimate's axes.
+    /// Horizontal unit vector in the estimate's axes.
     direction: Vec3,
     /// Remaining time without support and remaining time in all, s.
     left: f32,
@@ -42,7 +42,7 @@ impl Aside {
     }
 }
 
-/// Level unit vector to the side of the nose towards which the vehicle moves, in the estimate's axes.
+/// Horizontal unit vector to the side of the nose towards which the vehicle moves, in the estimate's axes.
 fn sideways(step: &Step<'_>) -> Option<Vec3> {
     let (estimate, motion) = (step.inputs.position?, step.inputs.motion?);
     let nose = motion.q.to_euler().2 + estimate.yaw_offset;
@@ -55,7 +55,7 @@ fn sideways(step: &Step<'_>) -> Option<Vec3> {
     Some(right * onwards)
 }
 
-/// Holds the vehicle over the spot.
+/// Holds the vehicle over the landing point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LandingPoint {
     hold: CoastingHold,
@@ -69,13 +69,13 @@ impl LandingPoint {
         Self::begin(hold, None, step)
     }
 
-    /// Lands at the point that `law` holds, or beside the pipe in the direction `off_pipe`, a level unit vector in the
+    /// Lands at the point that `position_hold` holds, or beside the pipe in the direction `off_pipe`, a horizontal unit vector in the
     /// estimate's axes.
-    pub fn off_approach(law: PositionHold, off_pipe: Option<Vec3>, step: &mut Step<'_>) -> Self {
+    pub fn off_approach(position_hold: PositionHold, off_pipe: Option<Vec3>, step: &mut Step<'_>) -> Self {
         let aside = off_pipe
             .filter(|_| step.inputs.motion.is_some())
             .map(Aside::towards);
-        Self::begin(CoastingHold::new(law), aside, step)
+        Self::begin(CoastingHold::new(position_hold), aside, step)
     }
 
     /// Lands beside the pipe, which lies along the nose, on the side towards which the vehicle moves; `None` without a
@@ -92,18 +92,18 @@ impl LandingPoint {
 
     fn from_here(aside: Option<Aside>, step: &mut Step<'_>) -> Option<Self> {
         let estimate = step.inputs.position.filter(|_| step.inputs.position_fresh())?;
-        let law = PositionHold::begin(&step.context.params, &estimate, &step.body_motion());
-        Some(Self::begin(CoastingHold::new(law), aside, step))
+        let position_hold = PositionHold::begin(&step.context.params, &estimate, &step.body_motion());
+        Some(Self::begin(CoastingHold::new(position_hold), aside, step))
     }
 
     fn begin(hold: CoastingHold, aside: Option<Aside>, step: &mut Step<'_>) -> Self {
-        let mut spot = Self {
+        let mut landing = Self {
             hold,
             aside,
             wanted: Setpoint::Stop,
         };
-        spot.step(None, step);
-        spot
+        landing.step(None, step);
+        landing
     }
 
     /// One step; the `pilot` commands velocities by his sticks, which cancels the sidestep.
@@ -112,11 +112,11 @@ impl LandingPoint {
             self.aside = None;
         }
         let estimate = step.inputs.position.unwrap_or_default();
-        let wish = match self.way_off(&estimate, step) {
-            Some(wish) => wish,
+        let command = match self.way_off(&estimate, step) {
+            Some(command) => command,
             None => velocity_from_sticks(&pilot.unwrap_or_default(), 0.0, step.context),
         };
-        self.wanted = self.hold.step(&estimate, &wish, step);
+        self.wanted = self.hold.step(&estimate, &command, step);
     }
 
     /// Velocity command of the sidestep, until it ends.
@@ -132,9 +132,9 @@ impl LandingPoint {
         }
         let nose = step.inputs.motion.map_or(0.0, |m| m.q.to_euler().2) + estimate.yaw_offset;
         let speed = if carried { 0.0 } else { ASIDE_SPEED };
-        let level = about_down(aside.direction, -nose) * speed;
+        let sideways = about_down(aside.direction, -nose) * speed;
         Some(VelocityCommand {
-            velocity: Vec3::new(level.x, level.y, -ASIDE_CLIMB),
+            velocity: Vec3::new(sideways.x, sideways.y, -ASIDE_CLIMB),
             ..VelocityCommand::default()
         })
     }

@@ -9,7 +9,7 @@ use crate::maths::vector::Vec3;
 use crate::mode::behaviour::Behaviour;
 use crate::mode::context::{Context, Step};
 use crate::mode::inputs::Inputs;
-use crate::mode::inputs::auto_perch::TRIES;
+use crate::mode::inputs::auto_perch::{LastCrown, TRIES};
 use crate::mode::reason::Reason;
 use crate::navigation::estimate::Estimate;
 use crate::pilot::stick_positions::{centred, keeps_hold};
@@ -18,7 +18,7 @@ use crate::position_hold::{PositionHold, VelocityCommand};
 /// State of the mode [`crate::mode::Mode::Approach`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Approach {
-    pub law: PositionHold,
+    pub position_hold: PositionHold,
     planner: ApproachPlanner,
     wanted: Setpoint,
     /// Reason for which no further try follows.
@@ -56,21 +56,21 @@ pub fn obstacle(step: &Step<'_>) -> Option<Reason> {
 }
 
 impl Approach {
-    /// Starts the search at the point that `law` holds.
-    pub fn search(law: Option<PositionHold>, step: &mut Step<'_>) -> Self {
-        Self::begin(law, step, |step, view, e| {
+    /// Starts the search at the point that `position_hold` holds.
+    pub fn search(position_hold: Option<PositionHold>, step: &mut Step<'_>) -> Self {
+        Self::begin(position_hold, step, |step, view, e| {
             ApproachPlanner::begin(&step.context.params, view, heading(step, e), e.reset_count)
         })
     }
 
     /// Climbs off the pipe: `left` ends there, otherwise a new search follows.
     pub fn climb(step: &mut Step<'_>, left: bool) -> Self {
-        let crown = step.context.auto_perch.crown.filter(|_| !left);
+        let crown = step.context.auto_perch.last_crown.filter(|_| !left);
         Self::begin(None, step, |step, view, e| {
             let (params, heading) = (&step.context.params, heading(step, e));
             match crown {
-                Some((crown, reset_count)) if reset_count == e.reset_count => {
-                    ApproachPlanner::back_to(crown, params, view, heading, reset_count)
+                Some(crown) if crown.reset_count == e.reset_count => {
+                    ApproachPlanner::back_to(crown.position, params, view, heading, e.reset_count)
                 }
                 _ => ApproachPlanner::again(params, view, heading, e.reset_count, left),
             }
@@ -78,16 +78,16 @@ impl Approach {
     }
 
     fn begin(
-        law: Option<PositionHold>,
+        position_hold: Option<PositionHold>,
         step: &mut Step<'_>,
         planner: impl Fn(&Step<'_>, &View, &Estimate) -> ApproachPlanner,
     ) -> Self {
         let estimate = step.inputs.position.unwrap_or_default();
-        let law =
-            law.unwrap_or_else(|| PositionHold::begin(&step.context.params, &estimate, &step.body_motion()));
-        let planner = planner(step, &view(&law, &estimate, step), &estimate);
+        let position_hold = position_hold
+            .unwrap_or_else(|| PositionHold::begin(&step.context.params, &estimate, &step.body_motion()));
+        let planner = planner(step, &view(&position_hold, &estimate, step), &estimate);
         let mut approach = Self {
-            law,
+            position_hold,
             planner,
             wanted: Setpoint::Stop,
             abort_reason: None,
@@ -118,13 +118,13 @@ impl Approach {
         self.planner.has_left()
     }
 
-    /// Level unit vector off the pipe for a vehicle at `position`, in the estimate's axes; `None` if unknown.
+    /// Horizontal unit vector off the pipe for a vehicle at `position`, in the estimate's axes; `None` if unknown.
     pub fn off_pipe(&self, position: Vec3) -> Option<Vec3> {
         self.planner.off_pipe(position)
     }
 
     fn step(&mut self, estimate: &Estimate, step: &mut Step<'_>) {
-        let seen = view(&self.law, estimate, step);
+        let seen = view(&self.position_hold, estimate, step);
         if step.context.vertical_fallback.misfit() && !self.planner.leaves() {
             self.misfit(false, &seen, estimate, step);
         }
@@ -136,10 +136,13 @@ impl Approach {
         if self.planner.has_left() {
             self.abort_reason = self.pending_abort_reason;
         }
-        let crown = self.planner.crown().map(|crown| (crown, estimate.reset_count));
-        step.context.auto_perch.crown = crown.or(step.context.auto_perch.crown);
+        let crown = self.planner.crown_position().map(|position| LastCrown {
+            position,
+            reset_count: estimate.reset_count,
+        });
+        step.context.auto_perch.last_crown = crown.or(step.context.auto_perch.last_crown);
         step.context.vertical_fallback.steady = self.planner.near_crown(&seen);
-        let wish = result.unwrap_or_else(|doubt| {
+        let command = result.unwrap_or_else(|doubt| {
             match doubt {
                 ApproachAbort::RangeMisfit => self.misfit(false, &seen, estimate, step),
                 ApproachAbort::RangeLong => self.misfit(true, &seen, estimate, step),
@@ -147,7 +150,9 @@ impl Approach {
             }
             VelocityCommand::default()
         });
-        self.wanted = self.law.step(estimate, &step.body_motion(), &wish, true, step.dt);
+        self.wanted = self
+            .position_hold
+            .step(estimate, &step.body_motion(), &command, true, step.dt);
     }
 
     /// Allows one more try unless the misfit is `proven`; then climbs away.
@@ -185,13 +190,13 @@ impl Approach {
     }
 }
 
-fn view(law: &PositionHold, e: &Estimate, step: &Step<'_>) -> View {
+fn view(position_hold: &PositionHold, e: &Estimate, step: &Step<'_>) -> View {
     let heading = step.inputs.motion.map_or(0.0, |m| m.q.to_euler().2);
     View {
         position: e.position,
         velocity: e.velocity,
         heading: heading + e.yaw_offset,
-        held: law.held(),
+        held: position_hold.held(),
         age: e.age,
         range_hit: e.range_hit,
         target: step.inputs.target,

@@ -8,21 +8,21 @@ use crate::mode::behaviour::Behaviour;
 use crate::mode::context::{Context, Step};
 use crate::mode::inputs::Inputs;
 use crate::mode::reason::Reason;
-use crate::pilot::bench_orders::BenchOrder;
+use crate::pilot::actuator_test::ActuatorTest;
 
 /// State of the mode [`crate::mode::Mode::Disarmed`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Disarmed {
     /// Grip state, retained across motor stop and reset.
     pub grip_memory: GripMemory,
-    /// Current bench order.
-    pub bench: Option<BenchOrder>,
+    /// Running actuator test.
+    pub actuator_test: Option<ActuatorTest>,
 }
 
 impl Behaviour for Disarmed {
     fn observe(&mut self, step: &mut Step<'_>) {
         self.grip_memory = step.check_power_up_grip(self.grip_memory);
-        self.bench = step.context.bench.order();
+        self.actuator_test = step.context.actuator_tests.order();
     }
 
     fn advance(&mut self, step: &mut Step<'_>) {
@@ -34,22 +34,22 @@ impl Behaviour for Disarmed {
     }
 
     fn tendons(&self) -> ClampCommand {
-        match (self.bench, self.grip_memory) {
-            (Some(BenchOrder::Place(place)), GripMemory::Open) => ClampCommand::Place(place),
+        match (self.actuator_test, self.grip_memory) {
+            (Some(ActuatorTest::Place(place)), GripMemory::Open) => ClampCommand::Place(place),
             (_, grip_memory) => grip_memory.tendons(),
         }
     }
 
     fn rotors(&self, _: &Context, _: &Inputs) -> Setpoint {
-        match self.bench {
-            Some(BenchOrder::Spin(spin)) => Setpoint::Spin(spin),
+        match self.actuator_test {
+            Some(ActuatorTest::Spin(spin)) => Setpoint::Spin(spin),
             _ => Setpoint::Stop,
         }
     }
 
     fn reason(&self, context: &Context, i: &Inputs, inhibits: ArmingInhibits) -> Option<Reason> {
-        if self.bench.is_some() {
-            return Some(Reason::OnBench);
+        if self.actuator_test.is_some() {
+            return Some(Reason::ActuatorTest);
         }
         // A recent event takes precedence over the arming checks.
         match context.noted() {

@@ -27,24 +27,24 @@ impl Hold {
     /// Holds the present position.
     pub fn here(step: &mut Step<'_>) -> Self {
         let estimate = step.inputs.position.unwrap_or_default();
-        let law = PositionHold::begin(&step.context.params, &estimate, &step.body_motion());
-        Self::begin(law, false, step)
+        let position_hold = PositionHold::begin(&step.context.params, &estimate, &step.body_motion());
+        Self::begin(position_hold, false, step)
     }
 
-    /// Holds the present position after autonomous flight, with the wind that `law` has estimated; the sticks are
+    /// Holds the present position after autonomous flight, with the wind that `position_hold` has estimated; the sticks are
     /// centred.
-    pub fn after(law: Option<PositionHold>, step: &mut Step<'_>) -> Self {
+    pub fn after(position_hold: Option<PositionHold>, step: &mut Step<'_>) -> Self {
         let estimate = step.inputs.position.unwrap_or_default();
-        let mut law =
-            law.unwrap_or_else(|| PositionHold::begin(&step.context.params, &estimate, &step.body_motion()));
-        law.anchor_at(&estimate);
-        Self::begin(law, true, step)
+        let mut position_hold = position_hold
+            .unwrap_or_else(|| PositionHold::begin(&step.context.params, &estimate, &step.body_motion()));
+        position_hold.anchor_at(&estimate);
+        Self::begin(position_hold, true, step)
     }
 
-    fn begin(law: PositionHold, centred: bool, step: &mut Step<'_>) -> Self {
+    fn begin(position_hold: PositionHold, centred: bool, step: &mut Step<'_>) -> Self {
         let estimate = step.inputs.position.unwrap_or_default();
         let mut hold = Self {
-            place: CoastingHold::new(law),
+            place: CoastingHold::new(position_hold),
             wanted: Setpoint::Stop,
             centred,
         };
@@ -56,8 +56,8 @@ impl Hold {
         let sticks = step.inputs.sticks.unwrap_or_default();
         self.centred |= (sticks.throttle - THROTTLE_CENTRE).abs() <= THROTTLE_ZONE;
         let climb = if self.centred { climb(sticks.throttle) } else { 0.0 };
-        let wish = velocity_from_sticks(&sticks, climb, step.context);
-        self.wanted = self.place.step(estimate, &wish, step);
+        let command = velocity_from_sticks(&sticks, climb, step.context);
+        self.wanted = self.place.step(estimate, &command, step);
     }
 }
 

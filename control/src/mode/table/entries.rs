@@ -28,7 +28,7 @@ pub fn calibrated(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Disar
     let grip_memory = from.behaviour().grip_memory();
     Disarmed {
         grip_memory: step.context.after_switch(step.inputs.sticks, grip_memory),
-        bench: None,
+        actuator_test: None,
     }
 }
 
@@ -46,7 +46,7 @@ pub fn stopped(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Disarmed
     };
     Disarmed {
         grip_memory,
-        bench: None,
+        actuator_test: None,
     }
 }
 
@@ -70,11 +70,11 @@ pub fn holding(_: &State, step: &mut Step<'_>, _: Option<Reason>) -> hold::Hold 
 pub fn handed_back(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> hold::Hold {
     step.context.hold_seen_off = false;
     step.context.perch_switch.seen_off = false;
-    let law = match from {
-        State::Approach(a) => Some(a.law),
+    let position_hold = match from {
+        State::Approach(a) => Some(a.position_hold),
         _ => None,
     };
-    hold::Hold::after(law, step)
+    hold::Hold::after(position_hold, step)
 }
 
 /// The search for the pipe begins.
@@ -89,11 +89,11 @@ pub fn approach(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Approac
         .and_then(|target| target.heading_near(nose + turn));
     let heading = pipe.map_or(nose, |pipe| scalar::wrap_pi(pipe - turn));
     step.context.auto_perch.begin(heading);
-    let law = match from {
-        State::Hold(h) => Some(h.place.law),
+    let position_hold = match from {
+        State::Hold(h) => Some(h.place.position_hold),
         _ => None,
     };
-    Approach::search(law, step)
+    Approach::search(position_hold, step)
 }
 
 /// Clear of the pipe: climbs, then starts another try, except after a release.
@@ -262,7 +262,7 @@ pub fn failsafe(from: &State, step: &mut Step<'_>, why: Option<Reason>) -> Fails
         State::Approach(approach) => {
             let position = step.inputs.position;
             let off_pipe = position.and_then(|e| approach.off_pipe(e.position));
-            Some(LandingPoint::off_approach(approach.law, off_pipe, step))
+            Some(LandingPoint::off_approach(approach.position_hold, off_pipe, step))
         }
         State::Releasing(_) | State::Escaping(_) => LandingPoint::beside_pipe(step),
         _ => LandingPoint::here(step),

@@ -119,8 +119,8 @@ impl World {
         self.see();
         self.r.step();
         if let State::Approach(a) = &self.r.logic.state() {
-            let moved = a.law.held() - self.held;
-            self.held = a.law.held();
+            let moved = a.position_hold.held() - self.held;
+            self.held = a.position_hold.held();
             // The first step in a mode sets the point.
             if moved.norm() < 0.05 {
                 self.at += moved;
@@ -211,7 +211,7 @@ fn a_radio_lost_over_the_pipe_leads_away_from_it() {
 fn said(off: Vec3) -> Option<PipeTarget> {
     Some(PipeTarget {
         at_us: 1,
-        crown: Vec3::new(0.0, RIGHT, -CROWN) + off,
+        crown_position: Vec3::new(0.0, RIGHT, -CROWN) + off,
         heading: Some(crate::maths::scalar::PI),
     })
 }
@@ -273,7 +273,7 @@ fn a_place_of_the_pipe_that_is_stale_far_or_jumps_ends_it_by_its_name() {
         (said(Vec3::new(0.0, 0.0, -1.5)), Reason::TargetFar),
         (
             Some(PipeTarget {
-                crown: Vec3::new(f32::NAN, 0.0, 0.0),
+                crown_position: Vec3::new(f32::NAN, 0.0, 0.0),
                 ..said(Vec3::ZERO).unwrap_or_default()
             }),
             Reason::TargetStale,
@@ -627,7 +627,7 @@ fn a_grab_and_a_release_by_order_do_it_with_the_pilots_switch_left_alone() {
 }
 
 #[test]
-fn a_release_by_order_leaves_by_itself_and_the_pilots_switch_that_stayed_on_is_no_wish() {
+fn after_a_remote_release_the_perch_switch_left_on_does_not_close_the_arms() {
     let mut w = World::perched();
     assert_eq!((w.r.remote(Release), w.r.out.mode), (None, Mode::Releasing));
     w.run(2.0);

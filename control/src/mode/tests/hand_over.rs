@@ -52,8 +52,7 @@ fn a_radio_that_comes_back_in_direct_mode_takes_the_collective_over_without_a_st
 }
 
 #[test]
-fn on_the_pipe_the_throttle_is_the_pilots_up_to_a_share_of_the_weight_until_the_grip_is_proven_and_then_none()
-{
+fn on_the_pipe_thrust_is_limited_to_a_share_of_the_weight_and_stops_with_the_proven_grip() {
     let weight = Params::default().mass * GRAVITY;
     for (throttle, wanted) in [(0.3, 0.375 * weight), (0.4, 0.375 * weight), (0.15, 0.15 * FULL)] {
         let mut r = Rig::touched();

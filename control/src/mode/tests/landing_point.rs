@@ -31,7 +31,7 @@ fn sinking(age: f32) -> Rig {
 fn a_vehicle_that_drifts_leans_back_over_its_spot_and_sinks_as_without_a_position() {
     let mut r = sinking(0.02);
     let mut blind = sinking(f32::MAX);
-    // 0.2 m north and east of the spot: nose down is negative pitch, so back is up, and left.
+    // 0.2 m north and east of the landing point: nose down is negative pitch, so back is up, and left.
     at(&mut r, Vec3::new(0.2, 0.2, 0.0), 0.02);
     r.step();
     blind.step();
@@ -54,7 +54,7 @@ fn a_position_that_comes_late_is_taken_and_one_that_ends_is_left() {
         angles(r)[1]
     };
     assert_eq!(off(&mut r, FRESH_AGE + 0.01), 0.0);
-    // Where it is then is its spot.
+    // Where it is then is its landing point.
     assert!(off(&mut r, 0.02).abs() < 1e-3);
     at(&mut r, Vec3::new(0.5, 0.0, 0.0), 0.02);
     r.step();
@@ -90,7 +90,7 @@ fn with_an_empty_battery_the_hold_switch_says_what_the_sticks_ask_for() {
         let asked = 0.5 * r.params.stick_angle;
         let [roll, ..] = angles(&r);
         if held {
-            // A velocity: it leans as far as the wish has grown.
+            // A velocity: it leans as far as the command has grown.
             assert!(roll > 0.0 && roll < 0.5 * asked, "{roll}");
         } else {
             assert!((roll - asked).abs() < 1e-4, "{roll}");

@@ -493,7 +493,7 @@ fn a_lean_that_creeps_out_while_the_arms_close_is_left() {
 }
 
 #[test]
-fn a_touch_that_is_no_seat_is_left_and_a_bounce_is_not() {
+fn a_touch_without_lasting_support_is_escaped_and_a_bounce_is_not() {
     for (seconds, leaves) in [(0.15, false), (0.5, true)] {
         let mut r = Rig::touched();
         r.carried = false;

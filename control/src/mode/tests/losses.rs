@@ -89,7 +89,7 @@ fn no_arm_opens_on_the_pipe_before_the_rotors_have_the_least_throttle() {
 }
 
 #[test]
-fn a_number_that_is_none_is_a_message_that_has_not_come() {
+fn a_message_with_a_non_finite_value_counts_as_missing() {
     type Spoil = fn(&mut Inputs);
     let cases: [Spoil; 6] = [
         |i| {
@@ -156,7 +156,7 @@ fn a_number_that_is_none_is_a_message_that_has_not_come() {
 }
 
 #[test]
-fn no_attitude_that_is_none_is_held_on_the_pipe_or_taken_for_a_touch() {
+fn a_non_finite_attitude_is_neither_held_on_the_pipe_nor_taken_for_a_touch() {
     let nowhere = Some(Motion {
         q: Quat {
             w: f32::NAN,

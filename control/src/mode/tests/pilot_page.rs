@@ -43,7 +43,7 @@ fn on_reason(reason: Reason) -> &'static str {
         Reason::Check(refusal) => on_inhibit(refusal),
         Reason::ArmFault(fault) => fault.map_or("", on_fault),
         Reason::KeepStill => "Hands off until it has calibrated.",
-        Reason::OnBench => "A builder tries a part at the console: hands off.",
+        Reason::ActuatorTest => "A builder tries a part at the console: hands off.",
         Reason::IdleTooLong => "Arm again; take off sooner.",
         Reason::BatteryCritical => "It lands: steer it over clear ground. On the pipe it stays: fetch it.",
         Reason::TippedOver => {

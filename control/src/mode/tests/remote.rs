@@ -8,7 +8,9 @@ use crate::gripper::clamp_command::ClampCommand;
 use crate::gripper::grip::ArmState;
 use crate::mode::inputs::remote::GRAB_WAIT;
 use crate::mode::*;
-use crate::pilot::bench_orders::{BenchOrder, BenchRefusal, BenchRequest, BenchState, SPIN_DRIVE, Spin};
+use crate::pilot::actuator_test::{
+    ActuatorTest, ActuatorTestRefusal, ActuatorTestRequest, ActuatorTestState, SPIN_DRIVE, Spin,
+};
 use crate::pilot::rc::ArmChoice;
 use crate::pilot::remote::RemoteOrder::{self, Arm, Disarm, Grab, Kill, Release};
 use crate::pilot::remote::{RemoteRefusal, RemoteRequest};
@@ -156,17 +158,20 @@ fn a_kill_on_the_pipe_keeps_the_arms_closed() {
 }
 
 #[test]
-fn disarming_ends_what_is_tried_on_the_bench() {
+fn disarming_ends_an_actuator_test() {
     for order in [Disarm, Kill] {
         let mut r = Rig::disarmed();
-        let spin = BenchOrder::Spin(Spin::at(0, SPIN_DRIVE));
-        for (number, order) in (1..).zip([BenchOrder::PropellersOff, spin]) {
-            r.inputs.bench = Some(BenchRequest { number, order });
+        let spin = ActuatorTest::Spin(Spin::at(0, SPIN_DRIVE));
+        for (number, order) in (1..).zip([ActuatorTest::PropellersOff, spin]) {
+            r.inputs.actuator_test = Some(ActuatorTestRequest { number, order });
             r.step();
         }
-        assert_eq!(r.out.bench.state, BenchState::Running);
+        assert_eq!(r.out.actuator_test.state, ActuatorTestState::Running);
         assert_eq!(r.remote(order), None);
-        assert_eq!(r.out.bench.state, BenchState::Ended(BenchRefusal::Disarm));
+        assert_eq!(
+            r.out.actuator_test.state,
+            ActuatorTestState::Ended(ActuatorTestRefusal::Disarm)
+        );
         assert_eq!(r.out.rotors, Setpoint::Stop);
     }
 }
@@ -188,7 +193,7 @@ fn a_grab_closes_at_the_touch_and_holds_with_the_pilots_switch_off() {
 }
 
 #[test]
-fn a_release_takes_what_the_switch_takes_and_leaves_no_wish_behind() {
+fn a_remote_release_has_the_switchs_conditions_and_does_not_outlast_its_refusal() {
     let mut r = Rig::perched();
     assert_eq!(r.remote(Release), Some(RemoteRefusal::Throttle));
     r.sticks().throttle = 0.3;

@@ -344,7 +344,7 @@ fn the_pair_that_presses_is_the_one_that_is_kept() {
 }
 
 #[test]
-fn nothing_is_decided_while_nothing_is_felt() {
+fn without_a_pressure_sensor_it_stays_undecided_whether_arms_hold() {
     let mut r = Rig::found(700.0);
     r.inputs.fsr_fault = [true; 4];
     r.stays(10.0, ClampCommand::Keep);

@@ -69,13 +69,13 @@ impl Rig {
             self.now += STEP_US;
             let t = self.now as f64 * 1e-6;
             let [_, down] = (self.motion)(t);
-            self.scale.feel(self.now, Some((down + self.bias) as f32));
+            self.scale.predict(self.now, Some((down + self.bias) as f32));
             let at = self.now - LATE_US;
             if self.now.is_multiple_of(RANGE_US) {
                 let t = at as f64 * 1e-6;
                 let [height, _] = (self.motion)(t);
                 let seen = (self.range)(height, t) + 0.015 * noise(self.now / RANGE_US);
-                self.scale.look(seen as f32, LATE_US as f32 * 1e-6, self.below);
+                self.scale.update(seen as f32, LATE_US as f32 * 1e-6, self.below);
             }
             if self.scale.wrong() && found.is_none() {
                 found = Some((self.now - begun) as f64 * 1e-6);
@@ -97,7 +97,7 @@ fn a_sound_range_is_never_wrong() {
 }
 
 #[test]
-fn one_that_is_too_long_or_too_short_is_found_where_the_vehicle_rises() {
+fn a_wrong_range_scale_is_detected_in_a_climb() {
     for range in [(|h, _| 1.6 * h) as fn(f64, f64) -> f64, |h, _| 0.6 * h] {
         let found = Rig::new(climbing, range).run(30.0);
         assert!(found.is_some_and(|after| after < 6.0), "{found:?}");
@@ -113,7 +113,7 @@ fn small_errors_of_the_scale_are_tolerated() {
 
 /// Held in gusts it rises and sinks by 2 cm: enough to see it move by 1.6 times as much.
 #[test]
-fn one_that_is_too_long_is_found_in_a_hold_too() {
+fn a_range_scale_too_long_is_detected_in_a_hold_too() {
     let found = Rig::new(held, |h, _| 1.6 * h).run(30.0);
     assert!(found.is_some_and(|after| after < 15.0), "{found:?}");
 }
@@ -129,7 +129,7 @@ fn what_a_round_back_does_is_no_scale() {
 }
 
 #[test]
-fn it_is_used_again_once_it_has_risen_as_far_as_it_says() {
+fn a_range_is_used_again_once_its_scale_fits_a_climb() {
     let mut r = Rig::new(climbing, |h, _| 1.6 * h);
     assert!(r.run(10.0).is_some());
     r.run(20.0);
@@ -151,9 +151,9 @@ fn on_the_ground_and_in_a_shock_nothing_is_judged() {
     let mut r = Rig::new(climbing, |h, _| 1.6 * h);
     for _ in 0..40 {
         r.run(0.4);
-        r.scale.feel(r.now, None);
+        r.scale.predict(r.now, None);
         r.run(0.4);
-        r.scale.feel(r.now, Some(9.0));
+        r.scale.predict(r.now, Some(9.0));
         assert!(!r.scale.wrong());
     }
 }
@@ -166,7 +166,7 @@ fn a_step_onto_something_is_no_scale() {
         assert_eq!(r.run(1.3), None);
         r.range = if i % 2 == 0 { |h, _| h - 0.4 } else { |h, _| h };
         r.scale
-            .look(1.0, 0.03, if i < 10 { Below::New } else { Below::Known });
+            .update(1.0, 0.03, if i < 10 { Below::New } else { Below::Known });
     }
 }
 
@@ -174,9 +174,9 @@ fn a_step_onto_something_is_no_scale() {
 fn no_number_breaks_it() {
     let mut r = Rig::new(climbing, |h, _| h);
     for number in [f32::NAN, f32::INFINITY, f32::MAX, -1e30, 0.0] {
-        r.scale.feel(r.now, Some(number));
-        r.scale.look(number, 0.03, Below::Plain);
-        r.scale.look(1.0, number, Below::Plain);
+        r.scale.predict(r.now, Some(number));
+        r.scale.update(number, 0.03, Below::Plain);
+        r.scale.update(1.0, number, Below::Plain);
         r.run(1.0);
         assert!(!r.scale.wrong());
     }

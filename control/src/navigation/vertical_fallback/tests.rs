@@ -90,7 +90,7 @@ impl World {
 }
 
 #[test]
-fn a_sound_estimate_stays_what_it_is() {
+fn a_sound_estimate_is_left_unchanged() {
     let w = World::learnt();
     assert_eq!(Some(w.out()), w.estimate);
     let mut w = w.blinded();
@@ -131,7 +131,7 @@ fn where_poses_have_gone_their_bent_speed_is_not_flown_by() {
 }
 
 #[test]
-fn a_range_that_goes_another_way_is_named_once_its_bias_is_learnt() {
+fn an_inconsistent_range_is_a_fault_once_the_bias_is_learnt() {
     for (seconds, bent, flown, named) in [
         (30.0, 0.2, false, false),
         (30.0, -0.35, true, true),
@@ -157,7 +157,7 @@ fn a_range_that_goes_another_way_is_named_once_its_bias_is_learnt() {
 
 /// At the gate, 10 cm over the crown, a range that becomes 1.6 times too long bends it by no more than 0.12 m/s.
 #[test]
-fn over_a_crown_and_near_it_less_is_another_way() {
+fn close_above_a_crown_a_smaller_speed_error_is_a_fault() {
     for (steady, bent, named) in [
         (true, 0.08, false),
         (true, 0.12, true),

@@ -11,12 +11,11 @@ use sophie_control::maths::decimal::Decimal;
 use sophie_control::params::Params;
 
 use super::orders::Answerer;
-use super::{or_zero, whole};
+use super::{Received, or_zero, whole};
 use crate::services::Services;
 use crate::services::answer::Answer;
 use crate::services::telemetry::calibration_result;
 use crate::vehicle::Vehicle;
-use crate::wire::requests::{Command, Peer};
 use sophie_dialect::*;
 
 /// Time to turn the vehicle to the next side where texts lead, µs.
@@ -58,18 +57,15 @@ impl Services {
     /// Measures one step for a host, or ends the running one; `None` if the acknowledgement comes later.
     pub(super) fn calibrate(
         &mut self,
-        command: &Command,
-        from: Peer,
-        now: u64,
-        vehicle: &Vehicle,
+        received: &Received<'_>,
         procedure: &mut Procedure,
     ) -> Option<MavResult> {
-        let [which, part, number, first, second, ..] = command.params;
+        let [which, part, number, first, second, ..] = received.command.params;
         let [which, part, number] = [which, part, number].map(or_zero).map(whole);
         if which == Some(0) {
             return Some(self.end_calibration(procedure));
         }
-        if !vehicle.at_rest() {
+        if !received.vehicle.at_rest() {
             return Some(self.refuse_armed());
         }
         let mut all = Calibration::ALL.into_iter();
@@ -81,19 +77,16 @@ impl Services {
         let Some(step) = step else {
             return Some(self.deny("no such step of a calibration"));
         };
-        self.begin_calibration(command, from, now, procedure, step, None)
+        self.begin_calibration(received, procedure, step, None)
     }
 
     /// Leads through a calibration by texts, or ends the running one; `None` if the acknowledgement comes later.
     pub(super) fn guide_calibration(
         &mut self,
-        command: &Command,
-        from: Peer,
-        now: u64,
-        vehicle: &Vehicle,
+        received: &Received<'_>,
         procedure: &mut Procedure,
     ) -> Option<MavResult> {
-        let (calibration, text) = match command.params.map(or_zero).map(whole) {
+        let (calibration, text) = match received.command.params.map(or_zero).map(whole) {
             [Some(0), Some(0), Some(0), Some(0), Some(0), Some(0), Some(0)] => {
                 return Some(self.end_calibration(procedure));
             }
@@ -108,14 +101,14 @@ impl Services {
             }
             _ => return Some(self.unsupported("others: MAV_CMD_SOPHIE_CALIBRATE")),
         };
-        if !vehicle.at_rest() {
+        if !received.vehicle.at_rest() {
             return Some(self.refuse_armed());
         }
         let Some(step) = Step::new(calibration, 0, 1, [0.0; 2]) else {
             return Some(MavResult::MAV_RESULT_UNSUPPORTED);
         };
-        let answer = self.begin_calibration(command, from, now, procedure, step, Some(now));
-        if answer.is_none() && self.calibrations.asked_us == Some(now) {
+        let answer = self.begin_calibration(received, procedure, step, Some(received.now));
+        if answer.is_none() && self.calibrations.asked_us == Some(received.now) {
             self.guide(text);
         }
         answer
@@ -130,9 +123,7 @@ impl Services {
 
     fn begin_calibration(
         &mut self,
-        command: &Command,
-        from: Peer,
-        now: u64,
+        received: &Received<'_>,
         procedure: &mut Procedure,
         step: Step,
         asked_us: Option<u64>,
@@ -140,16 +131,16 @@ impl Services {
         if procedure.running().is_some() && !self.calibrations.owned {
             return Some(self.refuse("another line calibrates"));
         }
-        if let Err(answer) = self.begin(command.number, from, now, Answerer::Calibration) {
+        if let Err(answer) = self.begin(received, Answerer::Calibration) {
             return answer;
         }
-        if procedure.begin(step, now).is_err() {
+        if procedure.begin(step, received.now).is_err() {
             self.settle_refused(Answerer::Calibration, "the step before it first");
             return None;
         }
         self.calibrations.owned = true;
         self.calibrations.asked_us = asked_us;
-        self.calibrations.report_us = now.saturating_add(PROGRESS_US);
+        self.calibrations.report_us = received.now.saturating_add(PROGRESS_US);
         self.progress(0);
         None
     }
@@ -248,6 +239,7 @@ impl Services {
         true
     }
 
+    /// Shorter than [`Unfit`] itself: STATUSTEXT has 50 characters.
     fn say_unfit(&mut self, unfit: Unfit) {
         let Unfit {
             what, value, unit, ..

@@ -1,16 +1,17 @@
-//! Orders to the commander: arming, gripper and bench tests. Each is acknowledged when the commander has answered.
+//! Orders to the commander: arming, gripper and actuator tests. Each is acknowledged when the commander has answered.
 
-use sophie_control::pilot::bench_orders::{
-    BenchOrder, BenchRefusal, BenchRequest, BenchState, PLACE_TIME, Place, SPIN_TIME, Spin,
+use sophie_control::pilot::actuator_test::{
+    ActuatorTest, ActuatorTestRefusal, ActuatorTestRequest, ActuatorTestState, PLACE_TIME, Place, SPIN_TIME,
+    Spin,
 };
 use sophie_control::pilot::remote::{RemoteOrder, RemoteRefusal, RemoteRequest};
 
 use sophie_control::calibration::procedure::Procedure;
 
-use super::{or_zero, whole};
+use super::{Received, or_zero, whole};
 use crate::services::Services;
 use crate::vehicle::Vehicle;
-use crate::wire::requests::{Command, Peer};
+use crate::wire::requests::Peer;
 use sophie_dialect::*;
 
 /// Longest time to the commander's answer, µs: fifty of its periods.
@@ -25,8 +26,8 @@ const FIRST_SERVO: u32 = 5;
 pub struct CommanderRequests {
     /// Arming and gripper.
     pub remote: Option<RemoteRequest>,
-    /// Bench tests.
-    pub bench: Option<BenchRequest>,
+    /// Actuator tests.
+    pub actuator_test: Option<ActuatorTestRequest>,
 }
 
 /// The part of the server that acknowledges a waiting command. What another part ends does not acknowledge it: a motor
@@ -35,8 +36,8 @@ pub struct CommanderRequests {
 pub(super) enum Answerer {
     /// Arming and gripper, by the commander.
     Remote,
-    /// Bench tests, by the commander.
-    Bench,
+    /// Actuator tests, by the commander.
+    ActuatorTest,
     /// The procedure of calibrations.
     Calibration,
     /// The board: rows of a report, brown-out level.
@@ -52,20 +53,20 @@ struct Pending {
     since: u64,
 }
 
-/// A bench test.
+/// An actuator test.
 #[derive(Clone, Copy, Debug)]
 struct Trial {
     /// The number is 0 before it is sent.
-    request: BenchRequest,
+    request: ActuatorTestRequest,
     /// Its end, µs.
     until: u64,
 }
 
 impl Trial {
     /// A test that begins at `now`, µs, and lasts `seconds` at most.
-    fn new(order: BenchOrder, now: u64, seconds: f32) -> Self {
+    fn new(order: ActuatorTest, now: u64, seconds: f32) -> Self {
         Self {
-            request: BenchRequest { number: 0, order },
+            request: ActuatorTestRequest { number: 0, order },
             until: now.saturating_add((seconds * 1e6) as u64),
         }
     }
@@ -78,7 +79,7 @@ pub struct Orders {
     /// The number is 0 before it is sent.
     remote: Option<RemoteRequest>,
     trial: Option<Trial>,
-    /// Number of this line's newest bench order.
+    /// Number of this line's newest actuator test.
     own: u32,
 }
 
@@ -94,32 +95,27 @@ impl Orders {
 }
 
 impl Services {
-    /// Gives the order that `command` asks for; `None` if the acknowledgement comes later.
+    /// Gives the order that the command asks for; `None` if the acknowledgement comes later.
     pub(super) fn order_by(
         &mut self,
-        command: &Command,
-        from: Peer,
-        now: u64,
-        vehicle: &Vehicle,
+        received: &Received<'_>,
         procedure: &mut Procedure,
     ) -> Option<MavResult> {
-        let number = u32::from(command.number);
+        let number = u32::from(received.command.number);
         if number == MavCmd::MAV_CMD_COMPONENT_ARM_DISARM as u32 {
-            self.arm_disarm(command, from, now, procedure)
+            self.arm_disarm(received, procedure)
         } else if number == MavCmd::MAV_CMD_DO_GRIPPER as u32 {
-            self.gripper(command, from, now, procedure)
+            self.gripper(received, procedure)
         } else if number == MavCmd::MAV_CMD_DO_MOTOR_TEST as u32 {
-            self.motor_test(command, from, now, vehicle)
+            self.motor_test(received)
         } else if number == MavCmd::MAV_CMD_DO_SET_SERVO as u32 {
-            self.set_servo(command, from, now)
+            self.set_servo(received)
         } else if number == MavCmd::MAV_CMD_USER_1 as u32 {
-            let [first, ..] = command.params;
+            let [first, ..] = received.command.params;
             match whole(first) {
-                Some(1) => self.try_on_bench(
-                    command,
-                    from,
-                    now,
-                    Trial::new(BenchOrder::PropellersOff, now, 0.0),
+                Some(1) => self.try_actuator(
+                    received,
+                    Trial::new(ActuatorTest::PropellersOff, received.now, 0.0),
                 ),
                 _ => Some(self.deny("1 confirms that propellers are off")),
             }
@@ -128,14 +124,8 @@ impl Services {
         }
     }
 
-    fn arm_disarm(
-        &mut self,
-        command: &Command,
-        from: Peer,
-        now: u64,
-        procedure: &mut Procedure,
-    ) -> Option<MavResult> {
-        let [what, force, ..] = command.params;
+    fn arm_disarm(&mut self, received: &Received<'_>, procedure: &mut Procedure) -> Option<MavResult> {
+        let [what, force, ..] = received.command.params;
         let order = match (whole(what), whole(or_zero(force)) == Some(FORCED)) {
             (Some(1), false) => RemoteOrder::Arm,
             (Some(1), true) => return Some(self.deny("no arming check can be forced")),
@@ -143,33 +133,21 @@ impl Services {
             (Some(0), true) => RemoteOrder::Kill,
             _ => return Some(self.deny("0 disarms, 1 arms")),
         };
-        self.give(command, from, now, order, procedure)
+        self.give(received, order, procedure)
     }
 
-    fn gripper(
-        &mut self,
-        command: &Command,
-        from: Peer,
-        now: u64,
-        procedure: &mut Procedure,
-    ) -> Option<MavResult> {
-        let [gripper, action, ..] = command.params;
+    fn gripper(&mut self, received: &Received<'_>, procedure: &mut Procedure) -> Option<MavResult> {
+        let [gripper, action, ..] = received.command.params;
         let order = match (whole(or_zero(gripper)), whole(action)) {
             (Some(0 | 1), Some(0)) => RemoteOrder::Release,
             (Some(0 | 1), Some(1)) => RemoteOrder::Grab,
             _ => return Some(self.deny("gripper 1: 0 releases, 1 grabs")),
         };
-        self.give(command, from, now, order, procedure)
+        self.give(received, order, procedure)
     }
 
-    fn motor_test(
-        &mut self,
-        command: &Command,
-        from: Peer,
-        now: u64,
-        vehicle: &Vehicle,
-    ) -> Option<MavResult> {
-        let [motor, kind, throttle, seconds, count, ..] = command.params;
+    fn motor_test(&mut self, received: &Received<'_>) -> Option<MavResult> {
+        let [motor, kind, throttle, seconds, count, ..] = received.command.params;
         let by_pulse = match whole(kind) {
             Some(kind) if kind == MotorTestThrottleType::MOTOR_TEST_THROTTLE_PERCENT as u32 => false,
             Some(kind) if kind == MotorTestThrottleType::MOTOR_TEST_THROTTLE_PWM as u32 => true,
@@ -181,44 +159,42 @@ impl Services {
         };
         let spin = Spin::at(rotor as usize - 1, throttle / 100.0);
         let order = if throttle <= 0.0 || throttle.is_nan() {
-            BenchOrder::End
+            ActuatorTest::End
         } else if by_pulse {
-            BenchOrder::Spin(Spin {
-                drive: vehicle.motor_pulses.command(throttle),
+            ActuatorTest::Spin(Spin {
+                drive: received.vehicle.motor_pulses.command(throttle),
                 probes: true,
                 ..spin
             })
         } else {
-            BenchOrder::Spin(spin)
+            ActuatorTest::Spin(spin)
         };
         // 0, or not given, means the longest time.
         let shorter = seconds > 0.0 && seconds < SPIN_TIME;
         let seconds = if shorter { seconds } else { SPIN_TIME };
-        self.try_on_bench(command, from, now, Trial::new(order, now, seconds))
+        self.try_actuator(received, Trial::new(order, received.now, seconds))
     }
 
-    fn set_servo(&mut self, command: &Command, from: Peer, now: u64) -> Option<MavResult> {
-        let [output, pulse_us, ..] = command.params;
+    fn set_servo(&mut self, received: &Received<'_>) -> Option<MavResult> {
+        let [output, pulse_us, ..] = received.command.params;
         let servo = whole(output).and_then(|output| output.checked_sub(FIRST_SERVO));
         let Some(servo @ 0..4) = servo else {
             return Some(self.deny("outputs 5 to 8 are the servos"));
         };
         let order = if pulse_us > 0.0 {
-            BenchOrder::Place(Place {
+            ActuatorTest::Place(Place {
                 servo: servo as usize,
                 pulse_us,
             })
         } else {
-            BenchOrder::End
+            ActuatorTest::End
         };
-        self.try_on_bench(command, from, now, Trial::new(order, now, PLACE_TIME))
+        self.try_actuator(received, Trial::new(order, received.now, PLACE_TIME))
     }
 
     fn give(
         &mut self,
-        command: &Command,
-        from: Peer,
-        now: u64,
+        received: &Received<'_>,
         order: RemoteOrder,
         procedure: &mut Procedure,
     ) -> Option<MavResult> {
@@ -227,32 +203,27 @@ impl Services {
             self.acknowledge_pending(MavResult::MAV_RESULT_TEMPORARILY_REJECTED);
             self.calibrations.cancel(procedure);
         }
-        let begun = self.begin(command.number, from, now, Answerer::Remote);
+        let begun = self.begin(received, Answerer::Remote);
         begun.err().unwrap_or_else(|| {
             self.orders.remote = Some(RemoteRequest { number: 0, order });
             None
         })
     }
 
-    fn try_on_bench(&mut self, command: &Command, from: Peer, now: u64, trial: Trial) -> Option<MavResult> {
-        let begun = self.begin(command.number, from, now, Answerer::Bench);
+    fn try_actuator(&mut self, received: &Received<'_>, trial: Trial) -> Option<MavResult> {
+        let begun = self.begin(received, Answerer::ActuatorTest);
         begun.err().unwrap_or_else(|| {
             self.orders.trial = Some(trial);
             None
         })
     }
 
-    /// Notes that `command` is acknowledged later, `by` one part of the server.
+    /// Notes that the command is acknowledged later, `by` one part of the server.
     ///
     /// # Errors
-    /// The acknowledgement to send now; `None` if `command` is a repetition of the one that waits.
-    pub(super) fn begin(
-        &mut self,
-        command: u16,
-        to: Peer,
-        since: u64,
-        by: Answerer,
-    ) -> Result<(), Option<MavResult>> {
+    /// The acknowledgement to send now; `None` if it is a repetition of the one that waits.
+    pub(super) fn begin(&mut self, received: &Received<'_>, by: Answerer) -> Result<(), Option<MavResult>> {
+        let (command, to) = (received.command.number, received.from);
         match self.orders.pending {
             Some(p) if p.command == command && p.to == to => Err(None),
             Some(_) => Err(Some(self.refuse("another command is under way"))),
@@ -261,7 +232,7 @@ impl Services {
                     command,
                     by,
                     to,
-                    since,
+                    since: received.now,
                 });
                 Ok(())
             }
@@ -302,7 +273,7 @@ impl Services {
     pub fn requests(&mut self, now: u64, vehicle: &Vehicle) -> CommanderRequests {
         CommanderRequests {
             remote: self.remote(now, vehicle),
-            bench: self.bench(now, vehicle),
+            actuator_test: self.actuator_test(now, vehicle),
         }
     }
 
@@ -338,8 +309,11 @@ impl Services {
         None
     }
 
-    fn bench(&mut self, now: u64, vehicle: &Vehicle) -> Option<BenchRequest> {
-        let (view, late) = (vehicle.answers.bench, self.is_late(Answerer::Bench, now));
+    fn actuator_test(&mut self, now: u64, vehicle: &Vehicle) -> Option<ActuatorTestRequest> {
+        let (view, late) = (
+            vehicle.answers.actuator_test,
+            self.is_late(Answerer::ActuatorTest, now),
+        );
         let trial = self.orders.trial.as_mut()?;
         if trial.request.number == 0 {
             match view.next(self.orders.own) {
@@ -349,7 +323,7 @@ impl Services {
                 }
                 Err(why) => {
                     self.orders.trial = None;
-                    self.settle_refused(Answerer::Bench, why.text());
+                    self.settle_refused(Answerer::ActuatorTest, why.text());
                     return None;
                 }
             }
@@ -358,24 +332,26 @@ impl Services {
         let state = (view.answer.number == request.number).then_some(view.answer.state);
         match state {
             None if !late => return Some(request),
-            Some(BenchState::Running) => {
+            Some(ActuatorTestState::Running) => {
                 if now >= until {
-                    trial.request = BenchRequest {
+                    trial.request = ActuatorTestRequest {
                         number: 0,
-                        order: BenchOrder::End,
+                        order: ActuatorTest::End,
                     };
                 }
-                self.settle(Answerer::Bench, MavResult::MAV_RESULT_ACCEPTED);
+                self.settle(Answerer::ActuatorTest, MavResult::MAV_RESULT_ACCEPTED);
                 return Some(request);
             }
-            None => self.say_silent(Answerer::Bench),
-            Some(BenchState::Done) => self.settle(Answerer::Bench, MavResult::MAV_RESULT_ACCEPTED),
-            Some(BenchState::Refused(BenchRefusal::OutOfRange)) => {
-                let result = self.deny(BenchRefusal::OutOfRange.text());
-                self.settle(Answerer::Bench, result);
+            None => self.say_silent(Answerer::ActuatorTest),
+            Some(ActuatorTestState::Done) => {
+                self.settle(Answerer::ActuatorTest, MavResult::MAV_RESULT_ACCEPTED)
             }
-            Some(BenchState::Refused(why) | BenchState::Ended(why)) => {
-                self.settle_refused(Answerer::Bench, why.text())
+            Some(ActuatorTestState::Refused(ActuatorTestRefusal::OutOfRange)) => {
+                let result = self.deny(ActuatorTestRefusal::OutOfRange.text());
+                self.settle(Answerer::ActuatorTest, result);
+            }
+            Some(ActuatorTestState::Refused(why) | ActuatorTestState::Ended(why)) => {
+                self.settle_refused(Answerer::ActuatorTest, why.text())
             }
         }
         self.orders.trial = None;

@@ -1,11 +1,9 @@
 //! Reports row by row: the self-test and the settings of the chip. The board makes the rows; one waits for the line at a time.
 
 use super::orders::Answerer;
-use super::{or_zero, whole};
+use super::{Received, or_zero, whole};
 use crate::services::Services;
 use crate::services::answer::Answer;
-use crate::vehicle::Vehicle;
-use crate::wire::requests::{Command, Peer};
 use sophie_control::arming::ArmingInhibits;
 use sophie_dialect::*;
 
@@ -47,23 +45,17 @@ pub(crate) struct Running {
 
 impl Services {
     /// Begins a report; `None` if the acknowledgement comes later.
-    pub(super) fn report(
-        &mut self,
-        command: &Command,
-        from: Peer,
-        now: u64,
-        vehicle: &Vehicle,
-    ) -> Option<MavResult> {
-        let [which, ..] = command.params;
+    pub(super) fn report(&mut self, received: &Received<'_>) -> Option<MavResult> {
+        let [which, ..] = received.command.params;
         let report = match whole(or_zero(which)) {
             Some(1) => Report::SelfTest,
             Some(2) => Report::Chip,
             _ => return Some(self.deny("report 1 or 2")),
         };
-        if report == Report::SelfTest && !vehicle.at_rest() {
+        if report == Report::SelfTest && !received.vehicle.at_rest() {
             return Some(self.refuse_armed());
         }
-        if let Err(answer) = self.begin(command.number, from, now, Answerer::Board) {
+        if let Err(answer) = self.begin(received, Answerer::Board) {
             return answer;
         }
         if self.report.is_some() {

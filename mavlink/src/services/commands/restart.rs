@@ -1,20 +1,19 @@
 //! Restart of the board, storing of the parameters, and the brown-out level of the chip.
 
 use super::orders::Answerer;
-use super::whole;
+use super::{Received, whole};
 use crate::services::Services;
 use crate::vehicle::Vehicle;
-use crate::wire::requests::{Command, Peer};
 use sophie_dialect::*;
 
 /// Delay of a restart, µs: the acknowledgement is sent first.
-const LAST_WORDS: u64 = 300_000;
+const RESTART_DELAY_US: u64 = 300_000;
 
 impl Services {
     pub(super) fn reboot(&mut self, autopilot: f32, now: u64, vehicle: &Vehicle) -> MavResult {
         match whole(autopilot) {
             Some(1) if vehicle.at_rest() => {
-                self.restart_at = Some(now.saturating_add(LAST_WORDS));
+                self.restart_at = Some(now.saturating_add(RESTART_DELAY_US));
                 MavResult::MAV_RESULT_ACCEPTED
             }
             Some(1) => self.refuse_armed(),
@@ -23,17 +22,11 @@ impl Services {
     }
 
     /// Has the brown-out level set; `None` if the acknowledgement comes later.
-    pub(super) fn brown_out(
-        &mut self,
-        command: &Command,
-        from: Peer,
-        now: u64,
-        vehicle: &Vehicle,
-    ) -> Option<MavResult> {
-        let [confirmed, ..] = command.params;
+    pub(super) fn brown_out(&mut self, received: &Received<'_>) -> Option<MavResult> {
+        let [confirmed, ..] = received.command.params;
         match whole(confirmed) {
-            Some(1) if vehicle.at_rest() => {
-                if let Err(answer) = self.begin(command.number, from, now, Answerer::Board) {
+            Some(1) if received.vehicle.at_rest() => {
+                if let Err(answer) = self.begin(received, Answerer::Board) {
                     return answer;
                 }
                 self.set_brown_out = true;

@@ -6,7 +6,7 @@ use sophie_control::params::Params;
 use sophie_sim::parallel;
 use sophie_sim::plant::tendon::ServoProfile;
 use sophie_sim::plant::tendon::ServoSpec;
-use sophie_sim::test_stands::arm_bench::{Closed, Closing, close};
+use sophie_sim::test_stands::arm_stand::{Closed, Closing, close};
 
 use super::super::printed::Printed;
 

@@ -1,7 +1,7 @@
 //! Fig. 10, and Table IV among all closings.
 
 use sophie_charts::units::kgcm;
-use sophie_sim::test_stands::arm_bench::BenchSample;
+use sophie_sim::test_stands::arm_stand::ClosingSample;
 
 use super::super::printed::Printed;
 use super::bench::{INFILLS, OnBench};
@@ -21,7 +21,7 @@ pub fn show(s: &mut Section, p: &Printed, all: &[OnBench]) {
     );
 }
 
-fn curves(all: &[OnBench], value: impl Fn(&BenchSample) -> f64) -> Vec<Series> {
+fn curves(all: &[OnBench], value: impl Fn(&ClosingSample) -> f64) -> Vec<Series> {
     let curve = |(i, (infill, diameter)): (usize, (f64, f64))| {
         let c = all
             .iter()

@@ -65,7 +65,7 @@ pub struct Planned {
     pub gauge: Option<usize>,
 }
 
-/// Touch `index` of a map, drawn from `seed`, headed up to `heading` (rad) off the pipe.
+/// Touch `index` of a map, sampled from `seed`, headed up to `heading` (rad) off the pipe.
 #[must_use]
 pub fn plan(index: u64, seed: u64, heading: f64) -> Planned {
     let gauge = TURNS[(index % TURNS.len() as u64) as usize];

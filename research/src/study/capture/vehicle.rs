@@ -1,4 +1,4 @@
-//! Vehicles drawn over the model's uncertainties: infill, stiffness, gains of the arms, tendon parameters.
+//! Vehicles sampled over the model's uncertainties: infill, stiffness, gains of the arms, tendon parameters.
 
 use sophie_sim::scenario::{Overrides, Scenario};
 use sophie_sim::streams::Streams;
@@ -14,7 +14,7 @@ const RESPONSE: f64 = 2.0;
 /// The vehicle of touch `seed`.
 ///
 /// # Errors
-/// One line: a value outside what a scenario takes, which no draw gives.
+/// One line: a value outside what a scenario takes, which no sample has.
 pub fn sample(seed: u64) -> Result<Scenario, String> {
     let streams = Streams::new(seed);
     let within = |name: &str, (from, to): (f64, f64)| streams.within(&format!("vehicle.{name}"), from, to);
@@ -30,7 +30,7 @@ pub fn sample(seed: u64) -> Result<Scenario, String> {
     );
     let mut scenario = Scenario::parse(&text, &format!("vehicle {seed}"), &Overrides::default())
         .map_err(|e| e.to_string())?;
-    // As much too large as too small: drawn evenly in the logarithm.
+    // As much too large as too small: sampled evenly in the logarithm.
     let times = |name: &str| RESPONSE.powf(within(name, (-1.0, 1.0))) as f32;
     scenario.params.tendon_bend *= times("tendon bend");
     scenario.params.tendon_relief *= times("tendon relief");

@@ -75,11 +75,11 @@ pub fn json(flown: &[Flown], seed: u64, spread: f64) -> String {
         "check_refused_accomplished": counts.refused_accomplished,
         "causes": causes(flown).into_iter().collect::<BTreeMap<_, _>>(),
         "flown": flown.iter().map(|f| json!({
-            "seed": f.drawn.seed,
+            "seed": f.sampled.seed,
             "accomplished": f.outcome.accomplished,
             "reason": f.outcome.reason,
             "check": f.check,
-            "scenario": f.drawn.text,
+            "scenario": f.sampled.text,
         })).collect::<Vec<_>>(),
     });
     // Numbers and string keys only: cannot fail.
@@ -98,16 +98,22 @@ pub fn section(flown: &[Flown], seed: u64, spread: f64) -> Section {
         "Each vehicle, by what was drawn of it.",
         vec![
             scatter(flown, "infill, %", "gain K", |f| {
-                (f.drawn.scenario.vehicle.infill, f.drawn.scenario.vehicle.gain_k)
+                (
+                    f.sampled.scenario.vehicle.infill,
+                    f.sampled.scenario.vehicle.gain_k,
+                )
             }),
             scatter(flown, "pipe, m", "friction", |f| {
                 (
-                    f.drawn.scenario.world.pipe_diameter,
-                    f.drawn.scenario.world.pipe_friction,
+                    f.sampled.scenario.world.pipe_diameter,
+                    f.sampled.scenario.world.pipe_friction,
                 )
             }),
             scatter(flown, "gusts, N RMS", "pilot's delay, s", |f| {
-                (f.drawn.scenario.world.gust_force, f.drawn.scenario.pilot.delay)
+                (
+                    f.sampled.scenario.world.gust_force,
+                    f.sampled.scenario.pilot.delay,
+                )
             }),
         ],
     );
@@ -153,9 +159,9 @@ fn failed(flown: &[Flown]) -> Table {
         &["seed", "infill, %", "K", "pipe, m", "friction", "reason"],
     );
     for f in flown.iter().filter(|f| f.passes() && !f.outcome.accomplished) {
-        let of = &f.drawn.scenario;
+        let of = &f.sampled.scenario;
         t.row([
-            num(f.drawn.seed as f64, 0),
+            num(f.sampled.seed as f64, 0),
             num(of.vehicle.infill, 1),
             num(of.vehicle.gain_k, 1),
             num(of.world.pipe_diameter, 2),

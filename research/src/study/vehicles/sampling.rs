@@ -95,9 +95,9 @@ mod tests {
     fn every_vehicle_is_a_scenario_and_the_stack_knows_all_of_it_but_the_arms() {
         let nominal = Scenario::default_mission();
         for seed in 0..200 {
-            let drawn = sample(seed, 1.0).unwrap();
-            let Scenario { vehicle, params, .. } = &drawn.scenario;
-            assert_eq!(drawn.scenario.seed, seed);
+            let sampled = sample(seed, 1.0).unwrap();
+            let Scenario { vehicle, params, .. } = &sampled.scenario;
+            assert_eq!(sampled.scenario.seed, seed);
             assert!((vehicle.body.mass - f64::from(params.mass)).abs() < 1e-6);
             assert!((vehicle.infill - f64::from(params.infill)).abs() < 1e-5);
             assert!((vehicle.rotor.time_constant - f64::from(params.motor_tau)).abs() < 1e-6);

@@ -264,7 +264,7 @@ impl Flexible for BeamArm {
     }
 
     fn underside(&self) -> [DVec3; 3] {
-        self.bent().underside().map(|spot| spot.place)
+        self.bent().underside().map(|skin_point| skin_point.place)
     }
 
     fn touch(&mut self, dt: f64, pose: &Pose, nearby: &Nearby, load: &mut Load) -> f64 {

@@ -27,7 +27,7 @@ pub struct Bent {
 
 /// A point of the arm that may touch, body axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Spot {
+pub struct SkinPoint {
     /// Position, m.
     pub place: DVec3,
     /// ∂place/∂q, m.
@@ -37,21 +37,21 @@ pub struct Spot {
 impl Bent {
     /// The points of the underside under the stations, each square to the neutral line.
     #[must_use]
-    pub fn underside(&self) -> [Spot; 3] {
+    pub fn underside(&self) -> [SkinPoint; 3] {
         let ends = STATIONS.map(|s| s / ARM_LENGTH);
         let neutral = points(&self.q, &self.rate, ends);
-        std::array::from_fn(|i| self.spot(&neutral[i], ends[i], DEPTH))
+        std::array::from_fn(|i| self.skin_point(&neutral[i], ends[i], DEPTH))
     }
 
     /// End of the neutral line.
     #[must_use]
-    pub fn tip(&self) -> Spot {
+    pub fn tip(&self) -> SkinPoint {
         let [tip] = points(&self.q, &self.rate, [1.0]);
-        self.spot(&tip, 1.0, 0.0)
+        self.skin_point(&tip, 1.0, 0.0)
     }
 
     /// `depth` m below the neutral line's `point` at ξ.
-    fn spot(&self, point: &Point, xi: f64, depth: f64) -> Spot {
+    fn skin_point(&self, point: &Point, xi: f64, depth: f64) -> SkinPoint {
         let (sin, cos) = slope(&self.q, xi).sin_cos();
         let body = |out: f64, up: f64| DVec3::new(0.0, self.side * out, -up);
         let mut power = 1.0;
@@ -63,7 +63,7 @@ impl Bent {
             )
         });
         let place = DVec3::new(self.x, 0.0, HINGE_Z) + body(point.out + depth * sin, point.up - depth * cos);
-        Spot { place, by }
+        SkinPoint { place, by }
     }
 }
 
@@ -106,13 +106,13 @@ impl BeamContact {
         let surface = Surface::Pipe(*pipe);
         let mut normal = 0.0;
         let mut stations = self.stations;
-        for (station, spot) in stations.iter_mut().zip(arm.underside()) {
+        for (station, skin_point) in stations.iter_mut().zip(arm.underside()) {
             // The last station's remains: the sensor is there.
             normal = self.press(
                 dt,
                 station,
                 &SKIN,
-                &spot,
+                &skin_point,
                 &Touched {
                     arm,
                     pose,
@@ -131,20 +131,20 @@ impl BeamContact {
         dt: f64,
         point: &mut ContactPoint,
         pad: &Pad,
-        spot: &Spot,
+        skin_point: &SkinPoint,
         touched: &Touched<'_>,
         load: &mut Load,
     ) -> f64 {
         let Touched { arm, pose, surface } = touched;
-        let moving = spot.by[0] * arm.rate[0] + spot.by[1] * arm.rate[1];
+        let moving = skin_point.by[0] * arm.rate[0] + skin_point.by[1] * arm.rate[1];
         let motion = PointMotion {
-            position: pose.point(spot.place),
-            velocity: pose.point_velocity(spot.place, moving),
+            position: pose.point(skin_point.place),
+            velocity: pose.point_velocity(skin_point.place, moving),
         };
         let touch = point.force(dt, pad, motion, surface);
         let force = pose.to_body(touch.force);
-        load.add(force, spot.place.cross(force));
-        for (sum, by) in self.forces.iter_mut().zip(spot.by) {
+        load.add(force, skin_point.place.cross(force));
+        for (sum, by) in self.forces.iter_mut().zip(skin_point.by) {
             *sum += force.dot(by);
         }
         touch.normal

@@ -182,7 +182,7 @@ fn what_is_no_number_or_out_of_range_is_neither_kept_nor_used() {
 }
 
 #[test]
-fn a_response_that_no_arm_has_is_kept_as_none() {
+fn an_implausible_arm_response_is_not_retained() {
     for (response, kept) in [
         (Some(f32::NAN), None),
         (Some(0.39), None),

@@ -262,7 +262,7 @@ fn turned(fix: Fix) -> Fix {
 }
 
 #[test]
-fn a_heading_that_turns_alone_turns_nothing_and_what_was_known_is_coasted_on() {
+fn a_step_of_the_pose_heading_alone_leaves_the_estimate_dead_reckoning_on_its_axes() {
     let mut r = Rig::new();
     (r.spoil, r.yaw_offset) = (noisy, 0.7);
     r.run(12.0);

@@ -207,7 +207,7 @@ fn late_flow_of_a_vehicle_that_turns_gives_its_velocity_and_range_its_height() {
     assert_eq!(r.fault(), None);
 }
 
-/// Level velocity and height that an estimator with the lens `known` has of one whose lens is at `lens`: what they are off,
+/// Horizontal velocity and height that an estimator with the lens `known` has of one whose lens is at `lens`: what they are off,
 /// m/s RMS and m at most.
 fn off_by_lever(lens: Vec3, known: Vec3) -> [f32; 2] {
     let mut r = Rig::with_lens(lens, known);
@@ -257,7 +257,7 @@ fn the_lever_of_the_lens_is_taken_out_by_its_sign() {
 }
 
 #[test]
-fn a_step_of_what_is_below_changes_neither_height_nor_velocity() {
+fn a_step_of_the_surface_below_changes_neither_height_nor_velocity() {
     let mut r = Rig::new();
     r.run(5.0);
     // Here all of the view steps at once, where a pipe fills a part of it, which costs some velocity.
@@ -275,7 +275,7 @@ fn a_step_of_what_is_below_changes_neither_height_nor_velocity() {
 /// Over the pipe the height drifts: the ground that it falls back to is the ground, whatever height it had before. Two grounds
 /// would make of the true one something narrow, and of each way across it one that is twice as long.
 #[test]
-fn the_ground_is_what_the_beam_falls_back_to() {
+fn the_ground_is_the_surface_to_which_the_beam_returns() {
     let mut flow_range = FlowRangeFusion::new(0.3, Vec3::ZERO);
     let at = |us: u64, y: f32| StateSnapshot {
         at_us: us,
@@ -380,7 +380,7 @@ fn a_pipe_is_left_behind_by_way_and_by_time() {
 
 /// Where the range has just stepped, or is near, a flow that does not fit is not the flow's fault.
 #[test]
-fn an_agreement_says_nothing_while_its_prediction_is_unsure() {
+fn no_flow_is_judged_while_its_prediction_is_uncertain() {
     let mut agreement = Agreement::default();
     let turns = |i: u32| (0.4 * i as f32).sin();
     for i in 0..500 {
@@ -417,7 +417,7 @@ fn a_leaning_beam_finds_the_edges_where_they_are() {
 }
 
 #[test]
-fn what_is_mirrored_turned_dead_frozen_or_wrongly_scaled_is_named_within_three_seconds_and_left_out() {
+fn a_faulty_flow_is_named_within_three_seconds_and_left_out() {
     type Spoil = fn([f32; 2]) -> [f32; 2];
     let spoilt: [(Spoil, FlowRangeFault); 6] = [
         (|[x, y]| [-x, -y], FlowRangeFault::FlowDisagrees),
@@ -585,9 +585,9 @@ fn the_bias_of_the_sensor_outlives_the_estimate() {
     assert!(v < 0.08 && z < 0.05, "{v} {z}");
 }
 
-/// More than any sensor's is what has flow_inconsistent the estimate.
+/// A bias beyond any sensor's comes from what led the estimate astray, not from the sensor.
 #[test]
-fn a_bias_that_is_no_sensors_is_not_kept() {
+fn an_implausible_accelerometer_bias_is_not_kept() {
     let mut r = perched(Vec3::new(0.6, 0.0, 0.0));
     assert!(r.estimator.learnt.is_none());
     r.bias = Vec3::ZERO;

@@ -2,7 +2,7 @@
 
 use glam::{DQuat, DVec2};
 
-use super::super::skin::{Bent, Spot};
+use super::super::skin::{Bent, SkinPoint};
 use super::super::{DEPTH, TENDON_LEVER};
 use super::*;
 use crate::plant::contact::{ARM_LENGTH, ARM_X, BELLY_Z, Pipe, Pose, UNDERSIDE_Z};
@@ -25,7 +25,7 @@ fn bent(q: [f64; 2]) -> Bent {
 
 #[test]
 fn the_points_paths_are_differentiated_right() {
-    let spots = |q: [f64; 2]| -> Vec<Spot> {
+    let skin_points = |q: [f64; 2]| -> Vec<SkinPoint> {
         let arm = bent(q);
         arm.underside().into_iter().chain([arm.tip()]).collect()
     };
@@ -34,12 +34,13 @@ fn the_points_paths_are_differentiated_right() {
             let h = 1e-6;
             let (mut up, mut down) = (q, q);
             (up[term], down[term]) = (q[term] + h, q[term] - h);
-            for ((spot, up), down) in spots(q).iter().zip(spots(up)).zip(spots(down)) {
+            for ((skin_point, up), down) in skin_points(q).iter().zip(skin_points(up)).zip(skin_points(down))
+            {
                 let numeric = (up.place - down.place) / (2.0 * h);
                 assert!(
-                    (spot.by[term] - numeric).length() < 1e-8,
+                    (skin_point.by[term] - numeric).length() < 1e-8,
                     "{q:?} {term}: {} {numeric}",
-                    spot.by[term]
+                    skin_point.by[term]
                 );
             }
         }
@@ -52,8 +53,8 @@ fn an_arm_bent_round_the_pipe_lies_on_it_with_its_underside() {
     let radius = 0.15;
     let tilt = -ARM_LENGTH / (radius + DEPTH);
     assert!((tilt.to_degrees() + 61.8).abs() < 0.1, "{}", tilt.to_degrees());
-    for spot in bent([tilt, 0.0]).underside() {
-        let from_axis = DVec2::new(spot.place.y, spot.place.z - UNDERSIDE_Z - radius).length();
+    for skin_point in bent([tilt, 0.0]).underside() {
+        let from_axis = DVec2::new(skin_point.place.y, skin_point.place.z - UNDERSIDE_Z - radius).length();
         assert!((from_axis - radius).abs() < 5e-5, "{from_axis}");
     }
 }

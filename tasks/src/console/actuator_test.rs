@@ -1,4 +1,4 @@
-//! Bench tests: drives one motor or one servo at a time, within the limits of the commander.
+//! Actuator tests: drives one motor or one servo at a time, within the limits of the commander.
 //!
 //! The console renews an order periodically. The commander ends it independently of the console: at its time limit, on
 //! its own conditions, or when renewals stop.
@@ -9,9 +9,9 @@ use embassy_time::{Duration, Instant};
 use sophie_control::allocation::motor_pulses::{MotorPulses, least_command};
 use sophie_control::gripper::tendon::Reel;
 use sophie_control::maths::scalar::{deg, to_deg};
-use sophie_control::pilot::bench_orders::{
-    BenchOrder, BenchRefusal, BenchRequest, BenchState, PULSE_MAX_US, PULSE_MIN_US, Place, SPIN_DRIVE,
-    SPIN_DRIVE_MAX, SPIN_DRIVE_MIN, SPIN_TIME, Spin,
+use sophie_control::pilot::actuator_test::{
+    ActuatorTest, ActuatorTestRefusal, ActuatorTestRequest, ActuatorTestState, PULSE_MAX_US, PULSE_MIN_US,
+    Place, SPIN_DRIVE, SPIN_DRIVE_MAX, SPIN_DRIVE_MIN, SPIN_TIME, Spin,
 };
 
 use super::Console;
@@ -33,16 +33,16 @@ pub(super) enum End {
     /// Aborted by a key.
     Key,
     /// Refused before its start.
-    Refused(BenchRefusal),
+    Refused(ActuatorTestRefusal),
     /// Ended early by the commander.
-    Ended(BenchRefusal),
+    Ended(ActuatorTestRefusal),
     /// The commander does not answer.
     Silent,
 }
 
 impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, C> {
     pub(super) async fn propellers_off(&mut self) {
-        match self.order(BenchOrder::PropellersOff, format_args!("")).await {
+        match self.order(ActuatorTest::PropellersOff, format_args!("")).await {
             End::Done | End::Key => {
                 self.out
                     .line(format_args!(
@@ -77,7 +77,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         let drive = spin.drive(least_command(&self.links.params));
         let (percent, seconds) = (Decimal(drive * 100.0), Decimal(SPIN_TIME));
         let begun = format_args!("motor {number} at {percent:.0} % for {seconds} s; any key stops it");
-        let end = self.order(BenchOrder::Spin(spin), begun).await;
+        let end = self.order(ActuatorTest::Spin(spin), begun).await;
         self.say_end(format_args!("motor {number} stopped"), end).await;
     }
 
@@ -103,7 +103,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         };
         let seconds = Decimal(SPIN_TIME);
         let begun = format_args!("motor {number} at {pulse} us for {seconds} s; any key stops it");
-        let end = self.order(BenchOrder::Spin(spin), begun).await;
+        let end = self.order(ActuatorTest::Spin(spin), begun).await;
         self.say_end(format_args!("motor {number} stopped"), end).await;
     }
 
@@ -139,7 +139,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
             }
         };
         let (pulse, angle) = (Decimal(pulse_us), Decimal(to_deg(reel.angle_of(pulse_us))));
-        let order = BenchOrder::Place(Place { servo, pulse_us });
+        let order = ActuatorTest::Place(Place { servo, pulse_us });
         let end = if marked {
             let begun =
                 format_args!("servo {number} to {pulse:.0} us, {angle:.0} deg from release; any key ends it");
@@ -198,42 +198,42 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
 
     /// Sends `order` and renews it until it ends or a key aborts it; prints `begun` once the commander has accepted
     /// it.
-    pub(super) async fn order(&mut self, order: BenchOrder, begun: fmt::Arguments<'_>) -> End {
+    pub(super) async fn order(&mut self, order: ActuatorTest, begun: fmt::Arguments<'_>) -> End {
         let number = match self.next_order() {
             Ok(number) => number,
             Err(why) => return End::Refused(why),
         };
         let asked = Instant::now();
-        let request = BenchRequest { number, order };
+        let request = ActuatorTestRequest { number, order };
         // Sent immediately: another console waiting for its next run must not use the same number.
-        self.links.bench.send(asked, request);
+        self.links.actuator_test.send(asked, request);
         let mut rate = FixedRate::of(self.links, TaskId::Console);
         let mut said = false;
         loop {
             let at = rate.next().await.started;
-            self.links.bench.send(at, request);
-            let answer = self.links.bench_answer.fresh();
+            self.links.actuator_test.send(at, request);
+            let answer = self.links.actuator_test_answer.fresh();
             match answer
                 .filter(|answer| answer.number == number)
                 .map(|answer| answer.state)
             {
-                Some(BenchState::Done) => return End::Done,
-                Some(BenchState::Refused(why)) => return End::Refused(why),
-                Some(BenchState::Ended(why)) => return End::Ended(why),
-                Some(BenchState::Running) if !said => {
+                Some(ActuatorTestState::Done) => return End::Done,
+                Some(ActuatorTestState::Refused(why)) => return End::Refused(why),
+                Some(ActuatorTestState::Ended(why)) => return End::Ended(why),
+                Some(ActuatorTestState::Running) if !said => {
                     said = true;
                     self.out.line(begun).await;
                 }
-                Some(BenchState::Running) => (),
+                Some(ActuatorTestState::Running) => (),
                 None if asked.elapsed() > COMMANDER => return End::Silent,
                 None => (),
             }
             if self.keys.pressed() {
-                let order = BenchOrder::End;
+                let order = ActuatorTest::End;
                 if let Ok(number) = self.next_order() {
                     self.links
-                        .bench
-                        .send(Instant::now(), BenchRequest { number, order });
+                        .actuator_test
+                        .send(Instant::now(), ActuatorTestRequest { number, order });
                 }
                 return End::Key;
             }
@@ -241,8 +241,8 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
     }
 
     /// The number of the next order.
-    fn next_order(&mut self) -> Result<u32, BenchRefusal> {
-        self.order = self.links.bench_view().next(self.order)?;
+    fn next_order(&mut self) -> Result<u32, ActuatorTestRefusal> {
+        self.order = self.links.actuator_test_view().next(self.order)?;
         Ok(self.order)
     }
 }

@@ -81,7 +81,7 @@ pub struct Closing {
 
 /// An arm before a pipe.
 #[derive(Clone, Debug)]
-pub struct BenchArm {
+pub struct StandArm {
     /// Index, 0 to 3.
     pub arm: usize,
     /// The arm as built: Eq. 1, and its beam if it bends as one.
@@ -104,7 +104,7 @@ pub struct BenchArm {
     pub broken: Option<FsrBreak>,
 }
 
-impl BenchArm {
+impl StandArm {
     /// Whether arm, servo, reel and sensor scale are equal.
     #[must_use]
     pub fn is_like(&self, other: &Self) -> bool {
@@ -118,7 +118,7 @@ impl BenchArm {
     }
 }
 
-impl From<&Closing> for BenchArm {
+impl From<&Closing> for StandArm {
     fn from(what: &Closing) -> Self {
         let params = Params {
             infill: what.infill as f32,
@@ -158,35 +158,35 @@ pub struct Tried {
 
 /// Closes `arm` until it has held with its rotor stopped for `AFTER`, the gripper gives up, or `longest` s have passed.
 #[must_use]
-pub fn try_grip(arm: &BenchArm, longest: f64) -> Tried {
-    let mut bench = ArmBench::new(arm, 1);
+pub fn try_grip(arm: &StandArm, longest: f64) -> Tried {
+    let mut stand = ArmStand::new(arm, 1);
     let (mut asked, mut peak, mut last) = (0.0_f64, 0.0_f64, VecDeque::new());
     let (mut stopped, mut held) = (0.0, false);
     for step in 1..=((REST + longest) / STEP) as u64 {
-        peak = peak.max(bench.step(step, arm.thrust));
+        peak = peak.max(stand.step(step, arm.thrust));
         if !step.is_multiple_of(GRIPPER_STEPS) {
             continue;
         }
-        let holding = bench.grip.state == ArmState::Holding;
+        let holding = stand.grip.state == ArmState::Holding;
         // The force that holds counts: during closing it may be briefly larger.
         asked = if holding && !held { 0.0 } else { asked };
         held |= holding;
-        asked = asked.max(f64::from(bench.grip.force));
-        last.push_back(bench.tendon.servo_torque());
+        asked = asked.max(f64::from(stand.grip.force));
+        last.push_back(stand.tendon.servo_torque());
         if last.len() > STEADY_SAMPLES {
             last.pop_front();
         }
-        stopped = if holding && bench.thrust_asked <= 0.0 {
+        stopped = if holding && stand.thrust_asked <= 0.0 {
             stopped + GRIPPER_STEPS as f64 * STEP
         } else {
             0.0
         };
-        if stopped >= AFTER || matches!(bench.grip.state, ArmState::ForceLimited | ArmState::Faulty) {
+        if stopped >= AFTER || matches!(stand.grip.state, ArmState::ForceLimited | ArmState::Faulty) {
             break;
         }
     }
     Tried {
-        grip: bench.grip,
+        grip: stand.grip,
         asked,
         steady: last.iter().sum::<f64>() / last.len().max(1) as f64,
         peak,
@@ -195,7 +195,7 @@ pub fn try_grip(arm: &BenchArm, longest: f64) -> Tried {
 
 /// A sample of the closing.
 #[derive(Clone, Copy, Debug)]
-pub struct BenchSample {
+pub struct ClosingSample {
     /// From the start of closing, s.
     pub t: f64,
     /// True pressure at the sensor, Pa.
@@ -210,7 +210,7 @@ pub struct BenchSample {
 #[derive(Clone, Debug)]
 pub struct Closed {
     /// Samples every 10 ms.
-    pub samples: Vec<BenchSample>,
+    pub samples: Vec<ClosingSample>,
     /// Until the pressure stays within tolerance, s; `None` without proof of grip.
     pub closure: Option<f64>,
     /// Mean torque over the last second, rotor stopped, N·m.
@@ -224,7 +224,7 @@ pub struct Closed {
 /// Closes one arm; once it holds, its rotor stops within 1.5 s.
 #[must_use]
 pub fn close(what: &Closing) -> Closed {
-    let mut bench = ArmBench::new(&what.into(), what.seed);
+    let mut stand = ArmStand::new(&what.into(), what.seed);
     let mut out = Closed {
         samples: vec![],
         closure: None,
@@ -234,14 +234,14 @@ pub fn close(what: &Closing) -> Closed {
     };
     for step in 1..=((REST + what.seconds) / STEP) as u64 {
         let t = step as f64 * STEP - REST;
-        let tilt = bench.arm.tilt();
-        if bench.grip.state == ArmState::Holding {
-            out.closure = out.closure.or(bench.grip.closure.map(f64::from));
+        let tilt = stand.arm.tilt();
+        if stand.grip.state == ArmState::Holding {
+            out.closure = out.closure.or(stand.grip.closure.map(f64::from));
         }
-        let pressure = bench.step(step, what.thrust);
+        let pressure = stand.step(step, what.thrust);
         if step.is_multiple_of(GRIPPER_STEPS) && t >= 0.0 {
-            let torque = bench.tendon.servo_torque();
-            out.samples.push(BenchSample {
+            let torque = stand.tendon.servo_torque();
+            out.samples.push(ClosingSample {
                 t,
                 pressure,
                 torque,
@@ -252,11 +252,11 @@ pub fn close(what: &Closing) -> Closed {
     }
     let last: Vec<f64> = out.samples.iter().rev().take(100).map(|s| s.torque).collect();
     out.steady = last.iter().sum::<f64>() / last.len().max(1) as f64;
-    out.state = bench.grip.state;
+    out.state = stand.grip.state;
     out
 }
 
-struct ArmBench {
+struct ArmStand {
     tilt_noise: Pcg64Mcg,
     pipe: Pipe,
     arm: Box<dyn Flexible>,
@@ -283,8 +283,8 @@ struct ArmBench {
     order: Drive,
 }
 
-impl ArmBench {
-    fn new(what: &BenchArm, seed: u64) -> Self {
+impl ArmStand {
+    fn new(what: &StandArm, seed: u64) -> Self {
         let params = &what.params;
         let streams = Streams::new(seed);
         let mut sensor = FsrSensor::new(what.arm, streams);

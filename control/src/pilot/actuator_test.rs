@@ -1,4 +1,4 @@
-//! Bench tests of motors and servos: orders of the console and the replies of the mode logic.
+//! Tests of single motors and servos on the ground: orders of the console and the replies of the mode logic.
 //!
 //! An order has a number, and the console renews it under that number while it lasts; without renewal it ends
 //! ([`crate::mode::ModeLogic`], in DISARMED alone).
@@ -27,9 +27,9 @@ impl Place {
     }
 }
 
-/// An order of the bench.
+/// A test of one actuator, or an order about the tests.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum BenchOrder {
+pub enum ActuatorTest {
     /// Ends the running order.
     End,
     /// The builder confirms that the propellers are off: motors may be tried.
@@ -40,7 +40,7 @@ pub enum BenchOrder {
     Place(Place),
 }
 
-impl BenchOrder {
+impl ActuatorTest {
     /// Longest duration, s.
     pub const fn longest(&self) -> f32 {
         match self {
@@ -62,21 +62,21 @@ impl BenchOrder {
 
 /// An order with its number; the same order under a new number starts again.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BenchRequest {
+pub struct ActuatorTestRequest {
     /// Counts from 1.
     pub number: u32,
     /// The order.
-    pub order: BenchOrder,
+    pub order: ActuatorTest,
 }
 
 /// Declares why an order is refused or ended: name and text.
-macro_rules! bench_refusals {
+macro_rules! actuator_test_refusals {
     ($($(#[$doc:meta])+ $name:ident = $text:literal;)+) => {
         /// Why an order is refused, or ended before its time.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-        pub enum BenchRefusal { $($(#[$doc])+ $name,)+ }
+        pub enum ActuatorTestRefusal { $($(#[$doc])+ $name,)+ }
 
-        impl BenchRefusal {
+        impl ActuatorTestRefusal {
             /// For the console.
             pub const fn text(self) -> &'static str {
                 match self { $(Self::$name => $text,)+ }
@@ -85,7 +85,7 @@ macro_rules! bench_refusals {
     };
 }
 
-bench_refusals! {
+actuator_test_refusals! {
     /// Another mode than DISARMED.
     NotDisarmed = "only while DISARMED";
     /// The pilot may be about to arm.
@@ -112,26 +112,26 @@ bench_refusals! {
     InUse = "another line uses the bench";
 }
 
-/// State of the bench as the sender of an order sees it.
+/// State of the actuator tests as the sender of an order sees it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct BenchView {
+pub struct ActuatorTestView {
     /// Number of the newest order, from any line.
     pub newest: u32,
     /// The sender still renews that order.
     pub renewed: bool,
     /// Reply to that order.
-    pub answer: BenchAnswer,
+    pub answer: ActuatorTestAnswer,
 }
 
-impl BenchView {
+impl ActuatorTestView {
     /// The number of the next order of a line whose last one was `own`.
     ///
     /// # Errors
     /// An order of another line is running.
-    pub fn next(&self, own: u32) -> Result<u32, BenchRefusal> {
-        let lasts = self.answer.number != self.newest || self.answer.state == BenchState::Running;
+    pub fn next(&self, own: u32) -> Result<u32, ActuatorTestRefusal> {
+        let lasts = self.answer.number != self.newest || self.answer.state == ActuatorTestState::Running;
         if self.newest != own && self.renewed && lasts {
-            return Err(BenchRefusal::InUse);
+            return Err(ActuatorTestRefusal::InUse);
         }
         Ok(self.newest.wrapping_add(1).max(1))
     }
@@ -139,25 +139,25 @@ impl BenchView {
 
 /// State of the newest order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum BenchState {
+pub enum ActuatorTestState {
     /// No order yet, or the order has ended as intended.
     #[default]
     Done,
     /// The order is running.
     Running,
     /// The order was refused before it began.
-    Refused(BenchRefusal),
+    Refused(ActuatorTestRefusal),
     /// The order was ended before its time.
-    Ended(BenchRefusal),
+    Ended(ActuatorTestRefusal),
 }
 
 /// The reply to the order with this number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct BenchAnswer {
+pub struct ActuatorTestAnswer {
     /// Number of the order; 0 before the first.
     pub number: u32,
     /// State of that order.
-    pub state: BenchState,
+    pub state: ActuatorTestState,
 }
 
 #[cfg(test)]
@@ -178,10 +178,10 @@ mod tests {
             spin(4, 0.08),
         ] {
             assert_eq!(bad.commands(0.07), [0.0; 4], "{bad:?}");
-            assert!(!BenchOrder::Spin(bad).is_allowed(), "{bad:?}");
+            assert!(!ActuatorTest::Spin(bad).is_allowed(), "{bad:?}");
         }
-        assert!(!BenchOrder::Spin(spin(0, 0.0)).is_allowed());
-        assert!(BenchOrder::Spin(spin(3, SPIN_DRIVE)).is_allowed());
+        assert!(!ActuatorTest::Spin(spin(0, 0.0)).is_allowed());
+        assert!(ActuatorTest::Spin(spin(3, SPIN_DRIVE)).is_allowed());
     }
 
     #[test]
@@ -195,7 +195,7 @@ mod tests {
 
     #[test]
     fn a_servo_takes_the_usual_pulses_only() {
-        let allowed = |servo, pulse_us| BenchOrder::Place(Place { servo, pulse_us }).is_allowed();
+        let allowed = |servo, pulse_us| ActuatorTest::Place(Place { servo, pulse_us }).is_allowed();
         assert!(allowed(0, PULSE_MIN_US) && allowed(3, PULSE_MAX_US));
         for bad in [499.9, 2500.1, f32::NAN, f32::INFINITY, -1500.0] {
             assert!(!allowed(0, bad), "{bad}");

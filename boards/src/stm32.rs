@@ -16,8 +16,8 @@ compile_error!(
 
 #[cfg(family = "f4")]
 mod accelerator;
-#[cfg_attr(family = "h7", path = "adc_h7.rs")]
-#[cfg_attr(not(family = "h7"), path = "adc_f4.rs")]
+#[cfg_attr(family = "h7", path = "stm32/adc_h7.rs")]
+#[cfg_attr(not(family = "h7"), path = "stm32/adc_f4.rs")]
 mod adc;
 mod analog;
 mod chip;
@@ -31,8 +31,8 @@ mod frame_stream;
 mod i2c_bus;
 mod lights;
 mod loader;
-#[cfg_attr(family = "h7", path = "options_h7.rs")]
-#[cfg_attr(not(family = "h7"), path = "options_f4.rs")]
+#[cfg_attr(family = "h7", path = "stm32/options_h7.rs")]
+#[cfg_attr(not(family = "h7"), path = "stm32/options_f4.rs")]
 mod options;
 mod pads;
 mod ports;
