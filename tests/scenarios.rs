@@ -1,7 +1,5 @@
 //! Flies every scenario file; the flight must end as its `[expect]` says.
 
-mod common;
-
 use std::error::Error;
 use std::path::Path;
 
@@ -9,6 +7,7 @@ use libtest_mimic::{Arguments, Failed, Trial};
 use sophie_sim::flight::fly;
 use sophie_sim::record::{FlightRecord, Silent};
 use sophie_sim::scenario::{Expect, Overrides, Scenario};
+use sophie_test_support::flights;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments = Arguments::from_args();
@@ -77,6 +76,6 @@ fn judge(expect: &Expect, record: &FlightRecord) -> Result<(), Failed> {
     if !undone.is_empty() {
         return Err(format!("accomplished, but not done: {}", undone.join(", ")).into());
     }
-    common::proven(record)?;
+    flights::proven(record)?;
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! The files for ground stations: the description of the parameters (MAVLink's component metadata).
 //!
-//! `tests/metadata.rs` prints them from the table of parameters.
+//! `tests/mavlink/metadata.rs` prints them from the table of parameters.
 
 /// A file.
 #[derive(Debug, PartialEq, Eq)]

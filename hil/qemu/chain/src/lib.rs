@@ -1,6 +1,6 @@
 //! The four stages of the flight step in series, without tasks and links between them: what counts their instructions
 //! and compares their bits runs this. What flies are the tasks that own the same stages ([`sophie_control::chain`]); a
-//! recorded mission gives the same bits both ways (`sim/tests/flight_step.rs`).
+//! recorded mission gives the same bits both ways (`sim/tests/sim/flight_step.rs`).
 
 #![no_std]
 

@@ -1,0 +1,4 @@
+//! Sessions and vehicles over lines that fail.
+
+mod line;
+mod vehicle;

@@ -1,0 +1,6 @@
+//! Recordings of any kind, of others too.
+
+mod any;
+#[cfg(unix)]
+mod pipes;
+mod recordings;
