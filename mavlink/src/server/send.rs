@@ -102,7 +102,7 @@ impl Server {
             Answer::Arming => Some(encoder.encode(&make::arming(vehicle, (now / 1000) as u32)?)),
             Answer::Component => Some(encoder.encode(&make::component(vehicle, (now / 1000) as u32))),
             Answer::CalibrationResult => {
-                let result = self.services.calibrations.result.take()?;
+                let result = self.services.calibrations.result.clone()?;
                 Some(encoder.encode(&SOPHIE_CALIBRATION_RESULT_DATA {
                     time_boot_ms: (now / 1000) as u32,
                     ..result

@@ -21,12 +21,20 @@ pub struct Command {
     pub number: u16,
     /// Its parameters; NaN where the sender gives no value. No command uses a place on earth.
     pub params: [f32; 7],
+    /// It was sent before, and not acknowledged as far as the sender knows.
+    pub repeated: bool,
 }
 
 impl Command {
+    /// The same command with the same parameters, whether repeated or not.
+    pub fn is_alike(&self, other: &Self) -> bool {
+        self.number == other.number && self.params.map(f32::to_bits) == other.params.map(f32::to_bits)
+    }
+
     const fn long(m: &COMMAND_LONG_DATA) -> Self {
         Self {
             number: m.command,
+            repeated: m.confirmation > 0,
             params: [
                 m.param1, m.param2, m.param3, m.param4, m.param5, m.param6, m.param7,
             ],
@@ -42,6 +50,7 @@ impl Command {
         }
         Self {
             number: m.command,
+            repeated: false,
             params: [
                 m.param1,
                 m.param2,

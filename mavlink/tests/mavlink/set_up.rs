@@ -29,6 +29,23 @@ fn ask(station: &mut Station, command: MavCmd, params: [f32; 5]) {
     }));
 }
 
+/// As [`calibrate`], by a sender that has had no acknowledgement.
+fn repeat(station: &mut Station, calibration: Calibration, params: [f32; 4]) {
+    let [part, step, first, second] = params;
+    station.say(&frame(&COMMAND_LONG_DATA {
+        param1: calibration as u8 as f32,
+        param2: part,
+        param3: step,
+        param4: first,
+        param5: second,
+        command: MavCmd::MAV_CMD_SOPHIE_CALIBRATE as u16,
+        confirmation: 1,
+        target_system: 1,
+        target_component: 1,
+        ..Default::default()
+    }));
+}
+
 fn calibrate(station: &mut Station, calibration: Calibration, params: [f32; 4]) {
     let [part, step, first, second] = params;
     let numbers = [calibration as u8 as f32, part, step, first, second];
@@ -96,6 +113,34 @@ fn steps_of_a_part_follow_each_other_and_what_is_unfit_is_named_with_its_range()
     assert!((unfit.value - 0.03).abs() < 1e-6 && (unfit.least, unfit.most) == (0.1, 1.5));
     assert_eq!(results[2].index, 2);
     assert!((station.server.params().arm_zero_2 - 0.02).abs() < 1e-6);
+}
+
+#[test]
+fn a_repeated_command_whose_acknowledgement_was_lost_is_acknowledged_again_without_a_measurement() {
+    let mut station = station();
+    for (tilt, number, outcome) in [(0.02, 1.0, TAKEN), (0.42, 2.0, DONE)] {
+        station.vehicle.readings.tilts = [0.0, tilt, 0.0, 0.0].map(Some);
+        calibrate(&mut station, Calibration::Arm, [2.0, number, 0.0, 0.0]);
+        station.run(2700);
+        station.sent.clear();
+        // The arm is let go meanwhile.
+        station.vehicle.readings.tilts = [Some(0.0); 4];
+        repeat(&mut station, Calibration::Arm, [2.0, number, 0.0, 0.0]);
+        station.run(500);
+        assert_eq!(acks(&station), [(0, 0)]);
+        assert_eq!(
+            station.got::<SOPHIE_CALIBRATION_RESULT_DATA>()[0].outcome,
+            outcome
+        );
+    }
+    assert!((station.server.params().arm_zero_2 - 0.02).abs() < 1e-6);
+    // Another step is measured, and so is the same one without the mark of a repetition.
+    station.sent.clear();
+    repeat(&mut station, Calibration::Arm, [1.0, 1.0, 0.0, 0.0]);
+    station.run(2700);
+    calibrate(&mut station, Calibration::Arm, [1.0, 1.0, 0.0, 0.0]);
+    station.run(2700);
+    assert_eq!(acks(&station).iter().filter(|ack| **ack == (5, 0)).count(), 2);
 }
 
 #[test]

@@ -191,7 +191,7 @@ pub const QUANTITIES: &[Quantity] = &[
     Quantity {
         key: "vehicle.gain_k",
         exact: true,
-        source: "Table III of the paper needs 5.0 to 8.4; drawn by `arm_gain`",
+        source: "Table III of the paper needs 5.0 to 8.4; `arm_gain` varies it",
         truth: |s| vec![s.vehicle.gain_k],
         learn: |s, n| set([&mut s.params.gain_k], n),
         ..FIXED
@@ -199,7 +199,7 @@ pub const QUANTITIES: &[Quantity] = &[
     Quantity {
         key: "vehicle.arm_coefficients",
         exact: true,
-        source: "Table I of the paper; drawn by `arm_gain`",
+        source: "Table I of the paper; `arm_gain` varies it",
         truth: |s| s.vehicle.arm_coefficients.to_vec(),
         learn: |s, n| {
             let p = &mut s.params;

@@ -163,26 +163,36 @@ fn row(line: &str) -> Option<Listed> {
     })
 }
 
-/// The board's unsaved changes, in its words.
+/// The board's unsaved changes, in its words. An answer that is damaged on its way is asked for again.
 ///
 /// # Errors
 /// The line is lost.
 pub fn unsaved(session: &mut Session) -> Result<Vec<String>, Failure> {
-    let mut lines = session.ask("changes")?;
-    // The last line has their number.
-    let last = lines.pop().unwrap_or_default();
-    let fits = match last.split_once(" change") {
+    let mut tries = 0..TRIES;
+    loop {
+        let mut lines = session.ask("changes")?;
+        // The last line has their number.
+        let last = lines.pop().unwrap_or_default();
+        if is_whole(&lines, &last) {
+            return Ok(lines);
+        }
+        if tries.next().is_none() {
+            let port = session.port();
+            return Err(Failure::Board(format!(
+                "{port}: 'changes' is answered with '{last}'; expected 'no changes' or their count"
+            )));
+        }
+    }
+}
+
+/// The answer to `changes`, whose last line is `last`, has come without damage.
+fn is_whole(lines: &[String], last: &str) -> bool {
+    let counted = match last.split_once(" change") {
         Some(("no", "s")) => lines.is_empty(),
         Some((count, _)) => count.parse() == Ok(lines.len()),
         None => false,
     };
-    if !fits {
-        let port = session.port();
-        return Err(Failure::Board(format!(
-            "{port}: 'changes' is answered with '{last}'; expected 'no changes' or their count"
-        )));
-    }
-    Ok(lines)
+    counted && lines.iter().all(|line| !line.contains('?'))
 }
 
 /// A parameter file with all values of the board; `board` goes into its first lines.
@@ -295,7 +305,13 @@ pub fn load(session: &mut Session, settings: &[Setting], say: &mut dyn FnMut(&st
 
 fn set(session: &mut Session, difference: &Difference) -> Result<(), Failure> {
     let name = difference.setting.row.name;
-    let said = session.command(&format!("set {name} {}", shown(&difference.setting)))?;
+    let command = format!("set {name} {}", shown(&difference.setting));
+    let mut said = session.command(&command)?;
+    // Lost bytes leave open whether it was taken.
+    let mut tries = 1..TRIES;
+    while said.iter().any(|line| line.contains('?')) && tries.next().is_some() {
+        said = session.command(&command)?;
+    }
     let last = said.last().map_or("", String::as_str);
     if last.starts_with(&format!("{name} ")) && last.contains(" -> ") {
         return Ok(());
@@ -363,6 +379,14 @@ mod tests {
         ] {
             assert!(row(line).is_none(), "{line}");
         }
+    }
+
+    #[test]
+    fn an_answer_to_changes_is_whole_by_its_count_and_without_lost_bytes() {
+        let lines = ["infill 6.9 -> 8 %".to_owned()];
+        assert!(is_whole(&[], "no changes") && is_whole(&lines, "1 change, save keeps it"));
+        assert!(!is_whole(&[], "? changes") && !is_whole(&lines, "2 changes, save keeps them"));
+        assert!(!is_whole(&["infill ? -> 8 %".to_owned()], "1 change"));
     }
 
     #[test]

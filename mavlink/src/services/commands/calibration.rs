@@ -16,6 +16,7 @@ use crate::services::Services;
 use crate::services::answer::Answer;
 use crate::services::telemetry::calibration_result;
 use crate::vehicle::Vehicle;
+use crate::wire::requests::{Command, Peer};
 use sophie_dialect::*;
 
 /// Time to turn the vehicle to the next side where texts lead, µs.
@@ -34,6 +35,9 @@ pub(crate) struct Calibrations {
     report_us: u64,
     /// The end of the newest step.
     pub(crate) result: Option<SOPHIE_CALIBRATION_RESULT_DATA>,
+    /// The command of the newest step, and its acknowledgement once it has ended.
+    command: Option<(Command, Peer)>,
+    ended: Option<MavResult>,
 }
 
 impl Calibrations {
@@ -43,7 +47,17 @@ impl Calibrations {
             asked_us: None,
             report_us: 0,
             result: None,
+            command: None,
+            ended: None,
         }
+    }
+
+    /// The acknowledgement of a step that has ended, if `received` repeats its command: the first was lost on its way.
+    fn acknowledged(&self, received: &Received<'_>) -> Option<MavResult> {
+        let (command, from) = self.command?;
+        let repeats =
+            received.command.repeated && received.command.is_alike(&command) && received.from == from;
+        self.ended.filter(|_| repeats)
     }
 
     /// Ends this line's running step without a result; true if one ran.
@@ -77,6 +91,15 @@ impl Services {
         let Some(step) = step else {
             return Some(self.deny("no such step of a calibration"));
         };
+        if let Some(result) = self.calibrations.acknowledged(received) {
+            return self
+                .begin(received, Answerer::Calibration)
+                .err()
+                .unwrap_or_else(|| {
+                    self.end_step(result);
+                    None
+                });
+        }
         self.begin_calibration(received, procedure, step, None)
     }
 
@@ -139,6 +162,8 @@ impl Services {
             return None;
         }
         self.calibrations.owned = true;
+        self.calibrations.command = Some((*received.command, received.from));
+        self.calibrations.ended = None;
         self.calibrations.asked_us = asked_us;
         self.calibrations.report_us = received.now.saturating_add(PROGRESS_US);
         self.progress(0);
@@ -200,15 +225,20 @@ impl Services {
                     }
                     self.guide("done");
                 }
-                self.answer(Answer::CalibrationResult);
-                self.settle(Answerer::Calibration, MavResult::MAV_RESULT_ACCEPTED);
+                self.end_step(MavResult::MAV_RESULT_ACCEPTED);
             }
             Err(unfit) => {
                 self.say_unfit(unfit);
-                self.answer(Answer::CalibrationResult);
-                self.settle(Answerer::Calibration, MavResult::MAV_RESULT_FAILED);
+                self.end_step(MavResult::MAV_RESULT_FAILED);
             }
         }
+    }
+
+    /// Sends the result of a step, then acknowledges its command.
+    fn end_step(&mut self, acknowledgement: MavResult) {
+        self.calibrations.ended = Some(acknowledgement);
+        self.answer(Answer::CalibrationResult);
+        self.settle(Answerer::Calibration, acknowledgement);
     }
 
     /// Where texts lead: asks for the next side, or waits on for this one; false at the end.

@@ -127,7 +127,7 @@ fn params_of_the_file_and_the_command_line_win() {
 }
 
 #[test]
-fn every_drawn_number_is_one_that_a_scenario_takes() {
+fn every_number_of_a_spread_is_one_that_a_scenario_takes() {
     let nominal = Scenario::default_mission();
     for quantity in QUANTITIES {
         let ranges = ranges(quantity);
@@ -135,8 +135,8 @@ fn every_drawn_number_is_one_that_a_scenario_takes() {
             let (min, max) = ranges.get(index).copied().unwrap_or_else(|| ranges[0]);
             for share in [0.0, 1.0] {
                 let spread = |spread: Option<Spread>, from| spread.map_or(from, |s| s.apply(from, share));
-                let drawn = spread(quantity.each, spread(quantity.all, number));
-                assert!((min..=max).contains(&drawn), "{}: {drawn}", quantity.key);
+                let sampled = spread(quantity.each, spread(quantity.all, number));
+                assert!((min..=max).contains(&sampled), "{}: {sampled}", quantity.key);
             }
         }
     }
@@ -163,17 +163,17 @@ fn the_page_has_the_table() {
     );
     for quantity in QUANTITIES {
         let numbers: Vec<String> = (quantity.truth)(&nominal).iter().map(f64::to_string).collect();
-        let mut drawn: Vec<String> = quantity.all.iter().map(|spread| spread.text()).collect();
-        drawn.extend(quantity.each.map(|spread| format!("each {}", spread.text())));
+        let mut spreads: Vec<String> = quantity.all.iter().map(|spread| spread.text()).collect();
+        spreads.extend(quantity.each.map(|spread| format!("each {}", spread.text())));
         let (left, by) = quantity.calibration.map_or_else(Default::default, |c| {
             let each = if c.apart { "each " } else { "" };
             (format!("{each}{}", c.error.text()), c.by)
         });
         let (key, source) = (quantity.key, quantity.source);
-        let (numbers, drawn) = (numbers.join(", "), drawn.join(", "));
+        let (numbers, spreads) = (numbers.join(", "), spreads.join(", "));
         writeln!(
             text,
-            "| `{key}` | {numbers} | {drawn} | {left} | {by} | {source} |"
+            "| `{key}` | {numbers} | {spreads} | {left} | {by} | {source} |"
         )
         .unwrap();
     }
