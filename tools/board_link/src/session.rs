@@ -21,6 +21,9 @@ const RESTART: Duration = Duration::from_secs(30);
 const REOPEN: Duration = Duration::from_millis(100);
 /// Longest wait for the answer to the first attempt; each further attempt waits twice as long.
 const ATTEMPT: Duration = Duration::from_secs(1);
+/// Share of the time in which a console must answer that the first probe waits. Each further one waits twice as long:
+/// four probes, since one loses its answer to a line that loses frames.
+const SHARE: u32 = 8;
 /// Number of attempts at typing a line that is damaged on its way.
 const TRIES: u32 = 4;
 /// Length limit of an answer, in silences: an endless answer, as of a noisy line, counts as none.
@@ -223,7 +226,7 @@ impl Session {
     /// Waits until the console answers a probe with a clean prompt, for at most `time`.
     fn synchronise(&mut self, time: Duration) -> Result<(), Failure> {
         let begun = Instant::now();
-        let mut attempt = ATTEMPT;
+        let mut attempt = ATTEMPT.min(time / SHARE);
         let mut bytes = 0;
         while begun.elapsed() < time {
             self.attempts += 1;
