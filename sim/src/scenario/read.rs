@@ -4,6 +4,7 @@
 use core::ops::Range as Span;
 use std::sync::OnceLock;
 
+use sophie_control::gripper::tendon::SPAN_MIN_US;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -44,6 +45,7 @@ impl Source<'_> {
             }
         }
         self.pipe_clear_of_the_ground(&root, &scenario)?;
+        self.servo_marks_apart(&root, &scenario)?;
         self.arms(&root, &scenario)?;
         scenario.steps = steps.unwrap_or_else(default_steps);
         Ok(scenario)
@@ -125,6 +127,25 @@ impl Source<'_> {
                     scenario,
                     text.ok_or_else(|| self.bad(name, value, "one line of text"))?,
                 );
+            }
+        }
+        Ok(())
+    }
+
+    /// Requires a travel of each servo: angles are shares of it.
+    fn servo_marks_apart(&self, root: &Spanned<DeTable<'_>>, scenario: &Scenario) -> Result<()> {
+        let v = &scenario.vehicle;
+        let least = f64::from(SPAN_MIN_US);
+        let mut travels = v.servo_release.iter().zip(&v.servo_full);
+        if travels.all(|(release, full)| (release - full).abs() >= least) {
+            return Ok(());
+        }
+        let keys = table(root, "vehicle");
+        let find = |wanted: &str| keys.and_then(|t| t.iter().find(|(name, _)| name.get_ref() == wanted));
+        let allowed = format!("servo_release_us and servo_full_us of each servo {least} us apart or more");
+        for name in ["servo_full_us", "servo_release_us"] {
+            if let Some((_, value)) = find(name) {
+                return Err(self.bad(&format!("vehicle.{name}"), value, allowed));
             }
         }
         Ok(())

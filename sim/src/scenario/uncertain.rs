@@ -76,8 +76,13 @@ pub struct Quantity {
     pub learn: fn(&mut Scenario, &[f64]),
 }
 
-/// What a ruler leaves of a place, m.
-const RULER: Spread = Spread::Plus(-0.005, 0.005);
+/// Place of the lens, m.
+const RULER: Calibration = Calibration {
+    by: "ruler ([flow module](calibration.md#flow-module))",
+    error: Spread::Plus(-0.005, 0.005),
+    apart: false,
+    demanded: false,
+};
 const DEGREE: f64 = core::f64::consts::PI / 180.0;
 
 /// What hands leave of a servo's mark, µs: half a degree of 270°.
@@ -342,12 +347,7 @@ pub const QUANTITIES: &[Quantity] = &[
     },
     Quantity {
         key: "sensors.flow_x_m",
-        calibration: Some(Calibration {
-            by: "ruler ([flow module](calibration.md#flow-module))",
-            error: RULER,
-            apart: false,
-            demanded: false,
-        }),
+        calibration: Some(RULER),
         exact: true,
         source: "as mounted",
         truth: |s| lens(s, 0),
@@ -357,12 +357,7 @@ pub const QUANTITIES: &[Quantity] = &[
     },
     Quantity {
         key: "sensors.flow_y_m",
-        calibration: Some(Calibration {
-            by: "ruler ([flow module](calibration.md#flow-module))",
-            error: RULER,
-            apart: false,
-            demanded: false,
-        }),
+        calibration: Some(RULER),
         exact: true,
         source: "as mounted",
         truth: |s| lens(s, 1),
@@ -372,12 +367,7 @@ pub const QUANTITIES: &[Quantity] = &[
     },
     Quantity {
         key: "sensors.flow_z_m",
-        calibration: Some(Calibration {
-            by: "ruler ([flow module](calibration.md#flow-module))",
-            error: RULER,
-            apart: false,
-            demanded: false,
-        }),
+        calibration: Some(RULER),
         exact: true,
         source: "as mounted",
         truth: |s| lens(s, 2),

@@ -142,6 +142,21 @@ fn every_number_of_a_spread_is_one_that_a_scenario_takes() {
     }
 }
 
+#[test]
+fn a_servo_without_travel_is_refused() {
+    for (keys, name) in [
+        ("servo_full_us = [2450, 700, 2450, 2450]", "servo_full_us"),
+        ("servo_release_us = [550, 550, 550, 2450]", "servo_release_us"),
+    ] {
+        let line = parse(&format!("[vehicle]\n{keys}")).unwrap_err().to_string();
+        let begin = format!("perch.toml:2: vehicle.{name} = ");
+        assert!(
+            line.starts_with(&begin) && line.ends_with("200 us apart or more"),
+            "{line}"
+        );
+    }
+}
+
 /// Ranges of a quantity's key, in the key's unit.
 fn ranges(quantity: &Quantity) -> Vec<(f64, f64)> {
     let key = KEYS
