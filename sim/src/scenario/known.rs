@@ -66,7 +66,7 @@ impl Difference {
 /// Smallest difference that counts: beyond the rounding of a parameter to single precision.
 const ROUNDING: f64 = 1e-5;
 
-/// Sets the parameters to what is known of the vehicle.
+/// Sets the parameters by the scenario's knowledge of the vehicle.
 pub(super) fn believe(scenario: &mut Scenario) {
     labels(scenario);
     for quantity in QUANTITIES {

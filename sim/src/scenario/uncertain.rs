@@ -1,5 +1,5 @@
-//! Numbers of a vehicle, its day and its pipe that nobody knows exactly: how far builders' vehicles differ, what a
-//! calibration leaves of it, and the parameters that assume them.
+//! Uncertain numbers of a vehicle, its day and its pipe: spread over builders, error after a calibration, and the
+//! parameters that assume them.
 
 use sophie_control::gripper::tendon::Reel;
 use sophie_control::params::Params;
@@ -62,7 +62,7 @@ pub struct Quantity {
     pub all: Option<Spread>,
     /// In addition, of each of them.
     pub each: Option<Spread>,
-    /// What measures it; `None`: nothing does.
+    /// Its measurement; `None` if there is none.
     pub calibration: Option<Calibration>,
     /// The parameters follow it where everything is known.
     pub exact: bool,
@@ -72,7 +72,7 @@ pub struct Quantity {
     pub truth: fn(&Scenario) -> Vec<f64>,
     /// What the parameters assume of each number; no numbers where nothing assumes it.
     pub assumed: fn(&Scenario) -> Vec<f64>,
-    /// Sets the parameters to what was measured of each number.
+    /// Sets the parameters by a measurement of each number.
     pub learn: fn(&mut Scenario, &[f64]),
 }
 

@@ -297,7 +297,7 @@ fn watched(walk: &mut Walk<'_>, group: &Group, moved: &[Moved]) -> Judged {
 
 /// Shows the group until the builder replies.
 fn watch(walk: &mut Walk<'_>, group: &Group) -> Result<Vec<Seen>, Stop> {
-    // Before the builder is asked: what is moved earlier would not be seen.
+    // Before the builder is asked: an earlier movement would not be seen.
     walk.vehicle.stream(group.messages, PERIOD_US)?;
     walk.say("  Enter once they have followed, s skips, q stops:");
     walk.say(group.what);
