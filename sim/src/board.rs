@@ -97,6 +97,7 @@ impl Board {
     pub fn of(scenario: &Scenario) -> Self {
         let mut board = Self::with(&scenario.params, scenario.streams(), &scenario.faults);
         board.esc = scenario.vehicle.esc;
+        board.sensors.get_mut().imu.mount(scenario.vehicle.vibration);
         if scenario.sensors.barometer {
             board.sensors.borrow_mut().barometer = Some(scenario.barometer());
         }

@@ -4,12 +4,14 @@
 //! Semi-implicit Euler at 2 kHz: the fastest contact and arm modes are below 50 Hz. Body axes FRD, world NED. Shares
 //! with the flight stack only constants of the hardware.
 
+pub mod air;
 pub mod battery;
 pub mod beam;
 pub mod body;
 pub mod contact;
 pub mod esc;
 pub mod flexible;
+pub mod gauss_markov;
 pub mod gust;
 pub mod hinged;
 pub mod load;
@@ -22,6 +24,7 @@ pub mod tendon;
 use glam::{DQuat, DVec3};
 use sophie_control::allocation::wrench::PerArm;
 
+use self::air::Air;
 use self::battery::Battery;
 use self::beam::{BeamArm, BeamSpec, Masses};
 use self::body::{Body, BodyState};
@@ -43,7 +46,7 @@ pub const STEP: f64 = 0.5e-3;
 pub const GRAVITY: f64 = 9.806_65;
 /// Friction of the ground (assumed, TPU on concrete).
 const GROUND_FRICTION: f64 = 0.7;
-/// Linear air drag, N·s/m (assumed).
+/// Linear air drag, N·s/m (assumed; 0.175 to 0.38 are published, [`air::drag`]).
 pub const DRAG: f64 = 0.3;
 /// Thrust from which a propeller would break at the pipe, N: a tenth of hover thrust.
 const TURNING: f64 = 0.25;
@@ -63,6 +66,8 @@ pub struct Actuators {
 #[derive(Clone, Debug)]
 struct Limb {
     rotor: Rotor,
+    /// That the arm receives, N.
+    thrust: f64,
     tendon: Tendon,
     pressure: f64,
 }
@@ -93,6 +98,7 @@ struct Base {
     limbs: PerArm<Limb>,
     battery: Battery,
     servo_battery: Battery,
+    air: Air,
     gust: Gust,
     ground_belly: Belly,
     pipe_belly: Belly,
@@ -112,7 +118,7 @@ pub fn arm_spec(vehicle: &Vehicle, arm: usize) -> ArmSpec {
         offset: v.arm_offset[arm],
         zeta: v.arm_damping,
     })
-    .level_at(v.arm_level_share * v.rotor.thrust_max)
+    .level_at(v.arm_level_thrust())
 }
 
 /// The beam of arm `arm` (0 to 3) of `vehicle` as built.
@@ -235,7 +241,7 @@ impl Plant {
     /// Thrust of each rotor, N.
     #[must_use]
     pub fn thrust(&self) -> PerArm<f64> {
-        self.base.limbs.each_ref().map(|l| l.rotor.thrust())
+        self.base.limbs.each_ref().map(|l| l.thrust)
     }
 
     /// Speed of each rotor, rad/s.
@@ -287,7 +293,8 @@ impl Base {
         let chi = f64::from(v.configuration.chi());
         let radius = 0.5 * w.pipe_diameter;
         let limb = |i: usize| Limb {
-            rotor: Rotor::new(i, chi, v.rotor),
+            rotor: Rotor::new(i, chi, v.rotor).in_air(v.rotor_thrust[i], w.air.density),
+            thrust: 0.0,
             tendon: Tendon::new(
                 v.servo_on(i, scenario.params.servo_frame_rate),
                 TendonSpec {
@@ -314,8 +321,9 @@ impl Base {
                 },
             },
             limbs: std::array::from_fn(limb),
-            battery: Battery::new(v.battery_charge),
+            battery: Battery::new(v.battery_charge).aged(v.battery_age, v.battery_sag),
             servo_battery: Battery::of_servos(v.servo_charge),
+            air: Air::new(v.air, scenario.air(), v.hover_speed(), scenario.streams()),
             gust: Gust::new(w.gust_force, w.gust_moment, scenario.streams())
                 .in_wind(w.steady_wind, scenario.wind_from()),
             ground_belly: Belly::default(),
@@ -345,9 +353,14 @@ impl Base {
         let voltage = self.battery.voltage();
         let (mut current, mut servo_current) = (0.0, 0.0);
         let powered = !self.servo_battery.empty();
-        let commands = actuators.motors.iter().zip(&actuators.servos);
-        for ((limb, arm), (motor, servo)) in self.limbs.iter_mut().zip(arms.iter_mut()).zip(commands) {
-            let thrust = limb.rotor.step(STEP, *motor, voltage);
+        let rotors = self.limbs.each_ref().map(|limb| &limb.rotor);
+        let tilt = arms.each_ref().map(Flexible::tilt);
+        let in_air = self.air.on_rotors(&pose, tilt, rotors, &self.pipe, &mut load);
+        let commands = actuators.motors.iter().zip(&actuators.servos).zip(in_air);
+        for ((limb, arm), ((motor, servo), in_air)) in
+            self.limbs.iter_mut().zip(arms.iter_mut()).zip(commands)
+        {
+            limb.thrust = limb.rotor.step(STEP, *motor, voltage) * in_air;
             current += limb.rotor.current(voltage);
             // Without supply the servo behaves as without a pulse: the gears hold by friction.
             let servo = if powered { *servo } else { 0.0 };
@@ -356,7 +369,7 @@ impl Base {
             }
             let drive = Drive {
                 dt: STEP,
-                thrust,
+                thrust: limb.thrust,
                 tendon: limb.tendon.step(STEP, servo, arm.tilt()),
                 momentum: limb.rotor.momentum(),
                 drag: limb.rotor.drag(),
@@ -384,10 +397,11 @@ impl Base {
     fn outside(&mut self, push: &Load) -> (Load, Nearby) {
         let pose = self.state.pose;
         let mut load = Load {
-            force: pose.to_body(push.force - pose.velocity * DRAG + self.gust.force()),
+            force: pose.to_body(push.force + self.air.on_body(&pose, &self.pipe) + self.gust.force()),
             moment: self.gust.moment() + push.moment,
         };
         self.gust.step(STEP);
+        self.air.step(STEP, &self.pipe);
         let ground = pose.position.z > -NEAR;
         if ground {
             let surface = Surface::Ground(GROUND_FRICTION);

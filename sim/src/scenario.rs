@@ -35,13 +35,17 @@ use sophie_control::params::Params;
 use sophie_control::pilot::rc::ArmChoice;
 use sophie_ports::retained::StartCause;
 
+use crate::plant::GRAVITY as STANDARD_GRAVITY;
+use crate::plant::air::wind::WindSpec;
+use crate::plant::air::{AirSpec, AirframeSpec};
 use crate::plant::body::BodySpec;
 use crate::plant::esc::EscSpec;
 use crate::plant::flexible::ArmBending;
-use crate::plant::rotor::RotorSpec;
+use crate::plant::rotor::{RotorSpec, THRUST_COEFFICIENT};
 use crate::plant::tendon::{ServoProfile, ServoSpec};
 use crate::sensors::barometer::{Barometer, BarometerFault};
 use crate::sensors::flow::FlowFault;
+use crate::sensors::imu::VibrationSpec;
 use crate::sensors::pose::PoseFault;
 use crate::streams::Streams;
 
@@ -93,6 +97,19 @@ impl Scenario {
         Streams::new(self.seed)
     }
 
+    /// The air of its flight.
+    #[must_use]
+    pub fn air(&self) -> AirSpec {
+        let wind = WindSpec {
+            from: self.wind_from(),
+            ..self.world.air.wind
+        };
+        AirSpec {
+            wind,
+            ..self.world.air
+        }
+    }
+
     /// Direction that the steady wind comes from, clockwise from north, rad.
     #[must_use]
     pub fn wind_from(&self) -> f64 {
@@ -118,6 +135,8 @@ pub struct Vehicle {
     pub arm_taper: f64,
     /// Thrust of a level nominal arm over the largest; sets α0.
     pub arm_level_share: f64,
+    /// The same thrust, N, however much the rotors give; `None`: by the share.
+    pub arm_level: Option<f64>,
     /// Factor on each arm's elastic tilt; nominal 1.
     pub arm_gain: PerArm<f64>,
     /// Offset of each arm's tilt, rad; nominal 0.
@@ -128,6 +147,10 @@ pub struct Vehicle {
     pub arm_damping: f64,
     /// Battery charge at power-up, 0..1.
     pub battery_charge: f64,
+    /// Resistance of the battery over that of a new one.
+    pub battery_age: f64,
+    /// Resistance that the battery's current meets slowly, Ω.
+    pub battery_sag: f64,
     /// Charge of the servo battery at power-up, 0..1.
     pub servo_charge: f64,
     /// The tendon servo.
@@ -140,11 +163,30 @@ pub struct Vehicle {
     pub body: BodySpec,
     /// Motors and propellers, all alike.
     pub rotor: RotorSpec,
+    /// Thrust of each rotor over that of its kind.
+    pub rotor_thrust: PerArm<f64>,
+    /// Vibration at its inertial sensor.
+    pub vibration: VibrationSpec,
+    /// Its shape in the air.
+    pub air: AirframeSpec,
     /// Motor controllers, all alike. The stack knows only its parameters, which may differ.
     pub esc: EscSpec,
 }
 
 impl Vehicle {
+    /// Thrust of a level nominal arm, N.
+    #[must_use]
+    pub fn arm_level_thrust(&self) -> f64 {
+        self.arm_level
+            .unwrap_or(self.arm_level_share * self.rotor.thrust_max)
+    }
+
+    /// Speed of a rotor that carries a quarter of the weight in the standard's air, rad/s.
+    #[must_use]
+    pub fn hover_speed(&self) -> f64 {
+        (0.25 * self.body.mass * STANDARD_GRAVITY / THRUST_COEFFICIENT).sqrt()
+    }
+
     /// The servo of `arm`, 0 to 3, at pulses of `frame_rate` Hz.
     #[must_use]
     pub fn servo_on(&self, arm: usize, frame_rate: f32) -> ServoSpec {
@@ -159,6 +201,8 @@ pub struct World {
     pub gust_force: f64,
     /// RMS per axis, N·m.
     pub gust_moment: f64,
+    /// Air: density, wind as a velocity, ground effect. Its wind's direction is [`Scenario::wind_from`].
+    pub air: AirSpec,
     /// Force of the steady wind, N.
     pub steady_wind: f64,
     /// Direction that the wind comes from, clockwise from north, rad; `None`: set by the seed.

@@ -7,3 +7,4 @@ pub mod flow;
 pub mod fsr;
 pub mod imu;
 pub mod pose;
+pub mod soft_mount;

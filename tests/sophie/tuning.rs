@@ -56,7 +56,7 @@ const CASES: [Case; 10] = [
     Case {
         what: "motors slower than `motor_tau`: 0.12 s",
         seen: "nothing at these gains; less room above",
-        change: |s| s.vehicle.rotor.time_constant = 0.12,
+        change: |s| s.vehicle.rotor.spin.up = 0.12,
     },
     Case {
         what: "rotors weaker than `thrust_max`: 6.5 N",

@@ -44,7 +44,8 @@ impl Sensors {
     #[must_use]
     pub fn new(scenario: &Scenario) -> Self {
         let (params, streams) = (&scenario.params, scenario.streams());
-        let imu = Imu::new(params, streams);
+        let mut imu = Imu::new(params, streams);
+        imu.mount(scenario.vehicle.vibration);
         let calibration = imu.bench_bias().as_vec3().to_array();
         let arms = std::array::from_fn(|arm| ArmImu::new(arm, streams));
         let fsr = std::array::from_fn(|arm| FsrSensor::new(arm, streams));

@@ -57,7 +57,7 @@ fn stand(scenario: &Scenario, arm: usize) -> StandArm {
         spec: arm_spec(v, arm),
         beam: (v.arm_bending == ArmBending::Beam).then(|| beam_spec(v, arm)),
         servo: v.servo_on(arm, p.servo_frame_rate),
-        rotor_tau: v.rotor.time_constant,
+        rotor_tau: v.rotor.spin.up,
         params: p,
         diameter: w.pipe_diameter,
         friction: w.pipe_friction,

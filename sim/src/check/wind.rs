@@ -1,14 +1,18 @@
 //! Check row of the wind.
 
+use glam::DVec3;
+
 use super::hover::Built;
 use super::row::{Limit, Row};
 use super::thrust::GUST_FACTOR;
+use crate::plant::GRAVITY;
 use crate::scenario::Scenario;
 
 /// Steady wind force against which the vehicle keeps place and height.
 ///
 /// Value: W tan θ, N, θ the largest lean with L cos θ >= W within the stick's limit. Limit: the scenario's steady wind, and
-/// three times the RMS of the gusts' horizontal force on both axes. By the plant's drag of 0.3 N s/m a wind of v pushes with 0.3 v.
+/// three times the RMS of the gusts' horizontal force on both axes. A wind given as a velocity pushes with the drag of
+/// the vehicle in hover, its gusts likewise.
 pub fn row(scenario: &Scenario, built: &Built) -> Row {
     let lift = built.lift(scenario.vehicle.rotor.thrust_max);
     let upright = (built.weight / lift).clamp(0.0, 1.0).acos();
@@ -19,14 +23,38 @@ pub fn row(scenario: &Scenario, built: &Built) -> Row {
         0.0
     };
     let gusts = GUST_FACTOR * scenario.world.gust_force * std::f64::consts::SQRT_2;
-    let needed = scenario.world.steady_wind + gusts;
+    let needed = scenario.world.steady_wind + gusts + of_air(scenario);
     Row::new("wind force", force, "N", Limit::AtLeast(needed))
         .advise("raise stick_angle, make it lighter, or wait for less wind")
+}
+
+/// Drag in the scenario's wind and three times the RMS of its gusts on both axes, N.
+fn of_air(scenario: &Scenario) -> f64 {
+    let (drag, air) = (scenario.vehicle.air.drag, scenario.world.air);
+    let speed = air.wind.speed + GUST_FACTOR * air.wind.gust * std::f64::consts::SQRT_2;
+    let thrust = scenario.vehicle.body.mass * GRAVITY;
+    let rotors = if drag.on_rotors { drag.linear * speed } else { 0.0 };
+    let body = drag.on_body(DVec3::X * speed, air.density).length();
+    body + rotors + drag.flapping * speed * thrust
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// 0.3 · 6 + ½ · 1.225 · 0.04 · 36 N of steady wind.
+    #[test]
+    fn a_wind_as_a_velocity_asks_for_its_drag() {
+        let mut s = Scenario::default_mission();
+        let still = of_air(&s);
+        s.world.air.wind.speed = 6.0;
+        s.vehicle.air.drag.area = 0.04;
+        for on_rotors in [false, true] {
+            s.vehicle.air.drag.on_rotors = on_rotors;
+            assert!((of_air(&s) - (1.8 + 0.882)).abs() < 1e-9);
+        }
+        assert_eq!(still, 0.0);
+    }
 
     #[test]
     fn the_stick_limits_the_lean_of_a_strong_vehicle_and_the_lift_that_of_a_weak_one() {

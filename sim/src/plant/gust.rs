@@ -4,6 +4,7 @@ use glam::DVec3;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 
+use super::gauss_markov::GaussMarkov;
 use crate::streams::Streams;
 
 /// Correlation time, s (assumed).
@@ -16,13 +17,11 @@ const DIVIDER: u32 = 16;
 /// A gust with its own random numbers.
 #[derive(Clone, Debug)]
 pub struct Gust {
-    force_rms: f64,
-    moment_rms: f64,
     /// The steady wind's, N, NED.
     steady: DVec3,
     rng: Pcg64Mcg,
-    force: DVec3,
-    moment: DVec3,
+    force: GaussMarkov,
+    moment: GaussMarkov,
     count: u32,
     elapsed: f64,
 }
@@ -32,12 +31,10 @@ impl Gust {
     #[must_use]
     pub fn new(force_rms: f64, moment_rms: f64, streams: Streams) -> Self {
         Self {
-            force_rms,
-            moment_rms,
             steady: DVec3::ZERO,
             rng: streams.of("gust"),
-            force: DVec3::ZERO,
-            moment: DVec3::ZERO,
+            force: GaussMarkov::new(DVec3::new(1.0, 1.0, 0.5) * force_rms, FORCE_TIME),
+            moment: GaussMarkov::new(DVec3::splat(moment_rms), MOMENT_TIME),
             count: 0,
             elapsed: 0.0,
         }
@@ -66,22 +63,20 @@ impl Gust {
             DVec3::from_array(std::array::from_fn(|_| normal())),
             DVec3::from_array(std::array::from_fn(|_| normal())),
         );
-        let (kf, km) = (elapsed / FORCE_TIME, elapsed / MOMENT_TIME);
-        let rms = DVec3::new(1.0, 1.0, 0.5) * self.force_rms;
-        self.force += -self.force * kf + f * rms * (2.0 * kf).sqrt();
-        self.moment += -self.moment * km + m * (self.moment_rms * (2.0 * km).sqrt());
+        self.force.step(elapsed, f);
+        self.moment.step(elapsed, m);
     }
 
     /// Force, N, NED.
     #[must_use]
     pub fn force(&self) -> DVec3 {
-        self.force + self.steady
+        self.force.value() + self.steady
     }
 
     /// Moment, N·m, body.
     #[must_use]
     pub fn moment(&self) -> DVec3 {
-        self.moment
+        self.moment.value()
     }
 }
 

@@ -6,12 +6,15 @@ use sophie_control::pilot::rc::ArmChoice;
 use sophie_mixers::Variant;
 
 use super::{Assist, Assumed, Expect, Faults, Known, Overrides, Pilot, Scenario, Sensors, Vehicle, World};
+use crate::plant::air::wind::WindSpec;
+use crate::plant::air::{AirSpec, AirframeSpec};
 use crate::plant::body::BodySpec;
 use crate::plant::esc::EscSpec;
 use crate::plant::flexible::ArmBending;
 use crate::plant::hinged::link::TABLE_1;
-use crate::plant::rotor::RotorSpec;
+use crate::plant::rotor::{RotorSpec, STANDARD_DENSITY};
 use crate::plant::tendon::ServoProfile;
+use crate::sensors::imu::VibrationSpec;
 
 /// The default mission, every key at its default.
 pub const MISSION: &str = include_str!("../../../tests/scenarios/mission.toml");
@@ -26,17 +29,23 @@ impl Default for Vehicle {
             arm_bending: ArmBending::Beam,
             arm_taper: 1.0,
             arm_level_share: 0.5,
+            arm_level: None,
             arm_gain: [1.0; 4],
             arm_offset: [0.0; 4],
             coupled_arms: true,
             arm_damping: 0.15,
             battery_charge: 1.0,
+            battery_age: 1.0,
+            battery_sag: 0.0,
             servo_charge: 1.0,
             servo: ServoProfile::Paper,
             servo_release: [550.0; 4],
             servo_full: [2450.0; 4],
             body: BodySpec::default(),
             rotor: RotorSpec::default(),
+            rotor_thrust: [1.0; 4],
+            vibration: VibrationSpec::default(),
+            air: AirframeSpec::default(),
             esc: EscSpec::default(),
         }
     }
@@ -47,6 +56,12 @@ impl Default for World {
         Self {
             gust_force: 0.10,
             gust_moment: 0.004,
+            air: AirSpec {
+                density: STANDARD_DENSITY,
+                wind: WindSpec::default(),
+                ground_effect: 0.0,
+                pipe_ground_effect: 0.0,
+            },
             steady_wind: 0.0,
             steady_wind_from: None,
             pipe_diameter: 0.30,

@@ -9,6 +9,7 @@ use sophie_mixers::Variant;
 use super::faults;
 use super::{Assist, Known, PositionSensor, Scenario};
 use crate::devices::sbus;
+use crate::plant::rotor::delay;
 use crate::plant::tendon::ServoProfile;
 use crate::sensors::barometer::BarometerFault;
 use crate::sensors::flow::FlowFault;
@@ -157,6 +158,8 @@ const LENS: Range = Range::new(-0.3, 0.3, "m");
 
 const DEGREE: f64 = PI / 180.0;
 const PERCENT: f64 = 0.01;
+/// Share of an effect of the literature's size; 0 turns it off.
+const EFFECT: Range = Range::new(0.0, 2.0, "");
 
 /// A word from [`CONFIGURATIONS`].
 pub fn configuration(word: &str) -> Configuration {
@@ -374,6 +377,11 @@ pub const KEYS: &[Key] = &[
         Range::new(-0.5, 1.0, ""),
         vehicle.arm_level_share
     ),
+    optional!(
+        "vehicle.arm_level_n",
+        Range::new(1.0, 12.0, "N"),
+        vehicle.arm_level
+    ),
     Key {
         name: "vehicle.arm_gain",
         kind: Kind::PerArm(Range::new(0.5, 1.5, ""), |s| &mut s.vehicle.arm_gain),
@@ -397,6 +405,36 @@ pub const KEYS: &[Key] = &[
         "vehicle.battery_charge_percent",
         Range::new(5.0, 100.0, "%").times(PERCENT),
         vehicle.battery_charge
+    ),
+    number!(
+        "vehicle.vibration_m_s2",
+        Range::new(0.0, 15.0, "m/s2"),
+        vehicle.vibration.once
+    ),
+    number!(
+        "vehicle.vibration_twice",
+        Range::new(0.0, 2.0, ""),
+        vehicle.vibration.twice
+    ),
+    optional!(
+        "vehicle.platform_hz",
+        Range::new(15.0, 200.0, "Hz"),
+        vehicle.vibration.platform
+    ),
+    number!(
+        "vehicle.platform_damping",
+        Range::new(0.02, 1.0, ""),
+        vehicle.vibration.damping
+    ),
+    number!(
+        "vehicle.battery_age",
+        Range::new(0.5, 4.0, ""),
+        vehicle.battery_age
+    ),
+    number!(
+        "vehicle.battery_sag_ohm",
+        Range::new(0.0, 0.1, "ohm"),
+        vehicle.battery_sag
     ),
     number!(
         "vehicle.servo_charge_percent",
@@ -436,12 +474,74 @@ pub const KEYS: &[Key] = &[
     number!(
         "vehicle.motor_tau_s",
         Range::new(0.01, 0.2, "s"),
-        vehicle.rotor.time_constant
+        vehicle.rotor.spin.up
     ),
+    optional!(
+        "vehicle.motor_tau_down_s",
+        Range::new(0.01, 0.5, "s"),
+        vehicle.rotor.spin.down
+    ),
+    number!(
+        "vehicle.motor_delay_s",
+        Range::new(0.0, delay::LONGEST, "s"),
+        vehicle.rotor.delay
+    ),
+    Key {
+        name: "vehicle.esc_brakes",
+        kind: Kind::Flag(|s| &mut s.vehicle.rotor.spin.brakes),
+    },
+    Key {
+        name: "vehicle.rotor_reaction",
+        kind: Kind::Flag(|s| &mut s.vehicle.rotor.reaction),
+    },
     number!(
         "vehicle.thrust_max_n",
         Range::new(5.0, 20.0, "N"),
         vehicle.rotor.thrust_max
+    ),
+    Key {
+        name: "vehicle.rotor_thrust",
+        kind: Kind::PerArm(Range::new(0.5, 1.5, ""), |s| &mut s.vehicle.rotor_thrust),
+    },
+    optional!(
+        "vehicle.thrust_voltage_power",
+        Range::new(1.0, 2.5, ""),
+        vehicle.rotor.voltage_power
+    ),
+    number!(
+        "vehicle.heat_fade_percent",
+        Range::new(0.0, 20.0, "%").times(PERCENT),
+        vehicle.rotor.heat_fade
+    ),
+    number!("vehicle.inflow_share", EFFECT, vehicle.air.inflow),
+    number!(
+        "vehicle.drag_n_s_m",
+        Range::new(0.0, 2.0, "N s/m"),
+        vehicle.air.drag.linear
+    ),
+    Key {
+        name: "vehicle.drag_on_rotors",
+        kind: Kind::Flag(|s| &mut s.vehicle.air.drag.on_rotors),
+    },
+    number!(
+        "vehicle.drag_area_m2",
+        Range::new(0.0, 0.2, "m2"),
+        vehicle.air.drag.area
+    ),
+    number!(
+        "vehicle.flapping_deg_s_m",
+        Range::new(0.0, 2.0, "deg s/m").times(DEGREE),
+        vehicle.air.drag.flapping
+    ),
+    number!(
+        "vehicle.arm_wash_percent",
+        Range::new(0.0, 20.0, "%").times(PERCENT),
+        vehicle.air.wash.loss
+    ),
+    number!(
+        "vehicle.arm_buffet_percent",
+        Range::new(0.0, 10.0, "%").times(PERCENT),
+        vehicle.air.wash.buffet
     ),
     number!(
         "vehicle.esc_pulse_min_us",
@@ -473,6 +573,28 @@ pub const KEYS: &[Key] = &[
         "world.steady_wind_from_deg",
         Range::new(-360.0, 360.0, "deg").times(DEGREE),
         world.steady_wind_from
+    ),
+    number!(
+        "world.wind_m_s",
+        Range::new(0.0, 15.0, "m/s"),
+        world.air.wind.speed
+    ),
+    number!(
+        "world.wind_gust_m_s",
+        Range::new(0.0, 5.0, "m/s"),
+        world.air.wind.gust
+    ),
+    number!(
+        "world.air_density_kg_m3",
+        Range::new(0.8, 1.4, "kg/m3"),
+        world.air.density
+    ),
+    number!("world.ground_effect", EFFECT, world.air.ground_effect),
+    number!("world.pipe_ground_effect", EFFECT, world.air.pipe_ground_effect),
+    number!(
+        "world.pipe_shedding",
+        Range::new(0.0, 1.0, ""),
+        world.air.wind.shedding
     ),
     number!("world.pipe_diameter_m", PIPE_DIAMETER, world.pipe_diameter),
     number!("world.pipe_north_m", PIPE_PLACE, world.pipe_position[0]),

@@ -118,7 +118,7 @@ fn the_stack_knows_the_vehicle_unless_params_say_otherwise() {
     )
     .unwrap();
     assert_eq!(
-        (s.vehicle.body.inertia, s.vehicle.rotor.time_constant),
+        (s.vehicle.body.inertia, s.vehicle.rotor.spin.up),
         ([0.03, 0.05, 0.07], 0.04)
     );
     let p = &s.params;

@@ -5,6 +5,7 @@ use sophie_control::gripper::tendon::Reel;
 use sophie_control::params::Params;
 
 use super::Scenario;
+use crate::plant::rotor::STANDARD_DENSITY;
 
 /// How a number differs from another.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -151,19 +152,68 @@ pub const QUANTITIES: &[Quantity] = &[
     },
     Quantity {
         key: "vehicle.thrust_max_n",
-        all: Some(Spread::Times(0.85, 1.20)),
+        all: Some(Spread::Times(0.9, 1.12)),
         calibration: Some(Calibration {
-            by: "throttle in hover ([tuning](tuning.md), 1)",
+            by: "throttle in hover ([tuning](tuning.md), 1), with the day's air and the four rotors' mean",
             error: Spread::Times(0.95, 1.05),
             apart: false,
             demanded: false,
         }),
         exact: true,
-        source: "motors, propellers and days 10 to 20 %; air from 0.83 (35 °C, 1,000 m) to 1.10 (-10 °C, sea level) of the \
-                 standard's density",
+        source: "motors, propellers and their controllers 10 % (assumed of published tables)",
         truth: |s| vec![s.vehicle.rotor.thrust_max],
-        assumed: |s| vec![s.params.thrust_max.into()],
-        learn: |s, n| set([&mut s.params.thrust_max], n),
+        assumed: |s| vec![f64::from(s.params.thrust_max) / received(s)],
+        learn: |s, n| {
+            let received = received(s);
+            set(
+                [&mut s.params.thrust_max],
+                &n.iter().map(|n| n * received).collect::<Vec<_>>(),
+            );
+        },
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.rotor_thrust",
+        each: Some(Spread::Times(0.95, 1.05)),
+        source: "propellers and motors of one kind (assumed)",
+        truth: |s| s.vehicle.rotor_thrust.to_vec(),
+        assumed: |s| vec![mean(&s.vehicle.rotor_thrust); 4],
+        ..FIXED
+    },
+    Quantity {
+        key: "world.air_density_kg_m3",
+        all: Some(Spread::Within(1.02, 1.34)),
+        source: "35 °C at 1,000 m to -10 °C at sea level; in the hover's throttle",
+        truth: |s| vec![s.world.air.density],
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.thrust_voltage_power",
+        all: Some(Spread::Within(1.5, 2.0)),
+        source: "1.7 in recordings of others' flights; the stack takes 2",
+        truth: |s| s.vehicle.rotor.voltage_power.into_iter().collect(),
+        assumed: |_| vec![2.0],
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.heat_fade_percent",
+        all: Some(Spread::Within(0.0, 5.0)),
+        source: "3 to 5 % in long hover are usual",
+        truth: |s| vec![100.0 * s.vehicle.rotor.heat_fade],
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.battery_age",
+        all: Some(Spread::Within(1.0, 2.0)),
+        source: "cells of 5 to 12 mΩ, twice as much at 0 °C or after 200 cycles (assumed)",
+        truth: |s| vec![s.vehicle.battery_age],
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.battery_sag_ohm",
+        all: Some(Spread::Within(0.005, 0.03)),
+        source: "as large as the resistance itself (assumed), within 10 to 30 s",
+        truth: |s| vec![s.vehicle.battery_sag],
         ..FIXED
     },
     Quantity {
@@ -178,9 +228,24 @@ pub const QUANTITIES: &[Quantity] = &[
         exact: true,
         source: "0.0125 up and 0.025 s down (RotorS, a small one) to 0.17 s (2212-920, 9450, 30 A on PWM: \
                  CrissCCL/DIY_UAV_Motor_System_Identification)",
-        truth: |s| vec![s.vehicle.rotor.time_constant],
+        truth: |s| vec![s.vehicle.rotor.spin.up],
         assumed: |s| vec![s.params.motor_tau.into()],
         learn: |s, n| set([&mut s.params.motor_tau], n),
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.motor_tau_down_s",
+        all: Some(Spread::Within(0.04, 0.17)),
+        source: "0.12 s up and 0.17 s down (the same); as fast as up where the controller brakes",
+        truth: |s| s.vehicle.rotor.spin.down.into_iter().collect(),
+        assumed: |s| vec![s.params.motor_tau.into()],
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.motor_delay_s",
+        all: Some(Spread::Within(0.0, 0.008)),
+        source: "3 to 8 ms of controllers on pulses (assumed)",
+        truth: |s| vec![s.vehicle.rotor.delay],
         ..FIXED
     },
     Quantity {
@@ -223,9 +288,38 @@ pub const QUANTITIES: &[Quantity] = &[
         }),
         exact: true,
         source: "an arm printed 1.5° off level at rest (assumed)",
-        truth: |s| vec![s.vehicle.arm_level_share],
+        truth: |s| {
+            let by_share = s.vehicle.arm_level.is_none();
+            by_share
+                .then_some(s.vehicle.arm_level_share)
+                .into_iter()
+                .collect()
+        },
         assumed: |s| vec![s.params.arm_level_share.into()],
         learn: |s, n| set([&mut s.params.arm_level_share], n),
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.arm_level_n",
+        all: Some(Spread::Within(3.7, 4.6)),
+        calibration: Some(Calibration {
+            by: "`sophie fit-arm` ([arms](calibration.md#arms))",
+            error: Spread::Plus(-0.17, 0.17),
+            apart: false,
+            demanded: false,
+        }),
+        exact: true,
+        source: "an arm printed 1.5° off level at rest (assumed); without the key `arm_level_share` times the largest thrust",
+        truth: |s| s.vehicle.arm_level.into_iter().collect(),
+        assumed: |s| vec![f64::from(s.params.arm_level_share * s.params.thrust_max)],
+        learn: |s, n| {
+            let p = &mut s.params;
+            let thrust_max = f64::from(p.thrust_max);
+            set(
+                [&mut p.arm_level_share],
+                &n.iter().map(|n| n / thrust_max).collect::<Vec<_>>(),
+            );
+        },
         ..FIXED
     },
     Quantity {
@@ -243,7 +337,7 @@ pub const QUANTITIES: &[Quantity] = &[
         truth: |s| s.vehicle.arm_gain.to_vec(),
         learn: |s, gains| {
             // Into the coefficients: gain_k has less room.
-            let mean = gains.iter().sum::<f64>() / gains.len().max(1) as f64;
+            let mean = mean(gains);
             let (v, p) = (&s.vehicle, &mut s.params);
             let scale = mean * v.gain_k / f64::from(p.gain_k);
             let found = v.arm_coefficients.map(|c| c * scale);
@@ -346,6 +440,27 @@ pub const QUANTITIES: &[Quantity] = &[
         ..FIXED
     },
     Quantity {
+        key: "vehicle.vibration_m_s2",
+        all: Some(Spread::Within(0.5, 4.0)),
+        source: "up to 15 m/s² of all rotors on three axes are normal (ArduPilot, measuring vibration; 3DR's Iris)",
+        truth: |s| vec![s.vehicle.vibration.once],
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.vibration_twice",
+        all: Some(Spread::Within(0.2, 0.8)),
+        source: "two blades over an arm (assumed)",
+        truth: |s| vec![s.vehicle.vibration.twice],
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.platform_hz",
+        all: Some(Spread::Within(25.0, 60.0)),
+        source: "270 g of printed TPU that carry flight controller and battery (estimated)",
+        truth: |s| s.vehicle.vibration.platform.into_iter().collect(),
+        ..FIXED
+    },
+    Quantity {
         key: "sensors.flow_x_m",
         calibration: Some(RULER),
         exact: true,
@@ -373,6 +488,69 @@ pub const QUANTITIES: &[Quantity] = &[
         truth: |s| lens(s, 2),
         assumed: |s| vec![s.params.flow_z.into()],
         learn: |s, n| set([&mut s.params.flow_z], n),
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.inflow_share",
+        all: Some(Spread::Within(0.7, 1.3)),
+        source: "0.22 N per m/s and rotor of an APC SF 10x4.7 (UIUC propeller data), 30 % from type to type (assumed)",
+        truth: |s| vec![s.vehicle.air.inflow],
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.drag_n_s_m",
+        all: Some(Spread::Within(0.17, 0.38)),
+        source: "0.175 (RotorS), 0.33 (Faessler), 0.38 N s/m (PX4's Iris)",
+        truth: |s| vec![s.vehicle.air.drag.linear],
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.drag_area_m2",
+        all: Some(Spread::Within(0.03, 0.05)),
+        source: "platform, battery and arms (assumed)",
+        truth: |s| vec![s.vehicle.air.drag.area],
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.flapping_deg_s_m",
+        all: Some(Spread::Within(0.0, 0.3)),
+        source: "0.3° per m/s of a hinged blade, stiff ones less",
+        truth: |s| vec![s.vehicle.air.drag.flapping / DEGREE],
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.arm_wash_percent",
+        all: Some(Spread::Within(1.7, 5.0)),
+        source: "arms of 6 to 22 mm under a 5-inch propeller (a bench of shendrones); in the hover's throttle",
+        truth: |s| vec![100.0 * s.vehicle.air.wash.loss],
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.arm_buffet_percent",
+        all: Some(Spread::Within(0.5, 2.0)),
+        source: "assumed (arXiv 2502.12716 names it)",
+        truth: |s| vec![100.0 * s.vehicle.air.wash.buffet],
+        ..FIXED
+    },
+    Quantity {
+        key: "world.ground_effect",
+        all: Some(Spread::Within(0.8, 1.2)),
+        source: "Sanchez-Cuevas 2017, and its scatter",
+        truth: |s| vec![s.world.air.ground_effect],
+        ..FIXED
+    },
+    Quantity {
+        key: "world.pipe_ground_effect",
+        all: Some(Spread::Within(0.2, 1.5)),
+        source: "between an image of the pipe and the disc's share over it; rough surfaces raise it (estimated)",
+        truth: |s| vec![s.world.air.pipe_ground_effect],
+        ..FIXED
+    },
+    Quantity {
+        key: "world.pipe_shedding",
+        all: Some(Spread::Within(0.0, 0.3)),
+        source: "lift of a cylinder's wake (assumed): 0.1 to 0.3 N at 2 Hz in 3 m/s",
+        truth: |s| vec![s.world.air.wind.shedding],
         ..FIXED
     },
     Quantity {
@@ -406,6 +584,17 @@ pub const QUANTITIES: &[Quantity] = &[
         ..FIXED
     },
 ];
+
+/// Mean of an arm's numbers each.
+fn mean(numbers: &[f64]) -> f64 {
+    numbers.iter().sum::<f64>() / numbers.len().max(1) as f64
+}
+
+/// Thrust that the arms receive on the scenario's day over that of the nominal rotor in the standard's air.
+fn received(s: &Scenario) -> f64 {
+    let v = &s.vehicle;
+    s.world.air.density / STANDARD_DENSITY * mean(&v.rotor_thrust) * (1.0 - v.air.wash.loss)
+}
 
 /// Elastic slope of the stack's arm without thrust over that of the nominal one.
 fn assumed_gain(s: &Scenario) -> f64 {

@@ -239,7 +239,7 @@ impl Settings {
             mass_kg: v.body.mass,
             inertia_kgm2: v.body.inertia,
             torque_ratio_m: v.rotor.torque_ratio,
-            motor_tau_s: v.rotor.time_constant,
+            motor_tau_s: v.rotor.spin.up,
             thrust_max_n: v.rotor.thrust_max,
             gust_force_n: w.gust_force,
             gust_moment_nm: w.gust_moment,

@@ -100,7 +100,7 @@ mod tests {
             assert_eq!(sampled.scenario.seed, seed);
             assert!((vehicle.body.mass - f64::from(params.mass)).abs() < 1e-6);
             assert!((vehicle.infill - f64::from(params.infill)).abs() < 1e-5);
-            assert!((vehicle.rotor.time_constant - f64::from(params.motor_tau)).abs() < 1e-6);
+            assert!((vehicle.rotor.spin.up - f64::from(params.motor_tau)).abs() < 1e-6);
             assert!((vehicle.body.inertia[2] - f64::from(params.inertia_yaw)).abs() < 1e-6);
             assert_ne!(vehicle.arm_gain, nominal.vehicle.arm_gain);
             assert_eq!(params.arm_a1, nominal.params.arm_a1);
