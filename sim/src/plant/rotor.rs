@@ -46,7 +46,8 @@ impl RotorSpec {
     /// Steady thrust (N) at `command` (0..1) and `voltage` V.
     #[must_use]
     pub fn steady_thrust(&self, command: f64, voltage: f64) -> f64 {
-        self.thrust_max * steady_share(command, voltage).powi(2)
+        let share = steady_share(command, voltage);
+        self.thrust_max * (share * share)
     }
 }
 

@@ -3,13 +3,14 @@
 use std::f64::consts::TAU;
 
 use glam::DVec3;
-use rand_distr::{Distribution, StandardNormal};
+use rand::distr::Distribution;
 use rand_pcg::Pcg64Mcg;
 use sophie_control::attitude::mounting::Mounting;
 use sophie_control::chain::ImuReading;
 use sophie_control::maths::vector::Vec3;
 use sophie_control::params::Params;
 
+use crate::normal::StandardNormal;
 use crate::streams::Streams;
 
 /// Default sample rate, samples/s.
@@ -110,7 +111,7 @@ impl Imu {
             if *phase > TAU {
                 *phase -= TAU;
             }
-            let size = (speed / 600.0).powi(2) * (*phase + i as f64).sin();
+            let size = speed * speed / (600.0 * 600.0) * libm::sin(*phase + i as f64);
             shake_gyro += DVec3::new(size, -size, 0.3 * size) * VIBRATION.0;
             shake_accel += DVec3::new(size, 0.7 * size, size) * VIBRATION.1;
         }
@@ -176,7 +177,7 @@ mod tests {
                 .map(|_| f64::from(imu.sample(DVec3::ZERO, DVec3::ZERO, &[0.0; 4]).gyro.x))
                 .collect();
             let mean = x.iter().sum::<f64>() / x.len() as f64;
-            (x.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / x.len() as f64).sqrt()
+            (x.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / x.len() as f64).sqrt()
         };
         // Twice the band gives √2 of the noise.
         let (slow, fast) = (spread(ImuRate::Hz1000), spread(ImuRate::Hz8000));
