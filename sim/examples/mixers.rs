@@ -34,7 +34,8 @@ fn hover(configuration: Configuration, gain_k: f64, mixer: Variant, gain: f32, m
 fn rms(samples: &[&Sample], axis: usize) -> f64 {
     let square = |s: &&Sample| {
         let error = s.attitude[axis] - s.attitude_setpoint[axis];
-        error.sin().atan2(error.cos()).powi(2)
+        let error = libm::atan2(libm::sin(error), libm::cos(error));
+        error * error
     };
     (samples.iter().map(square).sum::<f64>() / samples.len().max(1) as f64)
         .sqrt()

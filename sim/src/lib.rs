@@ -5,6 +5,7 @@ pub mod check;
 pub mod devices;
 pub mod flight;
 pub mod live;
+pub mod normal;
 pub mod parallel;
 pub mod pilot;
 pub mod plant;

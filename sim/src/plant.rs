@@ -208,9 +208,9 @@ impl Plant {
         let q = self.base.state.pose.attitude;
         let (w, x, y, z) = (q.w, q.x, q.y, q.z);
         [
-            (2.0 * (w * x + y * z)).atan2(1.0 - 2.0 * (x * x + y * y)),
-            (2.0 * (w * y - z * x)).clamp(-1.0, 1.0).asin(),
-            (2.0 * (w * z + x * y)).atan2(1.0 - 2.0 * (y * y + z * z)),
+            libm::atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y)),
+            libm::asin((2.0 * (w * y - z * x)).clamp(-1.0, 1.0)),
+            libm::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)),
         ]
     }
 
@@ -409,7 +409,7 @@ impl Base {
             load.add(belly.force_body, belly.moment_body);
         }
         let across = pose.position - DVec3::new(pose.position.x, self.pipe.east, self.pipe.down);
-        let near = across.length_squared() < (self.pipe.radius + NEAR).powi(2);
+        let near = across.length() < self.pipe.radius + NEAR;
         if near {
             let belly = self.pipe_belly.step(STEP, &pose, &Surface::Pipe(self.pipe));
             load.add(belly.force_body, belly.moment_body);

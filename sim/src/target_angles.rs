@@ -6,7 +6,11 @@ use sophie_control::attitude::attitude_loop::Target;
 #[must_use]
 pub fn angles(target: Target) -> [f64; 3] {
     let [x, y, z] = target.down.to_array().map(f64::from);
-    [y.atan2(z), (-x).atan2(y.hypot(z)), f64::from(target.ahead)]
+    [
+        libm::atan2(y, z),
+        libm::atan2(-x, libm::hypot(y, z)),
+        f64::from(target.ahead),
+    ]
 }
 
 #[cfg(test)]

@@ -41,7 +41,8 @@ impl Trial {
             arm.integrate(0.0, 0.0);
             if self.gain_k > 0.0 {
                 let inertia = sophie_sim::plant::hinged::link::TIP_MASS
-                    * sophie_sim::plant::contact::ARM_LENGTH.powi(2);
+                    * sophie_sim::plant::contact::ARM_LENGTH
+                    * sophie_sim::plant::contact::ARM_LENGTH;
                 for _ in 0..(REST / STEP) as usize {
                     arm.load(thrust, 0.0, DVec3::new(0.0, 0.0, GRAVITY), false);
                     arm.integrate(STEP, arm.generalised / inertia);

@@ -84,7 +84,7 @@ fn rig(scenario: &Scenario, studied: Option<Studied>) -> Rig {
 /// Upset, spinning, or far off a kept heading.
 fn lost(rig: &Rig, heading: Option<f64>) -> bool {
     let [roll, pitch, yaw] = rig.plant.euler();
-    let off = heading.map_or(0.0, |wanted| (yaw - wanted).sin().atan2((yaw - wanted).cos()));
+    let off = heading.map_or(0.0, |wanted| libm::remainder(yaw - wanted, std::f64::consts::TAU));
     let upset = roll.abs() > UPSET || pitch.abs() > UPSET || off.abs() > SPUN;
     let omega = rig.plant.pose().omega;
     upset || !omega.is_finite() || omega.z.abs() > SPIN

@@ -123,7 +123,11 @@ impl ArmImus for FakeArms {
         self.0.work(400).await?;
         self.1[arm].work(10).await?;
         let left = if arm < 2 { self.2.get() } else { 0.0 };
-        Ok(Vec3::new(0.0, GRAVITY * left.sin(), GRAVITY * left.cos()))
+        Ok(Vec3::new(
+            0.0,
+            GRAVITY * libm::sinf(left),
+            GRAVITY * libm::cosf(left),
+        ))
     }
 }
 

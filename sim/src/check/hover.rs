@@ -58,7 +58,7 @@ impl Built {
     pub fn lift(&self, thrust: f64) -> f64 {
         self.arms
             .iter()
-            .map(|arm| thrust * arm.static_tilt(thrust).cos())
+            .map(|arm| thrust * libm::cos(arm.static_tilt(thrust)))
             .sum()
     }
 

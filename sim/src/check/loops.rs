@@ -53,8 +53,8 @@ pub fn margins_of(vehicle: &Response, laws: &Laws, axis: usize) -> Margins {
 /// From [`LOWEST`] to half the control rate, rad/s.
 fn frequencies() -> impl Iterator<Item = f64> {
     let top = std::f64::consts::PI * f64::from(CONTROL_RATE_HZ);
-    let count = ((top / LOWEST).log10() * PER_DECADE) as i32;
-    (0..=count).map(move |i| LOWEST * (top / LOWEST).powf(f64::from(i) / f64::from(count)))
+    let count = (libm::log10(top / LOWEST) * PER_DECADE) as i32;
+    (0..=count).map(move |i| LOWEST * libm::pow(top / LOWEST, f64::from(i) / f64::from(count)))
 }
 
 #[cfg(test)]

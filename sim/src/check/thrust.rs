@@ -29,7 +29,7 @@ pub fn to_weight(scenario: &Scenario, built: &Built, perches: bool) -> Row {
     let rotor = &scenario.vehicle.rotor;
     let ratio = built.lift(rotor.thrust_max) / built.weight;
     let landing = (1.0 + BRAKE + gusts(scenario) / built.weight) / critical_share(scenario);
-    let escape = f64::from(ESCAPE_LIFT / ESCAPE_LEAN.cos());
+    let escape = f64::from(ESCAPE_LIFT / libm::cosf(ESCAPE_LEAN));
     let needed = if perches { landing.max(escape) } else { landing };
     Row::new("thrust to weight", ratio, "", Limit::AtLeast(needed))
         .advise("make it lighter, or fit stronger rotors")

@@ -15,10 +15,10 @@ use crate::scenario::Scenario;
 /// the vehicle in hover, its gusts likewise.
 pub fn row(scenario: &Scenario, built: &Built) -> Row {
     let lift = built.lift(scenario.vehicle.rotor.thrust_max);
-    let upright = (built.weight / lift).clamp(0.0, 1.0).acos();
+    let upright = libm::acos((built.weight / lift).clamp(0.0, 1.0));
     let lean = upright.min(f64::from(scenario.params.stick_angle));
     let force = if lean.is_finite() {
-        built.weight * lean.tan()
+        built.weight * libm::tan(lean)
     } else {
         0.0
     };
@@ -61,7 +61,7 @@ mod tests {
         let mut s = Scenario::default_mission();
         // 17.70 N · tan 0.61 rad.
         let strong = row(&s, &Built::of(&s)).value;
-        assert!((strong - 17.70 * 0.61_f64.tan()).abs() < 0.05, "{strong}");
+        assert!((strong - 17.70 * libm::tan(0.61_f64)).abs() < 0.05, "{strong}");
         s.vehicle.body.mass = 3.0;
         let built = Built::of(&s);
         let weak = row(&s, &built).value;

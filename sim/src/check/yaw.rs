@@ -75,7 +75,7 @@ fn yaw_thrusts(scenario: &Scenario, thrust: f64) -> PerArm<f64> {
         .tilt()
         .tilt()
         .iter()
-        .map(|tilt| thrust as f32 * tilt.cos())
+        .map(|tilt| thrust as f32 * libm::cosf(*tilt))
         .sum();
     let mut at = |yaw: f32| {
         let wrench = Wrench {

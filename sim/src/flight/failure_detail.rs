@@ -144,10 +144,10 @@ mod tests {
 
     #[test]
     fn swings_are_reported_and_a_manoeuvre_is_not() {
-        let swinging = attitude(|t| 0.3 * (2.0 * PI * 3.0 * t).sin());
+        let swinging = attitude(|t| 0.3 * libm::sin(2.0 * PI * 3.0 * t));
         assert!(swings(&swinging).unwrap().starts_with("pitch swings by 34 deg"));
-        assert_eq!(swings(&attitude(|t| 0.08 * (2.0 * PI * 3.0 * t).sin())), None);
-        assert_eq!(swings(&attitude(|t| 0.45 * (2.0 * PI * 0.4 * t).sin())), None);
+        assert_eq!(swings(&attitude(|t| 0.08 * libm::sin(2.0 * PI * 3.0 * t))), None);
+        assert_eq!(swings(&attitude(|t| 0.45 * libm::sin(2.0 * PI * 0.4 * t))), None);
         assert_eq!(swings(&[]), None);
     }
 }

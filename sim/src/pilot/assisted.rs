@@ -61,7 +61,7 @@ impl Mission {
             throttle: CENTRE + zone + climb * (CENTRE - ZONE),
             ..self.centred(v)
         };
-        let off = away.length().hypot(v.height() - height);
+        let off = libm::hypot(away.length(), v.height() - height);
         let there = off < REACHED && v.seen.velocity.length() < REACHED_SPEED;
         if self.held_for(there, 1.0, dt) {
             self.hold_switch = false;

@@ -27,9 +27,10 @@ impl Mission {
     pub(super) fn fly_to_pipe_held(&mut self, v: &View<'_>, dt: f64) -> Progress {
         let height = self.pipe_top + OVER;
         if !self.hold_switch && self.phase == Phase::Start {
-            let off = (v.seen.position.truncate() - self.pipe)
-                .length()
-                .hypot(v.height() - height);
+            let off = libm::hypot(
+                (v.seen.position.truncate() - self.pipe).length(),
+                v.height() - height,
+            );
             let near = off < NEAR && v.seen.velocity.length() < NEAR_SPEED;
             if !self.held_for(near, 1.0, dt) {
                 return Progress::Going(self.go_to(v, self.pipe, height, dt));

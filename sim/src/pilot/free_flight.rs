@@ -80,7 +80,7 @@ impl Mission {
         }
         let throttle = self
             .guidance
-            .climb(Vertical::Height(self.height), angle.cos(), dt);
+            .climb(Vertical::Height(self.height), libm::cos(angle), dt);
         let yaw = self.guidance.rudder(&v.seen, self.heading, 0.0);
         Progress::Going(StickTarget {
             roll: side * ROLL_LEAD * angle / self.stick_angle,
@@ -92,9 +92,7 @@ impl Mission {
 
     pub(super) fn fly_to(&mut self, v: &View<'_>, place: DVec2, height: f64, dt: f64) -> Progress {
         let target = self.go_to(v, place, height, dt);
-        let off = (v.seen.position.truncate() - place)
-            .length()
-            .hypot(v.height() - height);
+        let off = libm::hypot((v.seen.position.truncate() - place).length(), v.height() - height);
         let there = off < REACHED && v.seen.velocity.length() < REACHED_SPEED;
         if self.held_for(there, 1.0, dt) {
             Progress::Done(target)

@@ -124,11 +124,11 @@ impl Guidance {
     pub fn foresee(&mut self, seen: &VisibleState, now: f64, sticks: [f64; 4], dt: f64) {
         let [roll, pitch, _, throttle] = sticks;
         let body = DVec2::new(
-            -GRAVITY * (pitch * self.stick_angle).tan(),
-            GRAVITY * (roll * self.stick_angle).tan(),
+            -GRAVITY * libm::tan(pitch * self.stick_angle),
+            GRAVITY * libm::tan(roll * self.stick_angle),
         );
         let horizontal = DVec2::from_angle(seen.yaw).rotate(body) - self.wind;
-        let upright = (roll * self.stick_angle).cos() * (pitch * self.stick_angle).cos();
+        let upright = libm::cos(roll * self.stick_angle) * libm::cos(pitch * self.stick_angle);
         let down = GRAVITY * (1.0 - throttle * upright / self.hover);
         self.foresight.note(now, horizontal, down, dt);
         self.ahead = self.foresight.ahead(seen, dt);
@@ -145,12 +145,12 @@ impl Guidance {
         }
         let horizontal = (error * SPEED_GAIN + self.wind).clamp_length_max(ACCELERATION_MAX);
         let body = DVec2::from_angle(-seen.yaw).rotate(horizontal);
-        let (pitch, roll) = (-(body.x / GRAVITY).atan(), (body.y / GRAVITY).atan());
+        let (pitch, roll) = (-libm::atan(body.x / GRAVITY), libm::atan(body.y / GRAVITY));
         StickTarget {
             roll: roll / self.stick_angle,
             pitch: pitch / self.stick_angle,
             yaw: self.rudder(seen, course.heading, course.turning),
-            throttle: self.climb(course.vertical, roll.cos() * pitch.cos(), dt),
+            throttle: self.climb(course.vertical, libm::cos(roll) * libm::cos(pitch), dt),
             ..Default::default()
         }
     }
@@ -159,7 +159,7 @@ impl Guidance {
     /// level.
     pub fn trim(&self, seen: &VisibleState) -> (f64, f64) {
         let body = DVec2::from_angle(-seen.yaw).rotate(self.wind);
-        let (roll, pitch) = ((body.y / GRAVITY).atan(), -(body.x / GRAVITY).atan());
+        let (roll, pitch) = (libm::atan(body.y / GRAVITY), -libm::atan(body.x / GRAVITY));
         (roll / self.stick_angle, pitch / self.stick_angle)
     }
 

@@ -344,7 +344,7 @@ impl Mission {
                 heading.to_degrees()
             ),
             Step::FlyTo { north, east, height } => {
-                let away = off(DVec2::new(north, east)).hypot(v.height() - height);
+                let away = libm::hypot(off(DVec2::new(north, east)), v.height() - height);
                 format!("{away:.2} m from the point, {}", v.shown())
             }
             Step::Land => format!("height {:.2} m, {}", v.height(), v.shown()),

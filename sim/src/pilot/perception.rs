@@ -3,10 +3,11 @@
 use std::collections::VecDeque;
 
 use glam::{DVec2, DVec3};
-use rand_distr::{Distribution, StandardNormal};
+use rand::distr::Distribution;
 use rand_pcg::Pcg64Mcg;
 
 use super::VisibleState;
+use crate::normal::StandardNormal;
 use crate::streams::Streams;
 
 /// Correlation time of the visual error, s (assumed).

@@ -108,9 +108,10 @@ impl Mission {
     }
 
     fn settled(&mut self, v: &View<'_>, dt: f64) -> bool {
-        let off = (v.seen.position.truncate() - self.pipe)
-            .length()
-            .hypot(v.height() - self.pipe_top - OVER);
+        let off = libm::hypot(
+            (v.seen.position.truncate() - self.pipe).length(),
+            v.height() - self.pipe_top - OVER,
+        );
         let there = off < SETTLED && v.seen.velocity.length() < SETTLED_SPEED;
         self.held_for(there, SETTLED_TIME, dt)
     }

@@ -45,7 +45,7 @@ impl Referee {
                 "lost yaw: heading {error:.0} deg off, turning at {turn:.0} deg/s"
             ));
         }
-        let tilt = (truth.roll.cos() * truth.pitch.cos()).clamp(-1.0, 1.0).acos();
+        let tilt = libm::acos((libm::cos(truth.roll) * libm::cos(truth.pitch)).clamp(-1.0, 1.0));
         let p = truth.position;
         if !(p.is_finite() && tilt.is_finite() && yaw.is_finite()) {
             return Some("lost the vehicle: its position is no number".to_owned());

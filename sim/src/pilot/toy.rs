@@ -189,9 +189,10 @@ impl Toy {
         self.gust.step(DT);
 
         let mass = f64::from(self.scenario.params.mass);
-        let lean = DVec2::from_angle(s.yaw)
-            .rotate(DVec2::new(-s.pitch.tan(), s.roll.tan()) * (s.roll.cos() * s.pitch.cos()));
-        let up = s.roll.cos() * s.pitch.cos();
+        let lean = DVec2::from_angle(s.yaw).rotate(
+            DVec2::new(-libm::tan(s.pitch), libm::tan(s.roll)) * (libm::cos(s.roll) * libm::cos(s.pitch)),
+        );
+        let up = libm::cos(s.roll) * libm::cos(s.pitch);
         let mut force = self.thrust * lean.extend(-up) + self.gust.force() + self.wind;
         force.z += mass * f64::from(GRAVITY);
         let depth = floor(&self.scenario, s.position) + BELLY + s.position.z;

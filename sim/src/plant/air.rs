@@ -151,7 +151,7 @@ struct Hub {
 impl Hub {
     fn new(arm: usize, tilt: f64) -> Self {
         let (tip, _) = ArmSkin::new(arm).point(tilt, ARM_LENGTH);
-        let (sin, cos) = tilt.sin_cos();
+        let (sin, cos) = libm::sincos(tilt);
         let axis = DVec3::new(0.0, -tip.y.signum() * sin, -cos);
         Self {
             place: tip + HEIGHT * axis,

@@ -334,7 +334,7 @@ impl ArmSkin {
                 q * (0.5 - u * u / 8.0),
             )
         } else {
-            let (sin, cos) = u.sin_cos();
+            let (sin, cos) = libm::sincos(u);
             let radius = ARM_LENGTH / alpha;
             (
                 radius * sin,
@@ -401,7 +401,7 @@ impl ArmTip {
 
     /// Advances by `dt` s; the load's pressure is 0.
     pub fn step(&mut self, dt: f64, alpha: f64, alpha_rate: f64, pose: &Pose) -> SkinLoad {
-        let (sin, cos) = alpha.sin_cos();
+        let (sin, cos) = libm::sincos(alpha);
         let r = DVec3::new(self.x, self.side * ARM_LENGTH * cos, HINGE_Z - ARM_LENGTH * sin);
         let by_alpha = DVec3::new(0.0, -self.side * ARM_LENGTH * sin, -ARM_LENGTH * cos);
         let velocity = pose.point_velocity(r, by_alpha * alpha_rate);

@@ -20,15 +20,15 @@ pub fn clearance(pose: &Pose, tilt: PerArm<f64>, pipe: &Pipe) -> PerArm<f64> {
         let skin = ArmSkin::new(arm);
         let (tip, _) = skin.point(tilt[arm], ARM_LENGTH);
         let side = tip.y.signum();
-        let (sin, cos) = tilt[arm].sin_cos();
+        let (sin, cos) = libm::sincos(tilt[arm]);
         // Along the arm at its end, and out of its upper side; body axes.
         let out = DVec3::new(0.0, side * cos, -sin);
         let up = DVec3::new(0.0, -side * sin, -cos);
         let centre = pose.point(tip + HEIGHT * up);
         let [along, across] = [DVec3::X, out].map(|axis| RADIUS * (pose.attitude * axis));
-        let beside = |point: DVec3| (point.y - pipe.east).hypot(point.z - pipe.down);
+        let beside = |point: DVec3| libm::hypot(point.y - pipe.east, point.z - pipe.down);
         let rim = (0..RIM).map(|i| {
-            let (sin, cos) = (std::f64::consts::TAU * f64::from(i) / f64::from(RIM)).sin_cos();
+            let (sin, cos) = libm::sincos(std::f64::consts::TAU * f64::from(i) / f64::from(RIM));
             centre + cos * along + sin * across
         });
         rim.map(beside).fold(beside(centre), f64::min) - pipe.radius

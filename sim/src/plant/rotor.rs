@@ -72,7 +72,8 @@ impl RotorSpec {
     /// Steady thrust (N) at `command` (0..1) and `voltage` V.
     #[must_use]
     pub fn steady_thrust(&self, command: f64, voltage: f64) -> f64 {
-        self.thrust_max * self.steady_share(command, voltage, 1.0).powi(2)
+        let share = self.steady_share(command, voltage, 1.0);
+        self.thrust_max * (share * share)
     }
 
     /// Steady speed over full speed at `command` (0..1), `voltage` V and `density` over the standard's.
@@ -81,7 +82,7 @@ impl RotorSpec {
             None => steady_share(command, voltage, density),
             Some(power) => {
                 let nominal = steady_share(command, NOMINAL_VOLTAGE, density);
-                nominal * (voltage.max(0.0) / NOMINAL_VOLTAGE).powf(0.5 * power)
+                nominal * libm::pow(voltage.max(0.0) / NOMINAL_VOLTAGE, 0.5 * power)
             }
         }
     }

@@ -1,8 +1,9 @@
 //! Voltage dividers of both batteries and current sensor.
 
-use rand_distr::{Distribution, StandardNormal};
+use rand::distr::Distribution;
 use rand_pcg::Pcg64Mcg;
 
+use crate::normal::StandardNormal;
 use crate::streams::Streams;
 
 /// Reference voltage of the converter, V.

@@ -8,10 +8,11 @@
 
 use std::collections::VecDeque;
 
-use rand_distr::{Distribution, StandardNormal};
+use rand::distr::Distribution;
 use rand_pcg::Pcg64Mcg;
 use sophie_control::navigation::air_pressure::AirPressure;
 
+use crate::normal::StandardNormal;
 use crate::streams::Streams;
 
 /// Time of a measurement, µs.
@@ -109,7 +110,7 @@ impl Barometer {
         self.wash += (WASH * thrust - self.wash) * DT / (DT + WASH_LAG);
         let shake = SWING * (2.0 * DT / SWING_TIME).sqrt() * self.normal();
         self.swing += shake - self.swing * DT / SWING_TIME;
-        let air = GROUND * (-height / SCALE_HEIGHT).exp();
+        let air = GROUND * libm::exp(-height / SCALE_HEIGHT);
         self.recent
             .push_back(air + self.zero - self.wash + self.swing * thrust);
         if self.recent.len() > (MEASUREMENT_US / 1000) as usize {
@@ -172,7 +173,7 @@ mod tests {
         let mean = values.iter().sum::<f64>() / n;
         (
             mean,
-            (values.iter().map(|p| (p - mean).powi(2)).sum::<f64>() / n).sqrt(),
+            (values.iter().map(|p| (p - mean) * (p - mean)).sum::<f64>() / n).sqrt(),
         )
     }
 

@@ -12,10 +12,11 @@ use std::collections::VecDeque;
 
 use glam::{DQuat, DVec3};
 use rand::Rng;
-use rand_distr::{Distribution, StandardNormal};
+use rand::distr::Distribution;
 use rand_pcg::Pcg64Mcg;
 use sophie_drivers::msp::Message;
 
+use crate::normal::StandardNormal;
 use crate::plant::contact::{Pipe, Pose};
 
 use crate::streams::Streams;
@@ -279,7 +280,8 @@ impl FlowModule {
         for i in 0..RAYS {
             for j in 0..RAYS {
                 // Rays through the centres of equal parts of the view.
-                let side = |k: i32| ((f64::from(k) + 0.5) / f64::from(RAYS) * 2.0 - 1.0) * HALF_VIEW.tan();
+                let side =
+                    |k: i32| ((f64::from(k) + 0.5) / f64::from(RAYS) * 2.0 - 1.0) * libm::tan(HALF_VIEW);
                 let (u, w) = (side(i), side(j));
                 // A ray sees texture where it meets a surface; a ray into the sky sees none.
                 let direction = to.1 * DVec3::new(u, w, 1.0);
@@ -307,7 +309,7 @@ impl FlowModule {
 
     /// Range along the beam, m: the median of its rays.
     fn distance(&self, (from, attitude): (DVec3, DQuat)) -> Option<f64> {
-        let side = HALF_BEAM.tan();
+        let side = libm::tan(HALF_BEAM);
         let mut found = [(0.0, 0.0), (side, 0.0), (-side, 0.0), (0.0, side), (0.0, -side)].map(|(u, w)| {
             self.pipe
                 .or_ground_along(from, attitude * DVec3::new(u, w, 1.0))
@@ -436,7 +438,7 @@ mod tests {
         let (_, range, _) = seen_by(lens, 1, |_| {
             (DVec3::new(-8.0, 0.0, -1.05), DQuat::from_rotation_x(0.2))
         });
-        let (sin, cos) = 0.2f64.sin_cos();
+        let (sin, cos) = libm::sincos(0.2f64);
         near(range.unwrap(), (1.05 - 0.05 * cos - 0.1 * sin) / cos, 0.02);
     }
 
@@ -513,7 +515,7 @@ mod tests {
         let begin = module.ms;
         while module.ms < begin + 9000 {
             let t = module.ms as f64 * 1e-3;
-            let (roll, pitch) = (0.35 * (3.5 * t).sin(), 0.35 * (4.3 * t).sin());
+            let (roll, pitch) = (0.35 * libm::sin(3.5 * t), 0.35 * libm::sin(4.3 * t));
             let attitude = DQuat::from_rotation_y(pitch) * DQuat::from_rotation_x(roll);
             let pivot = DVec3::new(-8.0, 0.0, -height - 0.1);
             module.step(&Pose {

@@ -4,9 +4,10 @@
 //! force (10 kΩ at 1 N), with part-to-part spread, hysteresis and creep: in all the paper's error of about 50 N/m² at
 //! 950 N/m².
 
-use rand_distr::{Distribution, StandardNormal};
+use rand::distr::Distribution;
 use rand_pcg::Pcg64Mcg;
 
+use crate::normal::StandardNormal;
 use crate::streams::Streams;
 
 /// Area, m²: 38 mm square (datasheet).
@@ -117,7 +118,7 @@ impl FsrSensor {
         self.force = self
             .force
             .clamp(force * (1.0 - HYSTERESIS), force * (1.0 + HYSTERESIS));
-        let keep = (-dt / CREEP.1).exp();
+        let keep = libm::exp(-dt / CREEP.1);
         self.creep = self.creep * keep + CREEP.0 * (1.0 - keep * keep).sqrt() * normal();
         let x = match self.broken {
             Some(FsrBreak::Open) => 0.0,
@@ -125,7 +126,7 @@ impl FsrSensor {
             None | Some(FsrBreak::Stuck) if force < THRESHOLD => 0.0,
             None | Some(FsrBreak::Stuck) => {
                 let drift = 1.0 + self.creep + NOISE * normal();
-                let load = self.gain * self.force.powf(self.exponent) * drift * self.divider;
+                let load = self.gain * libm::pow(self.force, self.exponent) * drift * self.divider;
                 load / (1.0 + load)
             }
         };

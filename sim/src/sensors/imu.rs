@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use glam::DVec3;
-use rand_distr::{Distribution, StandardNormal};
+use rand::distr::Distribution;
 use rand_pcg::Pcg64Mcg;
 use sophie_control::attitude::mounting::Mounting;
 use sophie_control::chain::ImuReading;
@@ -11,6 +11,7 @@ use sophie_control::maths::vector::Vec3;
 use sophie_control::params::Params;
 
 use super::soft_mount::SoftMount;
+use crate::normal::StandardNormal;
 use crate::streams::Streams;
 
 /// Default sample rate, samples/s.
@@ -148,9 +149,10 @@ impl Imu {
             if *phase > TAU {
                 *phase -= TAU;
             }
-            let mut size = (speed / 600.0).powi(2) * (*phase + i as f64).sin();
+            let share = speed * speed / (600.0 * 600.0);
+            let mut size = share * libm::sin(*phase + i as f64);
             if self.vibration.twice > 0.0 {
-                size += self.vibration.twice * (speed / 600.0).powi(2) * (2.0 * *phase).cos();
+                size += self.vibration.twice * share * libm::cos(2.0 * *phase);
             }
             let once = self.vibration.once;
             shake_gyro += DVec3::new(size, -size, 0.3 * size) * (RATE_SHARE * once);
@@ -221,7 +223,7 @@ mod tests {
                 .map(|_| f64::from(imu.sample(DVec3::ZERO, DVec3::ZERO, &[0.0; 4]).gyro.x))
                 .collect();
             let mean = x.iter().sum::<f64>() / x.len() as f64;
-            (x.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / x.len() as f64).sqrt()
+            (x.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / x.len() as f64).sqrt()
         };
         // Twice the band gives √2 of the noise.
         let (slow, fast) = (spread(ImuRate::Hz1000), spread(ImuRate::Hz8000));
@@ -260,7 +262,7 @@ mod tests {
                 .skip(4000)
                 .collect();
             let mean = x.iter().sum::<f64>() / x.len() as f64;
-            (x.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / x.len() as f64).sqrt()
+            (x.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / x.len() as f64).sqrt()
         };
         // Two sines of 4 m/s²: 4.
         let rigid = rms(None);

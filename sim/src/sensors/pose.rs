@@ -6,9 +6,10 @@ use std::f64::consts::PI;
 
 use glam::{DQuat, DVec3};
 use rand::Rng;
-use rand_distr::{Distribution, StandardNormal};
+use rand::distr::Distribution;
 use rand_pcg::Pcg64Mcg;
 
+use crate::normal::StandardNormal;
 use crate::plant::contact::Pose;
 
 use crate::streams::Streams;

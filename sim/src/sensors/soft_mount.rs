@@ -62,7 +62,7 @@ mod tests {
         let n = (4.0 * RATE) as u32;
         let mut most: f64 = 0.0;
         for i in 0..n {
-            let input = (TAU * frequency * f64::from(i) / RATE).sin();
+            let input = libm::sin(TAU * frequency * f64::from(i) / RATE);
             let output = mount.step(1.0 / RATE, DVec3::splat(input)).x;
             if i > n / 2 {
                 most = most.max(output.abs());

@@ -4,7 +4,7 @@
 use std::collections::VecDeque;
 
 use glam::{DQuat, DVec3};
-use rand_distr::{Distribution, StandardNormal};
+use rand::distr::Distribution;
 use rand_pcg::Pcg64Mcg;
 use sophie_control::gripper::contact_pressure::{Fsr, FsrScale};
 use sophie_control::gripper::grip::{ArmGrip, ArmState};
@@ -12,6 +12,7 @@ use sophie_control::gripper::tendon::{Drive, Reel, TendonDrive};
 use sophie_control::gripper::{ArmGripper, ArmInput, Config, Pressure};
 use sophie_control::params::Params;
 
+use crate::normal::StandardNormal;
 use crate::plant::beam::rest::pipe_under;
 use crate::plant::beam::{BeamArm, BeamSpec, Masses};
 use crate::plant::body::BodySpec;

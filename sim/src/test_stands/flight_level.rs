@@ -248,8 +248,8 @@ impl Judged {
         for (worst, angle) in self.worst.iter_mut().zip([off, pitch, yaw]) {
             *worst = worst.max(angle.abs());
         }
-        self.square_roll += off.powi(2);
-        self.square_yaw += yaw.powi(2);
+        self.square_roll += off * off;
+        self.square_yaw += yaw * yaw;
         let mix = rig.links.mix.latest();
         let thrust = mix.map_or(0.0, |m| f64::from(m.value.thrusts[0]));
         self.lowest = self.lowest.min(thrust);

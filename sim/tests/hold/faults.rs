@@ -133,7 +133,7 @@ fn flown(seed: u64, fault: Fault, part: Part, at: f64) -> Option<String> {
     let during = || record.samples.iter().filter(|s| s.t >= at && s.t < at + FAILS);
     let alone = |s: &&Sample| matches!(s.mode, Mode::Approach | Mode::Hold | Mode::Escaping);
     let most = |of: fn(&Sample) -> f64| during().filter(alone).map(of).fold(0.0, f64::max);
-    let lean = most(|s| s.attitude[0].hypot(s.attitude[1]));
+    let lean = most(|s| libm::hypot(s.attitude[0], s.attitude[1]));
     let speed = most(|s| DVec3::from_array(s.velocity).length());
     let low = during().map(|s| -s.position[2]).fold(f64::INFINITY, f64::min);
     let named = fault.named().and_then(|(text, _)| {

@@ -74,7 +74,7 @@ fn errors(samples: &[&Sample]) -> [f64; 3] {
     [
         rms(level.iter().map(|x| x * x).sum()),
         level[(0.95 * n) as usize],
-        rms(samples.iter().map(|s| off(s).z.powi(2)).sum()),
+        rms(samples.iter().map(|s| off(s).z * off(s).z).sum()),
     ]
 }
 
@@ -270,7 +270,7 @@ fn harmless(
     let said = record.events.iter().find(|e| e.text.ends_with(text));
     let at = said.map_or(f64::NAN, |e| e.t - 22.0);
     let most = |of: fn(&Sample) -> f64| samples.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
-    let lean = most(|s| s.attitude[0].hypot(s.attitude[1])).to_degrees();
+    let lean = most(|s| libm::hypot(s.attitude[0], s.attitude[1])).to_degrees();
     let speed = most(|s| DVec3::from_array(s.velocity).length());
     let low = -most(|s| s.position[2]);
     println!("{name}: named after {at:.2} s, lean {lean:.1} deg, {speed:.2} m/s, lowest {low:.2} m");

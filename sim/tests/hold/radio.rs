@@ -37,7 +37,7 @@ fn down(record: &FlightRecord) -> Result<Down, String> {
     let down = Down {
         way: (place(last) - place(first)).truncate().length(),
         beside: (last.position[1] - record.scenario.world.pipe_position[1]).abs(),
-        lean: most(|s| s.attitude[0].hypot(s.attitude[1])).to_degrees(),
+        lean: most(|s| libm::hypot(s.attitude[0], s.attitude[1])).to_degrees(),
         sink: most(|s| s.velocity[2]),
     };
     if last.mode != Mode::Disarmed || last.position[2] < -0.05 {

@@ -7,7 +7,7 @@
 use std::collections::VecDeque;
 
 use glam::{DQuat, DVec3};
-use rand_distr::{Distribution, StandardNormal};
+use rand::distr::Distribution;
 use rand_pcg::Pcg64Mcg;
 use sophie_control::gripper::contact_pressure::{Fsr, FsrScale};
 use sophie_control::gripper::grip::{ArmGrip, ArmState};
@@ -15,6 +15,7 @@ use sophie_control::gripper::grip_fault::GripFault;
 use sophie_control::gripper::tendon::{Drive, ForceLimit, Reel, TendonDrive};
 use sophie_control::gripper::{ArmGripper, ArmInput, Config, Pressure};
 use sophie_control::params::Params;
+use sophie_sim::normal::StandardNormal;
 use sophie_sim::plant::beam::rest::{self, SlowArm, pipe_under};
 use sophie_sim::plant::beam::{BeamArm, BeamSpec, Masses};
 use sophie_sim::plant::body::BodySpec;

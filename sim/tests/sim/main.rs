@@ -9,6 +9,7 @@ mod grip_faults;
 mod hardware_faults;
 mod imu_rates;
 mod links;
+mod maths;
 mod misfit;
 mod motor_map;
 mod motor_pulses;

@@ -66,7 +66,7 @@ fn sinks_and_stands(record: &FlightRecord) {
     assert!(end.position[2] > -STANDS, "stopped {} m up", -end.position[2]);
     let last = record.samples.last().unwrap();
     assert!(last.mode == Mode::Disarmed && last.position[2] > -STANDS);
-    assert!(last.attitude[0].hypot(last.attitude[1]) < 3f64.to_radians());
+    assert!(libm::hypot(last.attitude[0], last.attitude[1]) < 3f64.to_radians());
     assert!(last.thrust.iter().all(|t| *t < 0.2), "{:?}", last.thrust);
 }
 
@@ -178,7 +178,10 @@ fn an_empty_battery_ends_on_the_ground_before_the_voltage_collapses() {
             first.battery_voltage
         );
         let last = record.samples.last().unwrap();
-        let drift = (last.position[0] - first.position[0]).hypot(last.position[1] - first.position[1]);
+        let drift = libm::hypot(
+            last.position[0] - first.position[0],
+            last.position[1] - first.position[1],
+        );
         assert!(drift < 0.5, "{drift} m");
     });
 }

@@ -31,7 +31,7 @@ pub fn sample(seed: u64) -> Result<Scenario, String> {
     let mut scenario = Scenario::parse(&text, &format!("vehicle {seed}"), &Overrides::default())
         .map_err(|e| e.to_string())?;
     // As much too large as too small: sampled evenly in the logarithm.
-    let times = |name: &str| RESPONSE.powf(within(name, (-1.0, 1.0))) as f32;
+    let times = |name: &str| libm::pow(RESPONSE, within(name, (-1.0, 1.0))) as f32;
     scenario.params.tendon_bend *= times("tendon bend");
     scenario.params.tendon_relief *= times("tendon relief");
     Ok(scenario)

@@ -89,7 +89,7 @@ fn integrators(curve: &[(f64, Complex)]) -> u32 {
     let Some(((low, a), (high, b))) = curve.first().zip(curve.get(1)) else {
         return 0;
     };
-    let slope = (a.length() / b.length()).ln() / (high / low).ln();
+    let slope = libm::log(a.length() / b.length()) / libm::log(high / low);
     if slope.is_finite() {
         slope.round().clamp(0.0, 4.0) as u32
     } else {
@@ -161,7 +161,7 @@ mod tests {
                 one_over(s).rotate(lag).rotate(lag) * k
             });
             // Margins are found between frequencies 3 % apart.
-            let (gain, phase) = ((2.0 + m.disk) / (2.0 - m.disk), 2.0 * (0.5 * m.disk).atan());
+            let (gain, phase) = ((2.0 + m.disk) / (2.0 - m.disk), 2.0 * libm::atan(0.5 * m.disk));
             assert!(
                 m.disk > least && gain <= 1.03 * m.gain && phase <= 1.03 * m.phase,
                 "{k}: {m:?}"

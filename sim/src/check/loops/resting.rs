@@ -55,7 +55,10 @@ pub fn resting_margins(scenario: &Scenario, place: Place, share: f64) -> Margins
 pub fn slide(scenario: &Scenario, diameter: f64) -> (f64, f64) {
     let (body, p) = (&scenario.vehicle.body, &scenario.params);
     let radius = 0.5 * diameter;
-    let lever = (radius * radius - Belly::PADS[0].y.powi(2)).max(0.0).sqrt() + BELLY_Z;
+    let lever = (radius * radius - Belly::PADS[0].y * Belly::PADS[0].y)
+        .max(0.0)
+        .sqrt()
+        + BELLY_Z;
     let inertia = body.inertia[ROLL] + body.mass * lever * lever;
     let damping = f64::from(RESTING_ROLL_GAIN * p.rate_p * p.inertia_roll);
     let stiffness = f64::from(p.attitude_p) * damping - body.mass * GRAVITY * lever;

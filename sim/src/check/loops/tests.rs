@@ -16,7 +16,7 @@ fn stiff_level_arms_leave_the_motor_and_the_inertia() {
         let response = hovering.response(axis);
         let slow = response.at(1e-3).length();
         for omega in [1.0, 10.0, 20.0, 60.0] {
-            let lag = 1.0 / f64::hypot(1.0, 0.05 * omega);
+            let lag = 1.0 / libm::hypot(1.0, 0.05 * omega);
             let gain = response.at(1e-3 * omega).length() * omega / slow;
             assert!(
                 (gain / lag - 1.0).abs() < 0.03,

@@ -105,8 +105,8 @@ impl Hovering {
             at_us: 0,
         };
         hovering.settle();
-        let share = hovering.plant.battery_voltage() / f64::from(scenario.params.battery_nominal);
-        let most = v.rotor.thrust_max * share.min(1.0).powi(2);
+        let share = (hovering.plant.battery_voltage() / f64::from(scenario.params.battery_nominal)).min(1.0);
+        let most = v.rotor.thrust_max * share * share;
         let room = (most - 0.25 * thrust).max(0.0) * ROOM_SHARE * 4.0 * ARM_LENGTH;
         hovering.push = (room / PUSH[0]).clamp(0.02, 1.0);
         hovering

@@ -62,7 +62,7 @@ fn share_over(aside: f64, half: f64) -> f64 {
     // Share of the disc left of a chord at `x` radii.
     let left = |x: f64| {
         let x = x.clamp(-1.0, 1.0);
-        (x.asin() + x * (1.0 - x * x).sqrt() + FRAC_PI_2) / PI
+        (libm::asin(x) + x * (1.0 - x * x).sqrt() + FRAC_PI_2) / PI
     };
     left((half - aside) / RADIUS) - left((-half - aside) / RADIUS)
 }

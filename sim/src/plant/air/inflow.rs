@@ -56,7 +56,8 @@ mod tests {
     /// 1.225 · 86² · 0.254⁴ · 0.1185 N static; 0.22 N less per m/s.
     #[test]
     fn hover_is_damped_both_ways() {
-        let (static_thrust, speed) = (1.225 * 86.0_f64.powi(2) * 0.254_f64.powi(4) * 0.1185, 86.0 * TAU);
+        let squared: f64 = 0.254 * 0.254;
+        let (static_thrust, speed) = (1.225 * 86.0 * 86.0 * squared * squared * 0.1185, 86.0 * TAU);
         for climb in [0.5, -0.5] {
             let change = static_thrust * (factor(climb, speed) - 1.0) / climb;
             assert!((change + 0.222).abs() < 0.003, "{change}");

@@ -5,11 +5,12 @@
 //! (arXiv 2502.12716).
 
 use glam::DVec3;
-use rand_distr::{Distribution, StandardNormal};
+use rand::distr::Distribution;
 use rand_pcg::Pcg64Mcg;
 use sophie_control::allocation::wrench::PerArm;
 
 use super::super::gauss_markov::GaussMarkov;
+use crate::normal::StandardNormal;
 use crate::streams::Streams;
 
 /// Correlation time of the buffeting, s (assumed).
@@ -100,7 +101,7 @@ mod tests {
         for _ in 0..n {
             wash.step(STEP);
             for (sum, factor) in squares.iter_mut().zip(wash.factors()) {
-                *sum += (factor - 0.97).powi(2);
+                *sum += (factor - 0.97) * (factor - 0.97);
             }
         }
         for (arm, sum) in squares.iter().enumerate() {

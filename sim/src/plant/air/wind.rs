@@ -1,12 +1,13 @@
 //! Velocity of the air: a steady wind, gusts, and the eddies that it sheds behind the pipe.
 
 use glam::DVec3;
-use rand_distr::{Distribution, StandardNormal};
+use rand::distr::Distribution;
 use rand_pcg::Pcg64Mcg;
 
 use super::super::contact::Pipe;
 use super::super::gauss_markov::GaussMarkov;
 use super::shedding::Shedding;
+use crate::normal::StandardNormal;
 use crate::streams::Streams;
 
 /// Correlation time of the gusts, s: integral times near the ground are 0.36 to 1.5 s (Atmosphere 17, 3, 314).
@@ -51,7 +52,7 @@ impl Wind {
     #[must_use]
     pub fn new(spec: &WindSpec, streams: Streams) -> Self {
         Self {
-            steady: DVec3::new(-spec.from.cos(), -spec.from.sin(), 0.0) * spec.speed,
+            steady: DVec3::new(-libm::cos(spec.from), -libm::sin(spec.from), 0.0) * spec.speed,
             gust: GaussMarkov::new(DVec3::new(1.0, 1.0, 0.5) * spec.gust, GUST_TIME),
             shedding: Shedding::new(spec.shedding),
             rng: streams.of("wind gust"),

@@ -116,8 +116,8 @@ impl BeamArm {
 
     fn place(&mut self) {
         self.places = points(&self.q, &self.rate, [MIDDLE, 1.0]);
-        (self.sin, self.cos) = self.tilt().sin_cos();
-        (self.twist_sin, self.twist_cos) = self.twist.sin_cos();
+        (self.sin, self.cos) = libm::sincos(self.tilt());
+        (self.twist_sin, self.twist_cos) = libm::sincos(self.twist);
     }
 
     /// In body axes.

@@ -53,13 +53,13 @@ impl BeamSpec {
     #[must_use]
     pub fn tapered(spec: &ArmSpec, masses: Masses, zeta: f64, taper: f64) -> Self {
         let (a, b) = spec.elastic();
-        let linear = a / (ARM_LENGTH.powi(2) * tip_by_thrust(taper));
+        let linear = a / (ARM_LENGTH * ARM_LENGTH * tip_by_thrust(taper));
         // ∫ (1 - ξ)² / e dξ is 1/3 for a uniform beam.
         let square: f64 = GAUSS
             .iter()
-            .map(|(xi, weight)| weight * (1.0 - xi).powi(2) / stiffness_share(taper, *xi))
+            .map(|(xi, weight)| weight * (1.0 - xi) * (1.0 - xi) / stiffness_share(taper, *xi))
             .sum();
-        let quadratic = b / (ARM_LENGTH.powi(3) * square);
+        let quadratic = b / (ARM_LENGTH * ARM_LENGTH * ARM_LENGTH * square);
         let knee = if quadratic < 0.0 {
             linear * (1.0 - LEAST_COMPLIANCE) / (-2.0 * quadratic)
         } else {
@@ -143,7 +143,7 @@ impl BeamSpec {
     }
 
     fn straight_mass(&self) -> [PerTerm; TERMS] {
-        let at = |xi: f64| [0.5 * ARM_LENGTH * xi.powi(2), ARM_LENGTH * xi.powi(3) / 3.0];
+        let at = |xi: f64| [0.5 * ARM_LENGTH * xi * xi, ARM_LENGTH * xi * xi * xi / 3.0];
         let (middle, tip) = (at(MIDDLE), at(1.0));
         let Masses {
             middle: m,

@@ -36,9 +36,10 @@ pub fn points<const N: usize>(q: &PerTerm, rate: &PerTerm, ends: [f64; N]) -> [P
         let weight = 0.5 * (end - start) * ARM_LENGTH;
         for share in GAUSS {
             let xi = start + share * (end - start);
-            let (sin, cos) = slope(q, xi).sin_cos();
+            let (sin, cos) = libm::sincos(slope(q, xi));
             let (sin, cos) = (weight * sin, weight * cos);
-            let turning = slope(rate, xi).powi(2);
+            let turning = slope(rate, xi);
+            let turning = turning * turning;
             point.out += cos;
             point.up += sin;
             let mut power = xi;

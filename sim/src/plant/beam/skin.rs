@@ -52,7 +52,7 @@ impl Bent {
 
     /// `depth` m below the neutral line's `point` at ξ.
     fn skin_point(&self, point: &Point, xi: f64, depth: f64) -> SkinPoint {
-        let (sin, cos) = slope(&self.q, xi).sin_cos();
+        let (sin, cos) = libm::sincos(slope(&self.q, xi));
         let body = |out: f64, up: f64| DVec3::new(0.0, self.side * out, -up);
         let mut power = 1.0;
         let by = std::array::from_fn(|k| {

@@ -123,8 +123,8 @@ fn a_drooping_tip_pushes_its_arm_up() {
     // Hinge 20 mm under the body, tip 99 mm under it at 0.46 rad, body at 90 mm.
     let load = tip.step(DT, -0.46, 0.0, &at(DVec3::new(0.0, 0.0, -0.09)));
     // 9.02 mm deep, 1500 N/m; lever L cos α.
-    let force = 1500.0 * (HINGE_Z + ARM_LENGTH * 0.46_f64.sin() - 0.09);
+    let force = 1500.0 * (HINGE_Z + ARM_LENGTH * libm::sin(0.46_f64) - 0.09);
     assert!((load.force_body - DVec3::new(0.0, 0.0, -force)).length() < 1e-9);
-    assert!((load.moment_alpha - force * ARM_LENGTH * 0.46_f64.cos()).abs() < 1e-9);
+    assert!((load.moment_alpha - force * ARM_LENGTH * libm::cos(0.46_f64)).abs() < 1e-9);
     assert!(load.moment_body.x < 0.0);
 }

@@ -179,7 +179,7 @@ impl Arm {
     /// Arm `index`, 0 to 3, at rest without thrust, its droop limited by the ground.
     #[must_use]
     pub fn new(index: usize, spec: ArmSpec) -> Self {
-        let on_ground = -((BELLY_Z - HINGE_Z) / ARM_LENGTH).asin();
+        let on_ground = -libm::asin((BELLY_Z - HINGE_Z) / ARM_LENGTH);
         let tilt = spec.static_tilt(0.0).max(on_ground);
         Self {
             spec,
@@ -187,8 +187,8 @@ impl Arm {
             x: ARM_X * f64::from(FORE[index]),
             tilt,
             rate: 0.0,
-            sin: tilt.sin(),
-            cos: tilt.cos(),
+            sin: libm::sin(tilt),
+            cos: libm::cos(tilt),
             generalised: 0.0,
             thrust: 0.0,
         }
@@ -251,7 +251,7 @@ impl Arm {
     pub fn integrate(&mut self, dt: f64, acceleration: f64) {
         self.rate += acceleration * dt;
         self.tilt += self.rate * dt;
-        (self.sin, self.cos) = self.tilt.sin_cos();
+        (self.sin, self.cos) = libm::sincos(self.tilt);
     }
 }
 

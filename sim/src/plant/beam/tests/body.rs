@@ -89,7 +89,7 @@ impl Loose {
                 angular += r.cross(u * mass);
             }
             let tilt = q[0] + q[1];
-            let tangent = DVec3::new(0.0, -side * tilt.cos(), -tilt.sin());
+            let tangent = DVec3::new(0.0, -side * libm::cos(tilt), -libm::sin(tilt));
             let axis = DVec3::X * side;
             let turning = w + axis * (rate[0] + rate[1]) + tangent * arm.twist_rate;
             energy += 0.5 * spec.masses.block * turning.length_squared();
