@@ -25,6 +25,7 @@ use sophie_control::allocation::wrench::PerArm;
 use self::battery::Battery;
 use self::beam::{BeamArm, BeamSpec, Masses};
 use self::body::{Body, BodyState};
+use self::contact::pipe::Vibration;
 use self::contact::{Belly, Pipe, Pose, Surface};
 use self::flexible::{Carrier, Drive, Flexible, Nearby};
 use self::gust::Gust;
@@ -47,6 +48,8 @@ const GROUND_FRICTION: f64 = 0.7;
 pub const DRAG: f64 = 0.3;
 /// Thrust from which a propeller would break at the pipe, N: a tenth of hover thrust.
 const TURNING: f64 = 0.25;
+/// Distance of the origin from the pipe within which a disc may reach it, m: arm, disc and a margin.
+const STRIKING: f64 = 0.5;
 /// Distance of the origin from a surface within which parts may touch it, m: arm, depth of its hinge and a margin.
 const NEAR: f64 = 0.25;
 
@@ -97,6 +100,9 @@ struct Base {
     ground_belly: Belly,
     pipe_belly: Belly,
     pipe: Pipe,
+    vibration: Vibration,
+    /// Of belly pads and skin, as [`contact::Pad::rebound`].
+    rebound: f64,
     specific_force: DVec3,
 }
 
@@ -188,6 +194,22 @@ impl Plant {
         turning
             .filter(|(_, thrust)| *thrust > TURNING)
             .fold(f64::INFINITY, |least, (clear, _)| least.min(clear))
+    }
+
+    /// Depth of what reaches into each turning propeller's disc, m: of the pipe, and of its own arm.
+    #[must_use]
+    pub fn struck(&self) -> [PerArm<Option<f64>>; 2] {
+        let (tilt, thrust) = (self.tilt(), self.thrust());
+        let near = self.base.pipe.gap(self.pose().position) < STRIKING;
+        let pipe = if near {
+            propeller::clearance(self.pose(), tilt, &self.base.pipe)
+        } else {
+            [f64::INFINITY; 4]
+        };
+        [pipe, propeller::own_arm(tilt)].map(|clear| {
+            let within = |arm: usize| (thrust[arm] > TURNING && clear[arm] < 0.0).then_some(-clear[arm]);
+            std::array::from_fn(within)
+        })
     }
 
     /// Position, attitude and motion.
@@ -286,6 +308,7 @@ impl Base {
         let (v, w) = (&scenario.vehicle, &scenario.world);
         let chi = f64::from(v.configuration.chi());
         let radius = 0.5 * w.pipe_diameter;
+        let rebound = contact::rebound(v.pad_restitution);
         let limb = |i: usize| Limb {
             rotor: Rotor::new(i, chi, v.rotor),
             tendon: Tendon::new(
@@ -318,8 +341,8 @@ impl Base {
             servo_battery: Battery::of_servos(v.servo_charge),
             gust: Gust::new(w.gust_force, w.gust_moment, scenario.streams())
                 .in_wind(w.steady_wind, scenario.wind_from()),
-            ground_belly: Belly::default(),
-            pipe_belly: Belly::default(),
+            ground_belly: Belly::default().rebounding(rebound),
+            pipe_belly: Belly::default().rebounding(rebound),
             pipe: Pipe {
                 north: w.pipe_position[0],
                 half_length: 0.5 * w.pipe_length,
@@ -327,7 +350,10 @@ impl Base {
                 down: -w.pipe_top + radius,
                 radius,
                 friction: w.pipe_friction,
+                shape: w.pipe_shape,
             },
+            vibration: Vibration::new(w.pipe_vibration, w.pipe_vibration_rate),
+            rebound,
             specific_force: DVec3::new(0.0, 0.0, -GRAVITY),
         }
     }
@@ -394,13 +420,22 @@ impl Base {
             let belly = self.ground_belly.step(STEP, &pose, &surface);
             load.add(belly.force_body, belly.moment_body);
         }
-        let across = pose.position - DVec3::new(pose.position.x, self.pipe.east, self.pipe.down);
-        let near = across.length_squared() < (self.pipe.radius + NEAR).powi(2);
+        self.vibration.step(STEP, &mut self.pipe.shape);
+        let across = self.pipe.across(pose.position);
+        let near = across.length_squared() < (self.pipe.largest_radius() + NEAR).powi(2);
         if near {
             let belly = self.pipe_belly.step(STEP, &pose, &Surface::Pipe(self.pipe));
             load.add(belly.force_body, belly.moment_body);
         }
         let pipe = near.then_some(self.pipe);
-        (load, Nearby { pipe, ground })
+        let rebound = self.rebound;
+        (
+            load,
+            Nearby {
+                pipe,
+                ground,
+                rebound,
+            },
+        )
     }
 }

@@ -7,11 +7,14 @@ use sophie_mixers::Variant;
 
 use super::{Assist, Assumed, Expect, Faults, Known, Overrides, Pilot, Scenario, Sensors, Vehicle, World};
 use crate::plant::body::BodySpec;
+use crate::plant::contact::PipeShape;
+use crate::plant::contact::pipe::Flange;
 use crate::plant::esc::EscSpec;
 use crate::plant::flexible::ArmBending;
 use crate::plant::hinged::link::TABLE_1;
 use crate::plant::rotor::RotorSpec;
 use crate::plant::tendon::ServoProfile;
+use crate::sensors::flow::Optics;
 
 /// The default mission, every key at its default.
 pub const MISSION: &str = include_str!("../../../tests/scenarios/mission.toml");
@@ -38,6 +41,7 @@ impl Default for Vehicle {
             body: BodySpec::default(),
             rotor: RotorSpec::default(),
             esc: EscSpec::default(),
+            pad_restitution: 0.0,
         }
     }
 }
@@ -54,6 +58,16 @@ impl Default for World {
             pipe_top: 1.5,
             pipe_length: 2.0,
             pipe_friction: 0.6,
+            pipe_shape: PipeShape {
+                flange: Flange {
+                    height: 0.068,
+                    ..Flange::NONE
+                },
+                ..PipeShape::STRAIGHT
+            },
+            pipe_vibration: 0.0,
+            pipe_vibration_rate: 10.0,
+            optics: Optics::default(),
         }
     }
 }

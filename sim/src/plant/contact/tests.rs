@@ -1,6 +1,8 @@
 //! Contact forces: derivatives, energy, points of action.
 
 use super::super::STEP as DT;
+use glam::DVec2;
+
 use super::*;
 
 fn at(position: DVec3) -> Pose {
@@ -57,6 +59,7 @@ fn the_virtual_work_of_the_skin_is_consistent() {
         down: 0.18,
         radius: 0.15,
         friction: 0.5,
+        shape: PipeShape::STRAIGHT,
     };
     let mut skin = ArmSkin::new(3);
     let alpha = -ARM_LENGTH / 0.15 - 0.1;
