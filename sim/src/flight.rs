@@ -6,6 +6,7 @@ mod judge;
 pub mod live;
 mod recorder;
 pub mod stack;
+mod strikes;
 
 use std::time::Instant as WallInstant;
 
