@@ -103,6 +103,8 @@ struct Base {
     vibration: Vibration,
     /// Of belly pads and skin, as [`contact::Pad::rebound`].
     rebound: f64,
+    /// Normal force of the pipe on each belly pad, N.
+    pad_forces: [f64; 4],
     specific_force: DVec3,
 }
 
@@ -278,6 +280,12 @@ impl Plant {
         self.base.limbs.each_ref().map(|l| l.pressure)
     }
 
+    /// Force with which each belly pad presses on the pipe, in the order of [`Belly::PADS`], N.
+    #[must_use]
+    pub fn pad_forces(&self) -> [f64; 4] {
+        self.base.pad_forces
+    }
+
     /// Battery voltage under load, V.
     #[must_use]
     pub fn battery_voltage(&self) -> f64 {
@@ -354,6 +362,7 @@ impl Base {
             },
             vibration: Vibration::new(w.pipe_vibration, w.pipe_vibration_rate),
             rebound,
+            pad_forces: [0.0; 4],
             specific_force: DVec3::new(0.0, 0.0, -GRAVITY),
         }
     }
@@ -423,8 +432,10 @@ impl Base {
         self.vibration.step(STEP, &mut self.pipe.shape);
         let across = self.pipe.across(pose.position);
         let near = across.length_squared() < (self.pipe.largest_radius() + NEAR).powi(2);
+        self.pad_forces = [0.0; 4];
         if near {
             let belly = self.pipe_belly.step(STEP, &pose, &Surface::Pipe(self.pipe));
+            self.pad_forces = belly.normal;
             load.add(belly.force_body, belly.moment_body);
         }
         let pipe = near.then_some(self.pipe);

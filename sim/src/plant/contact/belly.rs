@@ -11,8 +11,8 @@ pub struct BodyLoad {
     pub force_body: DVec3,
     /// Moment about the centre of mass, N·m, body.
     pub moment_body: DVec3,
-    /// Sum of normal forces, N.
-    pub normal: f64,
+    /// Normal force on each pad, in the order of [`Belly::PADS`], N.
+    pub normal: [f64; 4],
 }
 
 /// The four belly pads against one surface.
@@ -52,7 +52,8 @@ impl Belly {
     /// Advances by `dt` s.
     pub fn step(&mut self, dt: f64, pose: &Pose, surface: &Surface) -> BodyLoad {
         let mut load = BodyLoad::default();
-        for (point, r) in self.points.iter_mut().zip(Self::PADS) {
+        let pads = self.points.iter_mut().zip(Self::PADS);
+        for ((point, r), normal) in pads.zip(&mut load.normal) {
             let velocity = pose.point_velocity(r, DVec3::ZERO);
             let touch = point.force(
                 dt,
@@ -66,7 +67,7 @@ impl Belly {
             let force = pose.to_body(touch.force);
             load.force_body += force;
             load.moment_body += r.cross(force);
-            load.normal += touch.normal;
+            *normal = touch.normal;
         }
         load
     }
