@@ -12,7 +12,7 @@ pub struct Look {
 }
 
 /// Looks of pipe and ground, and the light.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Optics {
     /// The pipe.
     pub pipe: Look,
@@ -29,16 +29,6 @@ impl Default for Look {
             // Of the makers' tables of ranges.
             reflectivity: 0.9,
             gloss: 0.0,
-        }
-    }
-}
-
-impl Default for Optics {
-    fn default() -> Self {
-        Self {
-            pipe: Look::default(),
-            ground: Look::default(),
-            light: None,
         }
     }
 }
