@@ -6,6 +6,7 @@ mod judge;
 pub mod live;
 mod recorder;
 pub mod stack;
+mod strikes;
 
 use std::time::Instant as WallInstant;
 
@@ -278,5 +279,44 @@ fn reset(step: Option<(usize, &Step)>, (index, begun): (usize, f64), ms: u64, st
         None if t - begun >= *after => stack.cut(*cause, index, t),
         Some(reset) if !stack.runs() && t - reset.at >= *off => stack.start(ms * 1000),
         _ => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Belly pads of the default mission, perched and clamped: mean of their sum, N, and least of a side's, N, before the
+    /// push and under it.
+    #[test]
+    fn the_belly_presses_with_most_of_the_weight_and_a_push_lifts_no_side() {
+        for seed in [1, 2, 3] {
+            let mut scenario = Scenario::default_mission();
+            scenario.seed = seed;
+            let mut world = World::new(&scenario, || Stack::new(&scenario));
+            let (mut sums, mut sides) = (Vec::new(), [f64::INFINITY; 2]);
+            let mut began = None;
+            loop {
+                let output = world.step(true).unwrap();
+                let (t, step) = (world.ms as f64 * 1e-3, scenario.steps.get(output.step));
+                let Some(hold @ Step::Hold { .. }) = step else {
+                    assert!(began.is_none() || sums.len() > 1000, "the hold ended");
+                    if began.is_some() || output.outcome.is_some() {
+                        break;
+                    }
+                    continue;
+                };
+                let since = t - *began.get_or_insert(t);
+                world.plant.push = push(Some((output.step, hold)), since);
+                let pads = world.plant.pad_forces();
+                let pushed = usize::from(world.plant.push != DVec3::ZERO);
+                sums.push(pads.iter().sum::<f64>());
+                sides[pushed] = sides[pushed].min((pads[0] + pads[1]).min(pads[2] + pads[3]));
+            }
+            let mean = sums.iter().sum::<f64>() / sums.len() as f64;
+            println!("seed {seed}: {mean:.1} N, least of a side {sides:.1?} N");
+            assert!((13.0..17.0).contains(&mean), "{mean}");
+            assert!(sides[0] > 4.0 && sides[1] > 2.0, "{sides:?}");
+        }
     }
 }

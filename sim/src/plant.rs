@@ -28,6 +28,7 @@ use self::air::Air;
 use self::battery::Battery;
 use self::beam::{BeamArm, BeamSpec, Masses};
 use self::body::{Body, BodyState};
+use self::contact::pipe::Vibration;
 use self::contact::{Belly, Pipe, Pose, Surface};
 use self::flexible::{Carrier, Drive, Flexible, Nearby};
 use self::gust::Gust;
@@ -50,6 +51,8 @@ const GROUND_FRICTION: f64 = 0.7;
 pub const DRAG: f64 = 0.3;
 /// Thrust from which a propeller would break at the pipe, N: a tenth of hover thrust.
 const TURNING: f64 = 0.25;
+/// Distance of the origin from the pipe within which a disc may reach it, m: arm, disc and a margin.
+const STRIKING: f64 = 0.5;
 /// Distance of the origin from a surface within which parts may touch it, m: arm, depth of its hinge and a margin.
 const NEAR: f64 = 0.25;
 
@@ -103,6 +106,11 @@ struct Base {
     ground_belly: Belly,
     pipe_belly: Belly,
     pipe: Pipe,
+    vibration: Vibration,
+    /// Of belly pads and skin, as [`contact::Pad::rebound`].
+    rebound: f64,
+    /// Normal force of the pipe on each belly pad, N.
+    pad_forces: [f64; 4],
     specific_force: DVec3,
 }
 
@@ -196,6 +204,22 @@ impl Plant {
             .fold(f64::INFINITY, |least, (clear, _)| least.min(clear))
     }
 
+    /// Depth of what reaches into each turning propeller's disc, m: of the pipe, and of its own arm.
+    #[must_use]
+    pub fn struck(&self) -> [PerArm<Option<f64>>; 2] {
+        let (tilt, thrust) = (self.tilt(), self.thrust());
+        let near = self.base.pipe.gap(self.pose().position) < STRIKING;
+        let pipe = if near {
+            propeller::clearance(self.pose(), tilt, &self.base.pipe)
+        } else {
+            [f64::INFINITY; 4]
+        };
+        [pipe, propeller::own_arm(tilt)].map(|clear| {
+            let within = |arm: usize| (thrust[arm] > TURNING && clear[arm] < 0.0).then_some(-clear[arm]);
+            std::array::from_fn(within)
+        })
+    }
+
     /// Position, attitude and motion.
     #[must_use]
     pub fn pose(&self) -> &Pose {
@@ -262,6 +286,12 @@ impl Plant {
         self.base.limbs.each_ref().map(|l| l.pressure)
     }
 
+    /// Force with which each belly pad presses on the pipe, in the order of [`Belly::PADS`], N.
+    #[must_use]
+    pub fn pad_forces(&self) -> [f64; 4] {
+        self.base.pad_forces
+    }
+
     /// Battery voltage under load, V.
     #[must_use]
     pub fn battery_voltage(&self) -> f64 {
@@ -292,6 +322,7 @@ impl Base {
         let (v, w) = (&scenario.vehicle, &scenario.world);
         let chi = f64::from(v.configuration.chi());
         let radius = 0.5 * w.pipe_diameter;
+        let rebound = contact::rebound(v.pad_restitution);
         let limb = |i: usize| Limb {
             rotor: Rotor::new(i, chi, v.rotor).in_air(v.rotor_thrust[i], w.air.density),
             thrust: 0.0,
@@ -326,8 +357,8 @@ impl Base {
             air: Air::new(v.air, scenario.air(), v.hover_speed(), scenario.streams()),
             gust: Gust::new(w.gust_force, w.gust_moment, scenario.streams())
                 .in_wind(w.steady_wind, scenario.wind_from()),
-            ground_belly: Belly::default(),
-            pipe_belly: Belly::default(),
+            ground_belly: Belly::default().rebounding(rebound),
+            pipe_belly: Belly::default().rebounding(rebound),
             pipe: Pipe {
                 north: w.pipe_position[0],
                 half_length: 0.5 * w.pipe_length,
@@ -335,7 +366,11 @@ impl Base {
                 down: -w.pipe_top + radius,
                 radius,
                 friction: w.pipe_friction,
+                shape: w.pipe_shape,
             },
+            vibration: Vibration::new(w.pipe_vibration, w.pipe_vibration_rate),
+            rebound,
+            pad_forces: [0.0; 4],
             specific_force: DVec3::new(0.0, 0.0, -GRAVITY),
         }
     }
@@ -408,13 +443,24 @@ impl Base {
             let belly = self.ground_belly.step(STEP, &pose, &surface);
             load.add(belly.force_body, belly.moment_body);
         }
-        let across = pose.position - DVec3::new(pose.position.x, self.pipe.east, self.pipe.down);
-        let near = across.length() < self.pipe.radius + NEAR;
+        self.vibration.step(STEP, &mut self.pipe.shape);
+        let across = self.pipe.across(pose.position);
+        let near = across.length() < self.pipe.largest_radius() + NEAR;
+        self.pad_forces = [0.0; 4];
         if near {
             let belly = self.pipe_belly.step(STEP, &pose, &Surface::Pipe(self.pipe));
+            self.pad_forces = belly.normal;
             load.add(belly.force_body, belly.moment_body);
         }
         let pipe = near.then_some(self.pipe);
-        (load, Nearby { pipe, ground })
+        let rebound = self.rebound;
+        (
+            load,
+            Nearby {
+                pipe,
+                ground,
+                rebound,
+            },
+        )
     }
 }

@@ -20,6 +20,8 @@ pub struct FlightRecord {
     pub events: Vec<Event>,
     /// Chosen arms of proven grips.
     pub grip: Vec<Grip>,
+    /// Strikes of turning propellers, in order; the judge does not mind them.
+    pub strikes: Vec<Strike>,
     /// Simulated time, s.
     pub sim_seconds: f64,
     /// Wall time, s.
@@ -142,6 +144,41 @@ pub struct Grip {
     pub torque: f64,
     /// Time from start of closing to pressure within tolerance, s.
     pub closure: f64,
+}
+
+/// A turning propeller that met something.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Strike {
+    /// Arm, 1 to 4.
+    pub arm: u8,
+    /// Part that reached into the disc.
+    pub against: Struck,
+    /// Begin, s.
+    pub start: f64,
+    /// End, s.
+    pub end: f64,
+    /// How far it reached in, m, at most.
+    pub depth: f64,
+}
+
+/// What a propeller met.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Struck {
+    /// The pipe.
+    Pipe,
+    /// The arm that carries it.
+    OwnArm,
+}
+
+impl Struck {
+    /// For tables: `the pipe`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Pipe => "the pipe",
+            Self::OwnArm => "its own arm",
+        }
+    }
 }
 
 /// Shows a flight while it runs.

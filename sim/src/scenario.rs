@@ -39,12 +39,13 @@ use crate::plant::GRAVITY as STANDARD_GRAVITY;
 use crate::plant::air::wind::WindSpec;
 use crate::plant::air::{AirSpec, AirframeSpec};
 use crate::plant::body::BodySpec;
+use crate::plant::contact::PipeShape;
 use crate::plant::esc::EscSpec;
 use crate::plant::flexible::ArmBending;
 use crate::plant::rotor::{RotorSpec, THRUST_COEFFICIENT};
 use crate::plant::tendon::{ServoProfile, ServoSpec};
 use crate::sensors::barometer::{Barometer, BarometerFault};
-use crate::sensors::flow::FlowFault;
+use crate::sensors::flow::{FlowFault, Optics};
 use crate::sensors::imu::VibrationSpec;
 use crate::sensors::pose::PoseFault;
 use crate::streams::Streams;
@@ -171,6 +172,8 @@ pub struct Vehicle {
     pub air: AirframeSpec,
     /// Motor controllers, all alike. The stack knows only its parameters, which may differ.
     pub esc: EscSpec,
+    /// Restitution of belly pads and skin, 0..1; 0: strongly damped.
+    pub pad_restitution: f64,
 }
 
 impl Vehicle {
@@ -215,8 +218,16 @@ pub struct World {
     pub pipe_top: f64,
     /// Pipe length from end to end, m; the perch spot is in its middle.
     pub pipe_length: f64,
-    /// Coefficient, vehicle on pipe.
+    /// Coefficient of sliding, vehicle on pipe.
     pub pipe_friction: f64,
+    /// What the pipe has of a real one.
+    pub pipe_shape: PipeShape,
+    /// Amplitude of the pipe's vibration, m.
+    pub pipe_vibration: f64,
+    /// Frequency of the pipe's vibration, Hz.
+    pub pipe_vibration_rate: f64,
+    /// Looks of pipe and ground, and the light on them.
+    pub optics: Optics,
 }
 
 /// The pilot's limits.
@@ -305,6 +316,18 @@ pub struct Sensors {
     pub flow_rate: Option<f64>,
     /// Resolution of the range, m; `None`: a millimetre.
     pub range_step: Option<f64>,
+    /// White noise of the flow of a frame, rad; `None`: [`crate::sensors::flow::FLOW_NOISE`].
+    pub flow_noise: Option<f64>,
+    /// The quality of the flow varies whatever the flow is worth.
+    pub flow_quality_varies: bool,
+    /// The range is a mean of all that its beam meets.
+    pub range_mixed_pixels: bool,
+    /// Share of the poses that are lost in bursts, 0..1.
+    pub pose_dropout_share: f64,
+    /// Edge of the tag at the perch spot that the poses come from, m; `None`: the source's noise is the same everywhere.
+    pub pose_tag_size: Option<f64>,
+    /// Share of the poses that are turned about the tag, 0..1.
+    pub pose_outlier_share: f64,
     /// Fault of the poses.
     pub pose_fault: PoseFault,
     /// The board carries a barometer.

@@ -41,9 +41,12 @@ impl Companion {
         let pipe = scenario.pilot.assumed.pipe(&scenario.world);
         let [north, east] = pipe.position;
         let streams = scenario.streams();
+        let world = &scenario.world;
+        let spot = DVec3::new(world.pipe_position[0], world.pipe_position[1], -world.pipe_top);
         Self {
             source: PoseSource::new(streams)
                 .seeing(DVec3::new(north, east, -pipe.top), streams)
+                .tagged(spot, sensors, streams)
                 .failing(sensors.pose_fault, sensors.pose_fails_at, sensors.pose_fails_for),
             line: shared.unwrap_or_else(|| Box::leak(Box::new(Line::new()))),
             shared: shared.is_some(),

@@ -11,13 +11,14 @@ use super::line::{Line, LinePort};
 use crate::clock::VirtualTime;
 use crate::plant::Plant;
 use crate::scenario::{PositionSensor, Scenario, Sensors};
-use crate::sensors::flow::FlowModule;
+use crate::sensors::flow::{FlowModule, Optics};
 use crate::streams::Streams;
 
 /// The module of a scenario: sees the plant each millisecond and sends frames.
 pub struct FlowSender {
     streams: Streams,
     sensors: Sensors,
+    optics: Optics,
     /// `None` until the first millisecond gives the position of the pipe.
     module: Option<FlowModule>,
 }
@@ -29,6 +30,7 @@ impl FlowSender {
         (scenario.sensors.position == PositionSensor::Flow).then(|| Self {
             streams: scenario.streams(),
             sensors: scenario.sensors,
+            optics: scenario.world.optics,
             module: None,
         })
     }
@@ -38,7 +40,7 @@ impl FlowSender {
         let s = self.sensors;
         let new = || {
             let module = FlowModule::new(self.streams, *plant.pipe(), s.lens());
-            let module = module.sending(s.flow_rate, s.range_step);
+            let module = module.sending(s.flow_rate, s.range_step).looking(self.optics, &s);
             module.failing(s.flow_fault, s.pose_fails_at, s.pose_fails_for)
         };
         self.module.get_or_insert_with(new).step(plant.pose());

@@ -6,6 +6,7 @@ use sophie_control::mode::Mode;
 
 use super::Snapshot;
 use super::aircraft::{Aircraft, ReportedStatus};
+use super::strikes::Strikes;
 use crate::plant::Plant;
 use crate::record::{Event, FlightRecord, Grip, Observer, Outcome, Phase, SAMPLE_HZ, Sample};
 use crate::scenario::{Scenario, Step};
@@ -18,6 +19,7 @@ pub struct Recorder {
     phases: Vec<Phase>,
     events: Vec<Event>,
     grip: Vec<Grip>,
+    strikes: Strikes,
     steps: usize,
     chosen: PerArm<bool>,
     reel_radius: f64,
@@ -66,6 +68,7 @@ impl Recorder {
             phases: Vec::new(),
             events: Vec::new(),
             grip: Vec::new(),
+            strikes: Strikes::default(),
             steps: scenario.steps.len(),
             chosen: scenario.arms.mask(),
             reel_radius: f64::from(scenario.params.reel_radius),
@@ -101,6 +104,9 @@ impl Recorder {
             self.digest.add(&sample);
             self.account(&sample);
             self.samples.push(sample);
+            for text in self.strikes.step(t, plant.struck()) {
+                self.say(t, text, observer);
+            }
         }
     }
 
@@ -137,6 +143,7 @@ impl Recorder {
             phases: self.phases,
             events: self.events,
             grip: self.grip,
+            strikes: self.strikes.all,
             sim_seconds: t,
             wall_seconds,
             overruns: stack.overruns(),

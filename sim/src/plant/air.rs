@@ -165,6 +165,7 @@ mod tests {
     use glam::DQuat;
     use sophie_control::allocation::wrench::Configuration;
 
+    use super::super::contact::PipeShape;
     use super::super::rotor::RotorSpec;
     use super::*;
 
@@ -177,6 +178,7 @@ mod tests {
             down: -1.35,
             radius: 0.15,
             friction: 0.6,
+            shape: PipeShape::STRAIGHT,
         }
     }
 

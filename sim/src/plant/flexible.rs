@@ -22,6 +22,8 @@ pub struct Nearby {
     pub pipe: Option<Pipe>,
     /// Whether the ground is near.
     pub ground: bool,
+    /// Rebound of the skin, as [`Pad::rebound`](super::contact::Pad::rebound).
+    pub rebound: f64,
 }
 
 /// Loads of a step on one arm other than contact.

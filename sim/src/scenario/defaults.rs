@@ -9,11 +9,14 @@ use super::{Assist, Assumed, Expect, Faults, Known, Overrides, Pilot, Scenario, 
 use crate::plant::air::wind::WindSpec;
 use crate::plant::air::{AirSpec, AirframeSpec};
 use crate::plant::body::BodySpec;
+use crate::plant::contact::PipeShape;
+use crate::plant::contact::pipe::Flange;
 use crate::plant::esc::EscSpec;
 use crate::plant::flexible::ArmBending;
 use crate::plant::hinged::link::TABLE_1;
 use crate::plant::rotor::{RotorSpec, STANDARD_DENSITY};
 use crate::plant::tendon::ServoProfile;
+use crate::sensors::flow::Optics;
 use crate::sensors::imu::VibrationSpec;
 
 /// The default mission, every key at its default.
@@ -47,6 +50,7 @@ impl Default for Vehicle {
             vibration: VibrationSpec::default(),
             air: AirframeSpec::default(),
             esc: EscSpec::default(),
+            pad_restitution: 0.0,
         }
     }
 }
@@ -69,6 +73,16 @@ impl Default for World {
             pipe_top: 1.5,
             pipe_length: 2.0,
             pipe_friction: 0.6,
+            pipe_shape: PipeShape {
+                flange: Flange {
+                    height: 0.068,
+                    ..Flange::NONE
+                },
+                ..PipeShape::STRAIGHT
+            },
+            pipe_vibration: 0.0,
+            pipe_vibration_rate: 10.0,
+            optics: Optics::default(),
         }
     }
 }

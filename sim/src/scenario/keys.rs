@@ -153,6 +153,10 @@ const PIPE_DIAMETER: Range = Range::new(0.15, 0.6, "m");
 /// Range of a servo's marks: what servos accept.
 const SERVO_PULSE: Range = Range::new(500.0, 2500.0, "us");
 
+/// Range of a share, and of a diffuse reflectivity.
+const SHARE: Range = Range::new(0.0, 1.0, "");
+const REFLECTIVITY: Range = Range::new(0.02, 1.0, "");
+
 /// Range of the lens position, as that of the parameters.
 const LENS: Range = Range::new(-0.3, 0.3, "m");
 
@@ -558,6 +562,11 @@ pub const KEYS: &[Key] = &[
         Range::new(1500.0, 2300.0, "us"),
         vehicle.esc.pulse_max
     ),
+    number!(
+        "vehicle.pad_restitution",
+        Range::new(0.0, 0.9, ""),
+        vehicle.pad_restitution
+    ),
     number!("world.gust_force_n", Range::new(0.0, 3.0, "N"), world.gust_force),
     number!(
         "world.gust_moment_nm",
@@ -610,6 +619,66 @@ pub const KEYS: &[Key] = &[
         Range::new(0.05, 1.5, ""),
         world.pipe_friction
     ),
+    number!(
+        "world.pipe_friction_static_share",
+        Range::new(1.0, 3.0, ""),
+        world.pipe_shape.static_share
+    ),
+    number!(
+        "world.pipe_slope_deg",
+        Range::new(-10.0, 10.0, "deg").times(DEGREE),
+        world.pipe_shape.slope
+    ),
+    number!(
+        "world.pipe_sag_m",
+        Range::new(0.0, 0.2, "m"),
+        world.pipe_shape.sag
+    ),
+    number!(
+        "world.pipe_vibration_mm",
+        Range::new(0.0, 5.0, "mm").times(1e-3),
+        world.pipe_vibration
+    ),
+    number!(
+        "world.pipe_vibration_hz",
+        Range::new(1.0, 50.0, "Hz"),
+        world.pipe_vibration_rate
+    ),
+    // 0: no flanges.
+    number!(
+        "world.pipe_flange_spacing_m",
+        Range::new(0.0, 20.0, "m"),
+        world.pipe_shape.flange.spacing
+    ),
+    number!("world.pipe_flange_at_m", PIPE_PLACE, world.pipe_shape.flange.at),
+    number!(
+        "world.pipe_flange_height_m",
+        Range::new(0.001, 0.1, "m"),
+        world.pipe_shape.flange.height
+    ),
+    number!(
+        "world.pipe_softness_mm_n",
+        Range::new(0.0, 0.5, "mm/N").times(1e-3),
+        world.pipe_shape.softness
+    ),
+    number!("world.pipe_contrast", SHARE, world.optics.pipe.contrast),
+    number!("world.ground_contrast", SHARE, world.optics.ground.contrast),
+    number!(
+        "world.pipe_reflectivity",
+        REFLECTIVITY,
+        world.optics.pipe.reflectivity
+    ),
+    number!(
+        "world.ground_reflectivity",
+        REFLECTIVITY,
+        world.optics.ground.reflectivity
+    ),
+    number!("world.pipe_gloss", SHARE, world.optics.pipe.gloss),
+    optional!(
+        "world.light_klux",
+        Range::new(0.0, 130.0, "klux").times(1e3),
+        world.optics.light
+    ),
     Key {
         name: "sensors.position",
         kind: Kind::Choice(POSITION_SENSORS, |s, v| s.sensors.position = position_sensor(v)),
@@ -640,6 +709,34 @@ pub const KEYS: &[Key] = &[
         "sensors.range_step_m",
         Range::new(0.001, 0.05, "m"),
         sensors.range_step
+    ),
+    optional!(
+        "sensors.flow_noise_mrad",
+        Range::new(0.0, 20.0, "mrad").times(1e-3),
+        sensors.flow_noise
+    ),
+    Key {
+        name: "sensors.flow_quality_varies",
+        kind: Kind::Flag(|s| &mut s.sensors.flow_quality_varies),
+    },
+    Key {
+        name: "sensors.range_mixed_pixels",
+        kind: Kind::Flag(|s| &mut s.sensors.range_mixed_pixels),
+    },
+    number!(
+        "sensors.pose_dropout_share",
+        Range::new(0.0, 0.9, ""),
+        sensors.pose_dropout_share
+    ),
+    optional!(
+        "sensors.pose_tag_size_m",
+        Range::new(0.02, 1.0, "m"),
+        sensors.pose_tag_size
+    ),
+    number!(
+        "sensors.pose_outlier_share",
+        Range::new(0.0, 0.3, ""),
+        sensors.pose_outlier_share
     ),
     Key {
         name: "sensors.pose_fault",

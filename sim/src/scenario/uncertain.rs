@@ -409,6 +409,13 @@ pub const QUANTITIES: &[Quantity] = &[
         ..FIXED
     },
     Quantity {
+        key: "vehicle.pad_restitution",
+        all: Some(Spread::Within(0.65, 0.75)),
+        source: "TPU: resilience 45 % (Covestro Texin 245), foamed 65 to 74 %; damping ratio 0.05 to 0.13",
+        truth: |s| vec![s.vehicle.pad_restitution],
+        ..FIXED
+    },
+    Quantity {
         key: "faults.pressure_gain",
         each: Some(Spread::Times(0.8, 1.2)),
         calibration: Some(Calibration {
@@ -554,6 +561,40 @@ pub const QUANTITIES: &[Quantity] = &[
         ..FIXED
     },
     Quantity {
+        key: "sensors.flow_noise_mrad",
+        all: Some(Spread::Within(2.4, 4.8)),
+        source: "2.65 to 4.84 mrad in 20 ms, 2.5 to 4.1 in 10 ms of a PMW3901 (flights of a Crazyflie, Bitcraze's positioning data set)",
+        truth: |s| {
+            s.sensors
+                .flow_noise
+                .map(|noise| 1e3 * noise)
+                .into_iter()
+                .collect()
+        },
+        ..FIXED
+    },
+    Quantity {
+        key: "sensors.pose_dropout_share",
+        all: Some(Spread::Within(0.0, 0.3)),
+        source: "markers covered or blurred (assumed)",
+        truth: |s| vec![s.sensors.pose_dropout_share],
+        ..FIXED
+    },
+    Quantity {
+        key: "sensors.pose_tag_size_m",
+        all: Some(Spread::Within(0.1, 0.2)),
+        source: "a tag that a pipe has room for (assumed); with it 20 to 50 mm at 2.5 to 4 m",
+        truth: |s| s.sensors.pose_tag_size.into_iter().collect(),
+        ..FIXED
+    },
+    Quantity {
+        key: "sensors.pose_outlier_share",
+        all: Some(Spread::Within(0.0, 0.05)),
+        source: "the other pose of a planar tag (Schweighofer and Pinz 2006; the share is assumed)",
+        truth: |s| vec![s.sensors.pose_outlier_share],
+        ..FIXED
+    },
+    Quantity {
         key: "world.pipe_friction",
         all: Some(Spread::Within(0.2, 0.8)),
         calibration: Some(Calibration {
@@ -581,6 +622,111 @@ pub const QUANTITIES: &[Quantity] = &[
         truth: |s| vec![s.world.pipe_diameter],
         assumed: |s| vec![s.params.pipe_diameter.into()],
         learn: |s, n| set([&mut s.params.pipe_diameter], n),
+        ..FIXED
+    },
+    Quantity {
+        key: "world.pipe_friction_static_share",
+        all: Some(Spread::Within(1.0, 1.5)),
+        source: "1.3 to 1.5 dry, near 1 wet (assumed from tables of elastomers)",
+        truth: |s| vec![s.world.pipe_shape.static_share],
+        ..FIXED
+    },
+    Quantity {
+        key: "world.pipe_slope_deg",
+        all: Some(Spread::Within(-3.0, 3.0)),
+        source: "drained pipes fall by 0.2 to 1 % (0.6°), a rack's supports and threaded rods leave more (assumed)",
+        truth: |s| vec![s.world.pipe_shape.slope / DEGREE],
+        ..FIXED
+    },
+    Quantity {
+        key: "world.pipe_sag_m",
+        all: Some(Spread::Within(0.0, 0.012)),
+        source: "spans of ASME B31.1 sag by 2.5 mm, others by more (assumed)",
+        truth: |s| vec![s.world.pipe_shape.sag],
+        ..FIXED
+    },
+    Quantity {
+        key: "world.pipe_vibration_mm",
+        all: Some(Spread::Within(0.0, 0.4)),
+        source: "25 mm/s at 10 Hz: Wood's screening guideline; 13 mm/s by ASME OM-3",
+        truth: |s| vec![1e3 * s.world.pipe_vibration],
+        ..FIXED
+    },
+    Quantity {
+        key: "world.pipe_vibration_hz",
+        all: Some(Spread::Within(5.0, 25.0)),
+        source: "spans of pipe racks, first mode (assumed)",
+        truth: |s| vec![s.world.pipe_vibration_rate],
+        ..FIXED
+    },
+    Quantity {
+        key: "world.pipe_flange_spacing_m",
+        all: Some(Spread::Within(0.0, 6.0)),
+        source: "a flange each length of pipe, or none",
+        truth: |s| vec![s.world.pipe_shape.flange.spacing],
+        ..FIXED
+    },
+    Quantity {
+        key: "world.pipe_flange_at_m",
+        all: Some(Spread::Within(-1.0, 1.0)),
+        source: "a perch spot is not chosen to the centimetre",
+        truth: |s| vec![s.world.pipe_shape.flange.at],
+        ..FIXED
+    },
+    Quantity {
+        key: "world.pipe_flange_height_m",
+        all: Some(Spread::Within(0.003, 0.07)),
+        source: "a weld of 3 mm to DN 300, PN 16 of EN 1092-1: 68 mm",
+        truth: |s| vec![s.world.pipe_shape.flange.height],
+        ..FIXED
+    },
+    Quantity {
+        key: "world.pipe_softness_mm_n",
+        all: Some(Spread::Within(0.0, 0.05)),
+        source: "sheet over mineral wool gives 1 to 5 mm under a hand's 100 N (assumed)",
+        truth: |s| vec![1e3 * s.world.pipe_shape.softness],
+        ..FIXED
+    },
+    Quantity {
+        key: "world.pipe_contrast",
+        all: Some(Spread::Within(0.05, 1.0)),
+        source: "paint and bare steel to rust (assumed)",
+        truth: |s| vec![s.world.optics.pipe.contrast],
+        ..FIXED
+    },
+    Quantity {
+        key: "world.ground_contrast",
+        all: Some(Spread::Within(0.05, 1.0)),
+        source: "screed and asphalt to gravel (assumed)",
+        truth: |s| vec![s.world.optics.ground.contrast],
+        ..FIXED
+    },
+    Quantity {
+        key: "world.pipe_reflectivity",
+        all: Some(Spread::Within(0.1, 0.9)),
+        source: "black paint to white or galvanised at 940 nm (assumed)",
+        truth: |s| vec![s.world.optics.pipe.reflectivity],
+        ..FIXED
+    },
+    Quantity {
+        key: "world.ground_reflectivity",
+        all: Some(Spread::Within(0.1, 0.6)),
+        source: "asphalt to grass at 940 nm (assumed)",
+        truth: |s| vec![s.world.optics.ground.reflectivity],
+        ..FIXED
+    },
+    Quantity {
+        key: "world.pipe_gloss",
+        all: Some(Spread::Within(0.0, 0.9)),
+        source: "rust to gloss paint and polished cladding (assumed)",
+        truth: |s| vec![s.world.optics.pipe.gloss],
+        ..FIXED
+    },
+    Quantity {
+        key: "world.light_klux",
+        all: Some(Spread::Within(0.1, 100.0)),
+        source: "a hall to noon: range 2.5 m to 1.0 to 1.2 m (INAV, issues 10487 and 7622)",
+        truth: |s| s.world.optics.light.map(|lux| 1e-3 * lux).into_iter().collect(),
         ..FIXED
     },
 ];

@@ -1,17 +1,22 @@
 //! A visual odometry or motion capture that sends poses: late, noisy, with gaps, in axes of its own that slowly turn
 //! (values assumed).
 
+mod dropout;
+mod tag;
+
 use std::collections::VecDeque;
 use std::f64::consts::PI;
 
+use crate::normal::StandardNormal;
 use glam::{DQuat, DVec3};
 use rand::Rng;
 use rand::distr::Distribution;
 use rand_pcg::Pcg64Mcg;
 
-use crate::normal::StandardNormal;
+use self::dropout::Dropout;
+use self::tag::Tag;
 use crate::plant::contact::Pose;
-
+use crate::scenario::Sensors;
 use crate::streams::Streams;
 
 /// Time between two measurements, ms: 50 a second.
@@ -97,6 +102,8 @@ pub struct PoseSource {
     fault: PoseFault,
     /// Last pose before it froze.
     held: Option<(DVec3, DQuat)>,
+    dropout: Dropout,
+    tag: Option<Tag>,
     sent: VecDeque<Measured>,
 }
 
@@ -120,6 +127,8 @@ impl PoseSource {
             failure: (0, 0),
             fault: PoseFault::Silent,
             held: None,
+            dropout: Dropout::new(0.0, streams),
+            tag: None,
             sent: VecDeque::new(),
         }
     }
@@ -130,6 +139,18 @@ impl PoseSource {
         let off = normal(&mut streams.of("pose.target")) * TARGET_CONSTANT;
         Self {
             pipe: Some(crown_position + off),
+            ..self
+        }
+    }
+
+    /// The same with the losses and outliers of `sensors`, by a tag at `place` (m, NED).
+    #[must_use]
+    pub fn tagged(self, place: DVec3, sensors: &Sensors, streams: Streams) -> Self {
+        let (size, outliers) = (sensors.pose_tag_size, sensors.pose_outlier_share);
+        let tag = Tag::new(place, size, outliers, streams);
+        Self {
+            dropout: Dropout::new(sensors.pose_dropout_share, streams),
+            tag: (size.is_some() || outliers > 0.0).then_some(tag),
             ..self
         }
     }
@@ -170,6 +191,11 @@ impl PoseSource {
         let mut position = self.gone + self.constant + normal(&mut self.rng) * NOISE;
         let error = DQuat::from_scaled_axis(normal(&mut self.rng) * ANGLE_NOISE);
         let mut attitude = (axes * pose.attitude * error).normalize();
+        if let Some(tag) = &mut self.tag {
+            let error = tag.error(pose);
+            position += axes * error.offset;
+            attitude = (axes * error.turn * axes.inverse() * attitude).normalize();
+        }
         match fault {
             Some(PoseFault::Frozen) => {
                 (position, attitude) = *self.held.get_or_insert((position, attitude));
@@ -179,6 +205,9 @@ impl PoseSource {
             _ => self.held = None,
         }
         let target = self.target(pose, axes, fault);
+        if self.dropout.next() {
+            return;
+        }
         self.sent.push_back(Measured {
             at_us: self.ms * 1000,
             position,

@@ -340,7 +340,7 @@ impl ArmStand {
         self.thrust += (self.thrust_asked - self.thrust) * STEP / self.rotor_tau;
         let nearby = Nearby {
             pipe: Some(self.pipe),
-            ground: false,
+            ..Nearby::default()
         };
         let body = &mut Load::default();
         let pressure = self.arm.touch(STEP, &BODY, &nearby, body);

@@ -167,7 +167,7 @@ impl Bench {
         self.thrust += (self.asked * self.thrust_error - self.thrust) * STEP / 0.05;
         let nearby = Nearby {
             pipe: Some(self.pipe),
-            ground: false,
+            ..Nearby::default()
         };
         let body = &mut Load::default();
         self.pressure = self.arm.touch(STEP, &BODY, &nearby, body);

@@ -36,6 +36,14 @@ pub fn html(record: &FlightRecord) -> String {
     page += &section("Grip", "When it was proven.", &tables::grip(record));
     page += &section("Events", "", &tables::events(record));
     page += "</div>";
+    let strikes = tables::strikes(record);
+    if !strikes.is_empty() {
+        page += &section(
+            "Propeller strikes",
+            "Turning propellers that met something. The verdict does not count them.",
+            &strikes,
+        );
+    }
     let wrong = tables::differences(record);
     if !wrong.is_empty() {
         page += &section(

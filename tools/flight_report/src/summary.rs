@@ -37,6 +37,8 @@ pub struct Summary {
     phases: Vec<PhaseSummary>,
     /// Chosen arms of each proven grip.
     grip: Vec<GripSummary>,
+    /// Strikes of turning propellers, in order.
+    strikes: Vec<StrikeSummary>,
     /// What happened, in order.
     events: Vec<EventSummary>,
 }
@@ -151,6 +153,16 @@ struct GripSummary {
     closure_s: f64,
 }
 
+/// One strike of a turning propeller.
+#[derive(Serialize)]
+struct StrikeSummary {
+    arm: u8,
+    against: &'static str,
+    start_s: f64,
+    end_s: f64,
+    depth_mm: f64,
+}
+
 /// One event.
 #[derive(Serialize)]
 struct EventSummary {
@@ -179,6 +191,13 @@ impl Summary {
             force_kgcm: tidy(kgcm(g.torque)),
             closure_s: tidy(g.closure),
         };
+        let strike = |s: &sophie_sim::record::Strike| StrikeSummary {
+            arm: s.arm,
+            against: s.against.name(),
+            start_s: tidy(s.start),
+            end_s: tidy(s.end),
+            depth_mm: tidy(1e3 * s.depth),
+        };
         Self {
             accomplished: record.outcome.accomplished,
             reason: record.outcome.reason.clone(),
@@ -191,6 +210,7 @@ impl Summary {
             settings: Settings::of(&record.scenario),
             phases: record.phases.iter().map(phase).collect(),
             grip: record.grip.iter().map(grip).collect(),
+            strikes: record.strikes.iter().map(strike).collect(),
             events: record
                 .events
                 .iter()
@@ -323,6 +343,10 @@ mod tests {
             (&Value::from(1), &Value::from(2.61))
         );
         assert!((grip[0]["force_kgcm"].as_f64().unwrap() - 3.977).abs() < 1e-3);
+        let strike = serde_json::json!({
+            "arm": 2, "against": "the pipe", "start_s": 31.2, "end_s": 31.24, "depth_mm": 12.0
+        });
+        assert_eq!(v["strikes"], serde_json::json!([strike]));
         assert!(grip[3]["pressure_pa"].is_number() && grip[3]["pressure_true_pa"].is_number());
     }
 

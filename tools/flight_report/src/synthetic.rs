@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use sophie_control::mode::Mode;
-use sophie_sim::record::{Event, FlightRecord, Grip, Outcome, Phase, SAMPLE_HZ, Sample};
+use sophie_sim::record::{Event, FlightRecord, Grip, Outcome, Phase, SAMPLE_HZ, Sample, Strike, Struck};
 use sophie_sim::scenario::{Scenario, Step};
 
 /// Durations of the default mission's steps, s.
@@ -63,6 +63,13 @@ pub fn record() -> FlightRecord {
                 closure: closure[usize::from(i)],
             })
             .collect(),
+        strikes: vec![Strike {
+            arm: 2,
+            against: Struck::Pipe,
+            start: 31.2,
+            end: 31.24,
+            depth: 0.012,
+        }],
         sim_seconds: start,
         wall_seconds: 0.21,
         overruns: 0,

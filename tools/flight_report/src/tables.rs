@@ -61,6 +61,23 @@ pub fn grip(record: &FlightRecord) -> String {
     table(&head, rows, &[0])
 }
 
+/// Strikes of turning propellers; empty without any.
+pub fn strikes(record: &FlightRecord) -> String {
+    if record.strikes.is_empty() {
+        return String::new();
+    }
+    let rows = record.strikes.iter().map(|s| {
+        vec![
+            s.arm.to_string(),
+            s.against.name().to_owned(),
+            format!("{:.2}", s.start),
+            format!("{:.2}", s.end - s.start),
+            format!("{:.0}", 1e3 * s.depth),
+        ]
+    });
+    table(&["arm", "against", "at s", "for s", "depth mm"], rows, &[1])
+}
+
 /// What the stack's parameters have wrong; empty where nothing is.
 pub fn differences(record: &FlightRecord) -> String {
     let differences = record.scenario.differences();

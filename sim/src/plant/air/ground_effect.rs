@@ -49,12 +49,13 @@ pub fn over_floor(height: f64) -> f64 {
 /// Factor on the thrust of a rotor with its hub at `hub` (m, NED) over `pipe`.
 #[must_use]
 pub fn over_pipe(hub: DVec3, pipe: &Pipe) -> f64 {
-    let height = pipe.down - pipe.radius - hub.z;
+    let across = pipe.across(hub);
+    let height = -across.y - pipe.radius;
     if height <= 0.0 || (hub.x - pipe.north).abs() > pipe.half_length {
         return 1.0;
     }
     let own = 1.0 / (1.0 - own_image(height.max(LOWEST * RADIUS)));
-    1.0 + (own - 1.0) * share_over(hub.y - pipe.east, pipe.radius)
+    1.0 + (own - 1.0) * share_over(across.x, pipe.radius)
 }
 
 /// Share of a disc's area over a strip of half width `half` (m), its centre `aside` (m) of the strip's middle.

@@ -51,8 +51,9 @@ impl Shedding {
             return DVec3::ZERO;
         }
         let diameter = 2.0 * pipe.radius;
-        let downwind = (point.y - pipe.east) * self.across.signum() / diameter;
-        let beside = (point.z - pipe.down) / diameter;
+        let across = pipe.across(point);
+        let downwind = across.x * self.across.signum() / diameter;
+        let beside = across.y / diameter;
         let along = if downwind > 0.0 {
             libm::exp(-downwind / REACH)
         } else {

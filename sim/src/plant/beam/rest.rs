@@ -2,7 +2,7 @@
 
 use glam::{DQuat, DVec3};
 
-use super::super::contact::{BELLY_Z, Pipe, Pose};
+use super::super::contact::{BELLY_Z, Pipe, PipeShape, Pose};
 use super::super::flexible::{Carrier, Drive, Flexible, Nearby};
 use super::super::{GRAVITY, STEP};
 use super::{BeamArm, BeamSpec};
@@ -47,6 +47,7 @@ pub fn pipe_under(radius: f64, friction: f64) -> Pipe {
         down: BELLY_Z + (radius * radius - PADS.0 * PADS.0).sqrt() - PADS.1,
         radius,
         friction,
+        shape: PipeShape::STRAIGHT,
     }
 }
 
@@ -107,7 +108,7 @@ impl SlowArm {
     fn step(&mut self, force: f64) {
         let nearby = Nearby {
             pipe: self.pipe,
-            ground: false,
+            ..Nearby::default()
         };
         let drive = Drive {
             dt: STEP,

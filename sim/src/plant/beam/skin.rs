@@ -80,9 +80,9 @@ impl BeamContact {
     /// Advances by `dt` s; adds the forces to `load` and returns the sensor's pressure, Pa.
     pub fn step(&mut self, dt: f64, arm: &Bent, pose: &Pose, nearby: &Nearby, load: &mut Load) -> f64 {
         self.forces = [0.0; TERMS];
-        let pressure = nearby
-            .pipe
-            .map_or(0.0, |pipe| self.on_pipe(dt, arm, pose, &pipe, load));
+        let pressure = nearby.pipe.map_or(0.0, |pipe| {
+            self.on_pipe(dt, arm, pose, &pipe, nearby.rebound, load)
+        });
         if nearby.ground {
             let mut tip = self.tip;
             self.press(
@@ -102,7 +102,16 @@ impl BeamContact {
         pressure
     }
 
-    fn on_pipe(&mut self, dt: f64, arm: &Bent, pose: &Pose, pipe: &Pipe, load: &mut Load) -> f64 {
+    fn on_pipe(
+        &mut self,
+        dt: f64,
+        arm: &Bent,
+        pose: &Pose,
+        pipe: &Pipe,
+        rebound: f64,
+        load: &mut Load,
+    ) -> f64 {
+        let skin = SKIN.rebounding(rebound);
         let surface = Surface::Pipe(*pipe);
         let mut normal = 0.0;
         let mut stations = self.stations;
@@ -111,7 +120,7 @@ impl BeamContact {
             normal = self.press(
                 dt,
                 station,
-                &SKIN,
+                &skin,
                 &skin_point,
                 &Touched {
                     arm,

@@ -29,6 +29,10 @@ pub fn tables(record: &FlightRecord) -> Vec<String> {
         lines.push(String::new());
         lines.extend(grip(record).lines());
     }
+    if !record.strikes.is_empty() {
+        lines.push(String::new());
+        lines.extend(strikes(record).lines());
+    }
     lines.extend(differences(&record.scenario));
     lines
 }
@@ -108,6 +112,27 @@ fn grip(record: &FlightRecord) -> Table {
             format!("{:.0}", g.pressure_true),
             format!("{:.2}", kgcm(g.torque)),
             format!("{:.2}", g.closure),
+        ]);
+    }
+    table
+}
+
+fn strikes(record: &FlightRecord) -> Table {
+    use Align::{Left, Right};
+    let mut table = Table::new(&[
+        ("propeller strike", Left),
+        ("against", Left),
+        ("at s", Right),
+        ("for s", Right),
+        ("depth mm", Right),
+    ]);
+    for s in &record.strikes {
+        table.row([
+            format!("arm {}", s.arm),
+            s.against.name().to_owned(),
+            format!("{:.2}", s.start),
+            format!("{:.2}", s.end - s.start),
+            format!("{:.0}", 1e3 * s.depth),
         ]);
     }
     table

@@ -5,7 +5,7 @@ use glam::{DQuat, DVec2};
 use super::super::skin::{Bent, SkinPoint};
 use super::super::{DEPTH, TENDON_LEVER};
 use super::*;
-use crate::plant::contact::{ARM_LENGTH, ARM_X, BELLY_Z, Pipe, Pose, UNDERSIDE_Z};
+use crate::plant::contact::{ARM_LENGTH, ARM_X, BELLY_Z, Pipe, PipeShape, Pose, UNDERSIDE_Z};
 
 const LEVEL: Pose = Pose {
     position: DVec3::ZERO,
@@ -69,6 +69,7 @@ fn pipe(diameter: f64) -> Pipe {
         down: BELLY_Z + (radius * radius - 0.03 * 0.03).sqrt() - 0.6e-3,
         radius,
         friction: 0.0,
+        shape: PipeShape::STRAIGHT,
     }
 }
 
@@ -77,7 +78,7 @@ fn pressed(diameter: f64, lever: f64, force: f64, thrust: f64) -> (f64, f64) {
     let mut arm = BeamArm::new(2, built(6.9));
     let nearby = Nearby {
         pipe: Some(pipe(diameter)),
-        ground: false,
+        ..Nearby::default()
     };
     let (steps, mut pressure) = (10_000, 0.0);
     for i in 0..steps {
