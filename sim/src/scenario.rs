@@ -12,6 +12,7 @@ mod known;
 mod load;
 mod nearest;
 mod overrides;
+mod parts;
 mod read;
 mod read_steps;
 pub mod settings;
@@ -26,6 +27,7 @@ pub use error::{Place, ScenarioError};
 pub use faults::Faults;
 pub use known::{Difference, Known};
 pub use overrides::Overrides;
+pub use parts::{PressureSensors, ROOM, Servos, Tendons};
 pub use steps::{STEPS, StepKind, StepNumber};
 
 use glam::DVec3;
@@ -39,7 +41,8 @@ use crate::plant::body::BodySpec;
 use crate::plant::esc::EscSpec;
 use crate::plant::flexible::ArmBending;
 use crate::plant::rotor::RotorSpec;
-use crate::plant::tendon::{ServoProfile, ServoSpec};
+use crate::plant::tendon::ServoProfile;
+use crate::sensors::arm_imu::TiltErrors;
 use crate::sensors::barometer::{Barometer, BarometerFault};
 use crate::sensors::flow::FlowFault;
 use crate::sensors::pose::PoseFault;
@@ -136,20 +139,16 @@ pub struct Vehicle {
     pub servo_release: PerArm<f64>,
     /// Pulse of each servo after its whole travel, µs; below the release mark's for one that is mounted in reverse.
     pub servo_full: PerArm<f64>,
+    /// What its servos have beside their label. The stack knows the label alone.
+    pub servos: Servos,
+    /// Its tendons with their reels. The stack knows only its parameters, which may differ.
+    pub tendons: Tendons,
     /// Mass and inertia.
     pub body: BodySpec,
     /// Motors and propellers, all alike.
     pub rotor: RotorSpec,
     /// Motor controllers, all alike. The stack knows only its parameters, which may differ.
     pub esc: EscSpec,
-}
-
-impl Vehicle {
-    /// The servo of `arm`, 0 to 3, at pulses of `frame_rate` Hz.
-    #[must_use]
-    pub fn servo_on(&self, arm: usize, frame_rate: f32) -> ServoSpec {
-        ServoSpec::from(self.servo).marked(self.servo_release[arm], self.servo_full[arm], frame_rate)
-    }
 }
 
 /// Air and pipe. Origin: the take-off point, on the ground, nose north.
@@ -173,6 +172,8 @@ pub struct World {
     pub pipe_length: f64,
     /// Coefficient, vehicle on pipe.
     pub pipe_friction: f64,
+    /// Temperature of air and parts, °C.
+    pub temperature: f64,
 }
 
 /// The pilot's limits.
@@ -267,6 +268,10 @@ pub struct Sensors {
     pub barometer: bool,
     /// Fault of the barometer.
     pub barometer_fault: BarometerFault,
+    /// What the arms' pressure sensors have beside the data sheet's middle.
+    pub pressure: PressureSensors,
+    /// What the arms' tilt sensors have beside their data sheet.
+    pub tilt: TiltErrors,
     /// Sensors that answer in the slots behind each frame of an SBUS receiver, 0 to [`crate::devices::sbus::SLOTS`]; 0: none has slots.
     pub sbus_slots: f64,
 }

@@ -5,7 +5,10 @@ use sophie_control::params::Params;
 use sophie_control::pilot::rc::ArmChoice;
 use sophie_mixers::Variant;
 
-use super::{Assist, Assumed, Expect, Faults, Known, Overrides, Pilot, Scenario, Sensors, Vehicle, World};
+use super::{
+    Assist, Assumed, Expect, Faults, Known, Overrides, Pilot, ROOM, Scenario, Sensors, Servos, Tendons,
+    Vehicle, World,
+};
 use crate::plant::body::BodySpec;
 use crate::plant::esc::EscSpec;
 use crate::plant::flexible::ArmBending;
@@ -35,6 +38,8 @@ impl Default for Vehicle {
             servo: ServoProfile::Paper,
             servo_release: [550.0; 4],
             servo_full: [2450.0; 4],
+            servos: Servos::default(),
+            tendons: Tendons::default(),
             body: BodySpec::default(),
             rotor: RotorSpec::default(),
             esc: EscSpec::default(),
@@ -54,6 +59,7 @@ impl Default for World {
             pipe_top: 1.5,
             pipe_length: 2.0,
             pipe_friction: 0.6,
+            temperature: ROOM,
         }
     }
 }

@@ -12,6 +12,7 @@ mod links;
 mod misfit;
 mod motor_map;
 mod motor_pulses;
+mod parts;
 mod radio;
 mod reasons;
 mod receiver;
