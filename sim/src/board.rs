@@ -68,6 +68,7 @@ pub struct Board {
 #[derive(Clone, Copy, Default)]
 struct AnalogTruth {
     pressure: PerArm<f64>,
+    tilt: PerArm<f64>,
     voltage: f64,
     current: f64,
     servo_voltage: f64,
@@ -98,6 +99,15 @@ impl Board {
         let mut board = Self::with(&scenario.params, scenario.streams(), &scenario.faults);
         board.esc = scenario.vehicle.esc;
         board.sensors.get_mut().imu.mount(scenario.vehicle.vibration);
+        {
+            let Sensors { arms, fsr, .. } = &mut *board.sensors.borrow_mut();
+            for (arm, sensor) in fsr.iter_mut().enumerate() {
+                *sensor = sensor.clone().with_errors(scenario.fsr_on(arm));
+            }
+            for sensor in arms {
+                *sensor = sensor.clone().with_errors(scenario.sensors.tilt);
+            }
+        }
         if scenario.sensors.barometer {
             board.sensors.borrow_mut().barometer = Some(scenario.barometer());
         }
@@ -213,6 +223,7 @@ impl Board {
         }
         self.truth.set(AnalogTruth {
             pressure: plant.pressure(),
+            tilt: plant.tilt(),
             voltage: plant.battery_voltage(),
             current: plant.battery_current(),
             servo_voltage: plant.servo_voltage(),
@@ -327,7 +338,9 @@ impl sensors::Analog for Port {
             battery_current: battery.current(truth.current),
             servo_battery: battery.servo_voltage(truth.servo_voltage),
         };
-        for ((counts, sensor), pressure) in frame.fsr.iter_mut().zip(fsr).zip(truth.pressure) {
+        let arms = truth.pressure.into_iter().zip(truth.tilt);
+        for ((counts, sensor), (pressure, tilt)) in frame.fsr.iter_mut().zip(fsr).zip(arms) {
+            sensor.bend(tilt);
             *counts = sensor.sample(pressure, truth.elapsed);
         }
         Ok(frame)

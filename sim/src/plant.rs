@@ -9,6 +9,7 @@ pub mod battery;
 pub mod beam;
 pub mod body;
 pub mod contact;
+pub mod creep;
 pub mod esc;
 pub mod flexible;
 pub mod gauss_markov;
@@ -36,7 +37,7 @@ use self::hinged::HingedArm;
 use self::hinged::link::{ArmPrint, ArmSpec, TIP};
 use self::rotor::Rotor;
 use self::servo_power::MG996R;
-use self::tendon::{Tendon, TendonSpec};
+use self::tendon::Tendon;
 use crate::plant::flexible::ArmBending;
 use crate::plant::load::Load;
 use crate::scenario::{Scenario, Vehicle};
@@ -274,10 +275,16 @@ impl Plant {
         self.base.limbs.each_ref().map(|l| l.rotor.speed())
     }
 
-    /// Tension of each tendon, N.
+    /// Tension of each tendon at its reel, N.
     #[must_use]
     pub fn tension(&self) -> PerArm<f64> {
         self.base.limbs.each_ref().map(|l| l.tendon.tension())
+    }
+
+    /// Torque on each servo's shaft, N·m.
+    #[must_use]
+    pub fn servo_torque(&self) -> PerArm<f64> {
+        self.base.limbs.each_ref().map(|l| l.tendon.servo_torque())
     }
 
     /// Contact pressure at the sensors, Pa.
@@ -326,14 +333,8 @@ impl Base {
         let limb = |i: usize| Limb {
             rotor: Rotor::new(i, chi, v.rotor).in_air(v.rotor_thrust[i], w.air.density),
             thrust: 0.0,
-            tendon: Tendon::new(
-                v.servo_on(i, scenario.params.servo_frame_rate),
-                TendonSpec {
-                    slack_error: scenario.faults.tendon_slack[i],
-                    ..TendonSpec::of(v.arm_bending)
-                },
-            )
-            .breaking(scenario.faults.tendon[i], scenario.faults.at),
+            tendon: Tendon::new(scenario.servo_on(i), scenario.tendon_on(i))
+                .breaking(scenario.faults.tendon[i], scenario.faults.at),
             pressure: 0.0,
         };
         let body = match v.arm_bending {

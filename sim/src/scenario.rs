@@ -12,6 +12,7 @@ mod known;
 mod load;
 mod nearest;
 mod overrides;
+mod parts;
 mod read;
 mod read_steps;
 pub mod settings;
@@ -26,6 +27,7 @@ pub use error::{Place, ScenarioError};
 pub use faults::Faults;
 pub use known::{Difference, Known};
 pub use overrides::Overrides;
+pub use parts::{PressureSensors, ROOM, Servos, Tendons};
 pub use steps::{STEPS, StepKind, StepNumber};
 
 use glam::DVec3;
@@ -43,7 +45,8 @@ use crate::plant::contact::PipeShape;
 use crate::plant::esc::EscSpec;
 use crate::plant::flexible::ArmBending;
 use crate::plant::rotor::{RotorSpec, THRUST_COEFFICIENT};
-use crate::plant::tendon::{ServoProfile, ServoSpec};
+use crate::plant::tendon::ServoProfile;
+use crate::sensors::arm_imu::TiltErrors;
 use crate::sensors::barometer::{Barometer, BarometerFault};
 use crate::sensors::flow::{FlowFault, Optics};
 use crate::sensors::imu::VibrationSpec;
@@ -160,6 +163,10 @@ pub struct Vehicle {
     pub servo_release: PerArm<f64>,
     /// Pulse of each servo after its whole travel, µs; below the release mark's for one that is mounted in reverse.
     pub servo_full: PerArm<f64>,
+    /// What its servos have beside their label. The stack knows the label alone.
+    pub servos: Servos,
+    /// Its tendons with their reels. The stack knows only its parameters, which may differ.
+    pub tendons: Tendons,
     /// Mass and inertia.
     pub body: BodySpec,
     /// Motors and propellers, all alike.
@@ -188,12 +195,6 @@ impl Vehicle {
     #[must_use]
     pub fn hover_speed(&self) -> f64 {
         (0.25 * self.body.mass * STANDARD_GRAVITY / THRUST_COEFFICIENT).sqrt()
-    }
-
-    /// The servo of `arm`, 0 to 3, at pulses of `frame_rate` Hz.
-    #[must_use]
-    pub fn servo_on(&self, arm: usize, frame_rate: f32) -> ServoSpec {
-        ServoSpec::from(self.servo).marked(self.servo_release[arm], self.servo_full[arm], frame_rate)
     }
 }
 
@@ -228,6 +229,8 @@ pub struct World {
     pub pipe_vibration_rate: f64,
     /// Looks of pipe and ground, and the light on them.
     pub optics: Optics,
+    /// Temperature of air and parts, °C.
+    pub temperature: f64,
 }
 
 /// The pilot's limits.
@@ -334,6 +337,10 @@ pub struct Sensors {
     pub barometer: bool,
     /// Fault of the barometer.
     pub barometer_fault: BarometerFault,
+    /// What the arms' pressure sensors have beside the data sheet's middle.
+    pub pressure: PressureSensors,
+    /// What the arms' tilt sensors have beside their data sheet.
+    pub tilt: TiltErrors,
     /// Sensors that answer in the slots behind each frame of an SBUS receiver, 0 to [`crate::devices::sbus::SLOTS`]; 0: none has slots.
     pub sbus_slots: f64,
 }

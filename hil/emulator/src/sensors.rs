@@ -47,8 +47,8 @@ impl Sensors {
         let mut imu = Imu::new(params, streams);
         imu.mount(scenario.vehicle.vibration);
         let calibration = imu.bench_bias().as_vec3().to_array();
-        let arms = std::array::from_fn(|arm| ArmImu::new(arm, streams));
-        let fsr = std::array::from_fn(|arm| FsrSensor::new(arm, streams));
+        let arms = std::array::from_fn(|arm| ArmImu::new(arm, streams).with_errors(scenario.sensors.tilt));
+        let fsr = std::array::from_fn(|arm| FsrSensor::new(arm, streams).with_errors(scenario.fsr_on(arm)));
         Self {
             imu,
             samples: ((f64::from(params.imu_rate.number()) * STEP) as u32).max(1),
@@ -122,6 +122,9 @@ impl Sensors {
         let volts = |counts: u16| f64::from(counts) * REFERENCE / FULL_SCALE;
         let pressed = operator.map_or([0.0; 4], |held| held.pressed);
         let pressures = plant.pressure().into_iter().zip(pressed);
+        for (sensor, tilt) in self.fsr.iter_mut().zip(plant.tilt()) {
+            sensor.bend(tilt);
+        }
         let pressures = self.fsr.iter_mut().zip(pressures);
         for ((counts, (sensor, (pressure, pressed))), volt) in self
             .pressure_counts

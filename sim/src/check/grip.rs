@@ -8,6 +8,7 @@ use crate::pilot::throttle_on_pipe;
 use crate::plant::beam::rest::{DAMPING, SlowArm, pipe_under};
 use crate::plant::beam::{BeamSpec, Masses, TENDON_LEVER};
 use crate::plant::flexible::ArmBending;
+use crate::plant::tendon::TendonSpec;
 use crate::plant::{arm_spec, beam_spec};
 use crate::scenario::{Scenario, Step};
 use crate::test_stands::arm_stand::{StandArm, Tried, try_grip};
@@ -56,7 +57,12 @@ fn stand(scenario: &Scenario, arm: usize) -> StandArm {
         arm,
         spec: arm_spec(v, arm),
         beam: (v.arm_bending == ArmBending::Beam).then(|| beam_spec(v, arm)),
-        servo: v.servo_on(arm, p.servo_frame_rate),
+        servo: scenario.servo_on(arm),
+        tendon: TendonSpec {
+            slack_error: 0.0,
+            ..scenario.tendon_on(arm)
+        },
+        fsr: scenario.fsr_on(arm),
         rotor_tau: v.rotor.spin.up,
         params: p,
         diameter: w.pipe_diameter,
@@ -118,7 +124,6 @@ pub fn needed(scenario: &Scenario, arm: usize, thrust: f64, target: f64) -> Opti
 mod tests {
     use super::*;
     use crate::plant::tendon::ServoProfile;
-    use crate::plant::tendon::TendonSpec;
     use crate::test_stands::arm_stand::{Closing, close};
 
     #[test]

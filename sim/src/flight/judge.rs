@@ -9,7 +9,6 @@ use super::Snapshot;
 use super::aircraft::Aircraft;
 use crate::plant::Plant;
 use crate::plant::contact::BELLY_Z;
-use crate::plant::tendon::TendonSpec;
 use crate::scenario::{Scenario, Step};
 use crate::sensors::fsr::LARGEST_ERROR;
 
@@ -43,7 +42,6 @@ pub struct Judge {
     /// Largest sensor error at the target, Pa: the stack cannot correct it.
     sensor_error: f64,
     torque_max: f64,
-    reel_radius: f64,
     proven: bool,
     /// Position of a gripped vehicle at the reset of its board, until it is released.
     hanging: Option<DVec3>,
@@ -67,7 +65,6 @@ impl Judge {
             released: f64::from(p.release_pressure),
             sensor_error: target * LARGEST_ERROR,
             torque_max: f64::from(ForceLimit::from_params(p).force * p.reel_radius),
-            reel_radius: TendonSpec::default().reel_radius,
             proven: false,
             hanging: None,
             roll: None,
@@ -116,10 +113,10 @@ impl Judge {
                 "pressure on arm {arm} reached {pressure} N/m2, allowed {allowed}"
             ));
         }
-        if let Some((arm, tension)) = worst(plant.tension())
-            && tension * self.reel_radius > self.torque_max
+        if let Some((arm, torque)) = worst(plant.servo_torque())
+            && torque > self.torque_max
         {
-            let (torque, allowed) = printed_apart(tension * self.reel_radius, self.torque_max);
+            let (torque, allowed) = printed_apart(torque, self.torque_max);
             return Some(format!(
                 "tendon {arm} pulled with {torque} N m at the servo, allowed {allowed}"
             ));

@@ -5,7 +5,10 @@ use sophie_control::params::Params;
 use sophie_control::pilot::rc::ArmChoice;
 use sophie_mixers::Variant;
 
-use super::{Assist, Assumed, Expect, Faults, Known, Overrides, Pilot, Scenario, Sensors, Vehicle, World};
+use super::{
+    Assist, Assumed, Expect, Faults, Known, Overrides, Pilot, ROOM, Scenario, Sensors, Servos, Tendons,
+    Vehicle, World,
+};
 use crate::plant::air::wind::WindSpec;
 use crate::plant::air::{AirSpec, AirframeSpec};
 use crate::plant::body::BodySpec;
@@ -44,6 +47,8 @@ impl Default for Vehicle {
             servo: ServoProfile::Paper,
             servo_release: [550.0; 4],
             servo_full: [2450.0; 4],
+            servos: Servos::default(),
+            tendons: Tendons::default(),
             body: BodySpec::default(),
             rotor: RotorSpec::default(),
             rotor_thrust: [1.0; 4],
@@ -83,6 +88,7 @@ impl Default for World {
             pipe_vibration: 0.0,
             pipe_vibration_rate: 10.0,
             optics: Optics::default(),
+            temperature: ROOM,
         }
     }
 }

@@ -160,6 +160,9 @@ const REFLECTIVITY: Range = Range::new(0.02, 1.0, "");
 /// Range of the lens position, as that of the parameters.
 const LENS: Range = Range::new(-0.3, 0.3, "m");
 
+/// Range of a part's size or strength over the nominal one.
+const PART: Range = Range::new(0.8, 1.2, "");
+
 const DEGREE: f64 = PI / 180.0;
 const PERCENT: f64 = 0.01;
 /// Share of an effect of the literature's size; 0 turns it off.
@@ -328,6 +331,12 @@ macro_rules! optional {
     };
 }
 
+macro_rules! per_arm {
+    ($name:literal, $range:expr, $($field:tt)+) => {
+        Key { name: $name, kind: Kind::PerArm($range, |s| &mut s.$($field)+) }
+    };
+}
+
 macro_rules! fault {
     ($name:literal, $words:expr, $field:ident, $read:expr) => {
         Key {
@@ -457,6 +466,53 @@ pub const KEYS: &[Key] = &[
         name: "vehicle.servo_full_us",
         kind: Kind::PerArm(SERVO_PULSE, |s| &mut s.vehicle.servo_full),
     },
+    number!(
+        "vehicle.servo_stop_deg",
+        Range::new(0.0, 3.0, "deg").times(DEGREE),
+        vehicle.servos.stop
+    ),
+    number!(
+        "vehicle.servo_backlash_deg",
+        Range::new(0.0, 3.0, "deg").times(DEGREE),
+        vehicle.servos.backlash
+    ),
+    number!(
+        "vehicle.servo_sag_deg_n_m",
+        Range::new(0.0, 5.0, "deg/(N m)").times(DEGREE),
+        vehicle.servos.sag
+    ),
+    per_arm!(
+        "vehicle.servo_drift_deg_10k",
+        Range::new(-5.0, 5.0, "deg/10 K").times(0.1 * DEGREE),
+        vehicle.servos.drift
+    ),
+    per_arm!(
+        "vehicle.servo_stall_share",
+        Range::new(0.5, 1.2, ""),
+        vehicle.servos.stall
+    ),
+    number!(
+        "vehicle.servo_heat_k",
+        Range::new(0.0, 500.0, "K"),
+        vehicle.servos.heat
+    ),
+    per_arm!(
+        "vehicle.tendon_stiffness_n_m",
+        Range::new(1000.0, 20_000.0, "N/m"),
+        vehicle.tendons.stiffness
+    ),
+    per_arm!(
+        "vehicle.tendon_friction",
+        Range::new(0.0, 1.0, ""),
+        vehicle.tendons.friction
+    ),
+    number!(
+        "vehicle.tendon_creep_percent",
+        Range::new(0.0, 10.0, "%").times(PERCENT),
+        vehicle.tendons.creep
+    ),
+    per_arm!("vehicle.tendon_lever_share", PART, vehicle.tendons.lever),
+    per_arm!("vehicle.reel_radius_share", PART, vehicle.tendons.reel_radius),
     number!("vehicle.mass_kg", Range::new(1.0, 3.0, "kg"), vehicle.body.mass),
     Key {
         name: "vehicle.inertia_kgm2",
@@ -679,6 +735,11 @@ pub const KEYS: &[Key] = &[
         Range::new(0.0, 130.0, "klux").times(1e3),
         world.optics.light
     ),
+    number!(
+        "world.temperature_c",
+        Range::new(-20.0, 60.0, "deg C"),
+        world.temperature
+    ),
     Key {
         name: "sensors.position",
         kind: Kind::Choice(POSITION_SENSORS, |s, v| s.sensors.position = position_sensor(v)),
@@ -752,6 +813,46 @@ pub const KEYS: &[Key] = &[
             s.sensors.barometer_fault = barometer_fault(v);
         }),
     },
+    per_arm!(
+        "sensors.fsr_turn_on_n",
+        Range::new(0.0, 2.0, "N"),
+        sensors.pressure.turn_on
+    ),
+    per_arm!(
+        "sensors.fsr_preload_n",
+        Range::new(0.0, 2.0, "N"),
+        sensors.pressure.preload
+    ),
+    number!(
+        "sensors.fsr_hysteresis_percent",
+        Range::new(0.0, 20.0, "%").times(PERCENT),
+        sensors.pressure.hysteresis
+    ),
+    number!(
+        "sensors.fsr_drift_percent",
+        Range::new(0.0, 10.0, "%").times(PERCENT),
+        sensors.pressure.drift
+    ),
+    number!(
+        "sensors.fsr_temperature_percent_k",
+        Range::new(-1.0, 1.0, "%/K").times(PERCENT),
+        sensors.pressure.temperature
+    ),
+    per_arm!(
+        "sensors.fsr_pad_share",
+        Range::new(0.2, 2.0, ""),
+        sensors.pressure.pad_share
+    ),
+    number!(
+        "sensors.tilt_dead_zone_deg_s",
+        Range::new(0.0, 20.0, "deg/s").times(DEGREE),
+        sensors.tilt.dead_zone
+    ),
+    number!(
+        "sensors.tilt_step_deg",
+        Range::new(0.0, 5.0, "deg").times(DEGREE),
+        sensors.tilt.step
+    ),
     number!(
         "sensors.sbus_slots",
         Range::new(0.0, sbus::SLOTS as f64, "sensors"),

@@ -4,8 +4,10 @@
 use sophie_control::gripper::tendon::Reel;
 use sophie_control::params::Params;
 
-use super::Scenario;
+use super::{ROOM, Scenario};
 use crate::plant::rotor::STANDARD_DENSITY;
+use crate::plant::tendon::{ServoSpec, TendonSpec};
+use crate::sensors::fsr::FsrErrors;
 
 /// How a number differs from another.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,6 +87,7 @@ const RULER: Calibration = Calibration {
     demanded: false,
 };
 const DEGREE: f64 = core::f64::consts::PI / 180.0;
+const PERCENT: f64 = 0.01;
 
 /// What hands leave of a servo's mark, µs: half a degree of 270°.
 const SERVO_MARK: Calibration = Calibration {
@@ -416,6 +419,120 @@ pub const QUANTITIES: &[Quantity] = &[
         ..FIXED
     },
     Quantity {
+        key: "vehicle.servo_stop_deg",
+        all: Some(Spread::Within(0.5, 2.5)),
+        source: "1.8 to 2.6° at 15 kgcm, backlash included (STS3215, TheRobotStudio/SO-ARM100 #134); a dead band of 2 to \
+                 10 µs with stiction",
+        truth: |s| vec![s.vehicle.servos.stop / DEGREE],
+        assumed: |_| vec![0.0],
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.servo_backlash_deg",
+        all: Some(Spread::Within(0.2, 1.0)),
+        source: "about 1° (STS3215, TheRobotStudio/SO-ARM100 #134)",
+        truth: |s| vec![s.vehicle.servos.backlash / DEGREE],
+        assumed: |_| vec![0.0],
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.servo_sag_deg_n_m",
+        all: Some(Spread::Within(0.5, 2.0)),
+        source: "1.8 to 2.6° at 1.47 N m, backlash included (STS3215, TheRobotStudio/SO-ARM100 #134)",
+        truth: |s| vec![s.vehicle.servos.sag / DEGREE],
+        assumed: |_| vec![0.0],
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.servo_drift_deg_10k",
+        each: Some(Spread::Plus(-1.0, 1.0)),
+        source: "assumed; up to 30° at -5 °C is reported of an analog servo (roboternetz)",
+        truth: |s| {
+            s.vehicle
+                .servos
+                .drift
+                .map(|drift| drift / (0.1 * DEGREE))
+                .to_vec()
+        },
+        assumed: |_| vec![0.0; 4],
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.servo_stall_share",
+        all: Some(Spread::Within(0.65, 1.0)),
+        each: Some(Spread::Times(0.95, 1.05)),
+        source: "6 to 7.5 kgcm held of 9.4 to 11 on the label (MG995, MG996R at 6 V: three forum measurements)",
+        truth: |s| s.vehicle.servos.stall.to_vec(),
+        assumed: |s| vec![f64::from(s.params.servo_stall) / ServoSpec::from(s.vehicle.servo).stall; 4],
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.servo_heat_k",
+        all: Some(Spread::Within(100.0, 400.0)),
+        source: "an MG996R burns in 10 to 15 min under load (robotics.stackexchange 8103): 350 K; better cooled ones less \
+                 (assumed)",
+        truth: |s| vec![s.vehicle.servos.heat],
+        assumed: |_| vec![0.0],
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.tendon_stiffness_n_m",
+        all: Some(Spread::Within(2000.0, 8000.0)),
+        each: Some(Spread::Times(0.9, 1.1)),
+        source: "1 mm of nylon, 0.25 m: 7,900 dry (E 2.5 GPa), 3,100 to 3,800 conditioned; knots, anchor in TPU and mount: \
+                 2,000 to 4,000 (estimated)",
+        truth: |s| s.vehicle.tendons.stiffness.to_vec(),
+        assumed: |s| vec![s.params.tendon_stiffness.into(); 4],
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.tendon_friction",
+        all: Some(Spread::Within(0.1, 0.6)),
+        each: Some(Spread::Times(0.8, 1.2)),
+        source: "0.1 to 0.3 lined with PTFE, 0.3 to 0.6 in TPU (handbooks)",
+        truth: |s| s.vehicle.tendons.friction.to_vec(),
+        assumed: |_| vec![0.0; 4],
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.tendon_creep_percent",
+        all: Some(Spread::Within(2.0, 5.0)),
+        source: "nylon: 2 to 5 % of its strain per decade (handbooks)",
+        truth: |s| vec![s.vehicle.tendons.creep / PERCENT],
+        assumed: |_| vec![0.0],
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.tendon_lever_share",
+        each: Some(Spread::Times(0.95, 1.05)),
+        source: "a channel printed 0.75 mm off (assumed)",
+        truth: |s| s.vehicle.tendons.lever.to_vec(),
+        assumed: |s| {
+            let nominal = TendonSpec::of(s.vehicle.arm_bending).lever;
+            vec![f64::from(s.params.tendon_lever) / nominal; 4]
+        },
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.reel_radius_share",
+        each: Some(Spread::Times(0.96, 1.04)),
+        source: "printed ± 0.3 mm, thread on thread ± 0.5 mm (assumed)",
+        truth: |s| s.vehicle.tendons.reel_radius.to_vec(),
+        assumed: |s| {
+            let nominal = TendonSpec::default().reel_radius;
+            vec![f64::from(s.params.reel_radius) / nominal; 4]
+        },
+        ..FIXED
+    },
+    Quantity {
+        key: "faults.tendon_slack_mm",
+        each: Some(Spread::Plus(-0.5, 2.0)),
+        source: "a knot by hand; 1 to 2 mm a day by creep (assumed)",
+        truth: |s| s.faults.tendon_slack.map(|slack| slack / 1e-3).to_vec(),
+        assumed: |_| vec![0.0; 4],
+        ..FIXED
+    },
+    Quantity {
         key: "faults.pressure_gain",
         each: Some(Spread::Times(0.8, 1.2)),
         calibration: Some(Calibration {
@@ -465,6 +582,72 @@ pub const QUANTITIES: &[Quantity] = &[
         all: Some(Spread::Within(25.0, 60.0)),
         source: "270 g of printed TPU that carry flight controller and battery (estimated)",
         truth: |s| s.vehicle.vibration.platform.into_iter().collect(),
+        ..FIXED
+    },
+    Quantity {
+        key: "sensors.fsr_turn_on_n",
+        each: Some(Spread::Within(0.1, 0.8)),
+        source: "0.2 N (Interlink's data sheet), break force 20 to 100 g (guide)",
+        truth: |s| s.sensors.pressure.turn_on.to_vec(),
+        assumed: |_| vec![0.0; 4],
+        ..FIXED
+    },
+    Quantity {
+        key: "sensors.fsr_preload_n",
+        each: Some(Spread::Within(0.0, 0.3)),
+        source: "curvature, compliance and shear shift the calibration (Schofield, PMC5903557; Swanson, PMC6808001); number \
+                 assumed",
+        truth: |s| s.sensors.pressure.preload.to_vec(),
+        assumed: |_| vec![0.0; 4],
+        ..FIXED
+    },
+    Quantity {
+        key: "sensors.fsr_hysteresis_percent",
+        all: Some(Spread::Within(5.0, 10.0)),
+        source: "10 % on average (Interlink's data sheet), Preisach-like (Paredes-Madrid 2018)",
+        truth: |s| vec![s.sensors.pressure.hysteresis / PERCENT],
+        assumed: |_| vec![FsrErrors::default().hysteresis / PERCENT],
+        ..FIXED
+    },
+    Quantity {
+        key: "sensors.fsr_drift_percent",
+        all: Some(Spread::Within(3.0, 5.0)),
+        source: "below 5 % per decade (Interlink's data sheet, 1 kg for 35 days)",
+        truth: |s| vec![s.sensors.pressure.drift / PERCENT],
+        assumed: |_| vec![0.0],
+        ..FIXED
+    },
+    Quantity {
+        key: "sensors.fsr_temperature_percent_k",
+        all: Some(Spread::Within(-0.15, 0.25)),
+        source: "15 % less resistance at 85 °C, 10 % more at 85 °C and humid (Interlink's data sheet), over 62 K",
+        truth: |s| vec![s.sensors.pressure.temperature / PERCENT],
+        assumed: |_| vec![0.0],
+        ..FIXED
+    },
+    Quantity {
+        key: "sensors.fsr_pad_share",
+        each: Some(Spread::Times(0.85, 1.15)),
+        source: "12 % from perch to perch by how the pad lies (estimated); the guide calls it very sensitive to the force's \
+                 distribution",
+        truth: |s| s.sensors.pressure.pad_share.to_vec(),
+        assumed: |_| vec![1.0; 4],
+        ..FIXED
+    },
+    Quantity {
+        key: "sensors.tilt_dead_zone_deg_s",
+        all: Some(Spread::Within(0.0, 5.0)),
+        source: "stands still at 3 °/s, follows from 5 to 10 °/s on (boschsensortec/BNO055_SensorAPI #12)",
+        truth: |s| vec![s.sensors.tilt.dead_zone / DEGREE],
+        assumed: |_| vec![0.0],
+        ..FIXED
+    },
+    Quantity {
+        key: "sensors.tilt_step_deg",
+        all: Some(Spread::Within(0.0, 1.0)),
+        source: "jumps of about a degree are reported of its running calibration (assumed)",
+        truth: |s| vec![s.sensors.tilt.step / DEGREE],
+        assumed: |_| vec![0.0],
         ..FIXED
     },
     Quantity {
@@ -592,6 +775,14 @@ pub const QUANTITIES: &[Quantity] = &[
         all: Some(Spread::Within(0.0, 0.05)),
         source: "the other pose of a planar tag (Schweighofer and Pinz 2006; the share is assumed)",
         truth: |s| vec![s.sensors.pose_outlier_share],
+        ..FIXED
+    },
+    Quantity {
+        key: "world.temperature_c",
+        all: Some(Spread::Within(5.0, 35.0)),
+        source: "days on which it flies",
+        truth: |s| vec![s.world.temperature],
+        assumed: |_| vec![ROOM],
         ..FIXED
     },
     Quantity {

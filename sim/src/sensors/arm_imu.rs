@@ -1,4 +1,10 @@
 //! Sensor at an arm's tip: the BNO055's fused gravity vector, after its datasheet.
+//!
+//! [`TiltErrors`] has what users measure beside, off by default: a fusion that stands still while the sensor turns
+//! slowly ([`still`]), and steps of the running calibration ([`steps`]).
+
+mod steps;
+mod still;
 
 use std::collections::VecDeque;
 
@@ -8,6 +14,8 @@ use rand_pcg::Pcg64Mcg;
 use sophie_control::allocation::wrench::SIDE;
 use sophie_control::maths::vector::Vec3;
 
+use self::steps::Steps;
+use self::still::Still;
 use crate::normal::StandardNormal;
 use crate::streams::Streams;
 
@@ -24,6 +32,15 @@ const MOUNTING: f64 = 0.0087;
 /// Share of the acceleration that leaks into the vector, and its time constant, s (assumed).
 const LEAK: (f64, f64) = (0.1, 0.3);
 
+/// What a sensor has beside its data sheet; zero: nothing.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TiltErrors {
+    /// Rate below which the fused vector stands still, rad/s.
+    pub dead_zone: f64,
+    /// Largest error that a step of the running calibration leaves, rad.
+    pub step: f64,
+}
+
 /// A fault of a sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TiltBreak {
@@ -39,6 +56,8 @@ pub struct ArmImu {
     side: f64,
     mounting: f64,
     leaked: DVec3,
+    still: Still,
+    calibration: Steps,
     pipeline: VecDeque<Vec3>,
     rng: Pcg64Mcg,
     /// Fault to come, and the number of fusion steps until it begins.
@@ -56,6 +75,8 @@ impl ArmImu {
             side: f64::from(SIDE[arm]),
             mounting: streams.within(&format!("{name}.mounting"), -MOUNTING, MOUNTING),
             leaked: DVec3::ZERO,
+            still: Still::new(0.0),
+            calibration: Steps::new(0.0, streams.of(&format!("{name}.calibration"))),
             pipeline: VecDeque::with_capacity(LATENCY + 1),
             rng: streams.of(&name),
             breaks: None,
@@ -70,6 +91,16 @@ impl ArmImu {
         self.mounting += offset;
         self.breaks = fault.map(|(broken, at)| (broken, (at * RATE_HZ) as u64));
         self
+    }
+
+    /// The same with `errors`.
+    #[must_use]
+    pub fn with_errors(self, errors: TiltErrors) -> Self {
+        Self {
+            still: Still::new(errors.dead_zone),
+            calibration: self.calibration.up_to(errors.step),
+            ..self
+        }
     }
 
     /// The present fault, if any.
@@ -93,8 +124,12 @@ impl ArmImu {
         let down = attitude.conjugate() * DVec3::new(0.0, 0.0, 9.806_65);
         let motion = -specific_force - down;
         self.leaked += (motion * LEAK.0 - self.leaked) * (1.0 / (RATE_HZ * LEAK.1));
-        let arm = DQuat::from_rotation_x(self.side * (tilt + self.mounting));
-        let seen = arm.conjugate() * (down + self.leaked);
+        let error = self.mounting + self.calibration.step(1.0 / RATE_HZ);
+        let arm = DQuat::from_rotation_x(self.side * (tilt + error));
+        let seen = match self.still.step(1.0 / RATE_HZ, arm.conjugate() * down) {
+            Some(fused) => fused + arm.conjugate() * self.leaked,
+            None => arm.conjugate() * (down + self.leaked),
+        };
         let mut axis = |x: f64| {
             let n: f64 = StandardNormal.sample(&mut self.rng);
             (((x + n * NOISE) / LSB).round() * LSB) as f32
@@ -129,6 +164,27 @@ mod tests {
             (f64::from(new.y) - 9.806_65 * libm::sin(0.5f64)).abs() < 0.25,
             "{new:?}"
         );
+    }
+
+    #[test]
+    fn a_slow_closing_is_seen_late_and_a_quick_one_at_once() {
+        let rest = DVec3::new(0.0, 0.0, -9.806_65);
+        // Tilts by a radian at `rate` (rad/s); the largest error on the way, rad.
+        let lags = |rate: f64, dead_zone: f64| {
+            let mut imu = ArmImu::new(0, Streams::new(5)).with_errors(TiltErrors {
+                dead_zone,
+                ..TiltErrors::default()
+            });
+            let steps = (RATE_HZ / rate) as u32;
+            (0..steps).fold(0.0_f64, |most, step| {
+                let tilt = f64::from(step) * rate / RATE_HZ;
+                let seen = imu.sample(DQuat::IDENTITY, tilt, rest);
+                most.max(tilt - libm::atan2(f64::from(seen.y), seen.z.into()))
+            })
+        };
+        let dead = 3.0_f64.to_radians();
+        assert!(lags(0.04, dead) > lags(0.04, 0.0) + 0.1, "{}", lags(0.04, dead));
+        assert!((lags(0.3, dead) - lags(0.3, 0.0)).abs() < 0.02);
     }
 
     #[test]

@@ -25,7 +25,7 @@ use crate::plant::load::Acceleration;
 use crate::plant::load::Load;
 use crate::plant::tendon::{ServoSpec, Tendon, TendonSpec};
 use crate::plant::{GRAVITY, STEP};
-use crate::sensors::fsr::{FsrBreak, FsrSensor};
+use crate::sensors::fsr::{FsrBreak, FsrErrors, FsrSensor};
 use crate::streams::Streams;
 
 /// Rest before the closing, s.
@@ -91,6 +91,10 @@ pub struct StandArm {
     pub beam: Option<BeamSpec>,
     /// The servo fitted.
     pub servo: ServoSpec,
+    /// Its tendon with the reel.
+    pub tendon: TendonSpec,
+    /// What its pressure sensor has beside the data sheet's middle.
+    pub fsr: FsrErrors,
     /// Time constant of the rotor, s.
     pub rotor_tau: f64,
     /// Parameters of the stack; they may differ from the true arm.
@@ -114,6 +118,8 @@ impl StandArm {
         self.spec == other.spec
             && self.beam == other.beam
             && self.servo == other.servo
+            && self.tendon == other.tendon
+            && self.fsr == other.fsr
             && reel(self) == reel(other)
             && scale(self) == scale(other)
     }
@@ -134,6 +140,8 @@ impl From<&Closing> for StandArm {
             spec,
             beam: Some(BeamSpec::of(&spec, Masses::of(&BodySpec::default()), DAMPING)),
             servo: what.servo,
+            tendon: TendonSpec::of(ArmBending::Beam),
+            fsr: FsrErrors::default(),
             rotor_tau: ROTOR_TAU,
             params,
             diameter: what.diameter,
@@ -288,20 +296,20 @@ impl ArmStand {
     fn new(what: &StandArm, seed: u64) -> Self {
         let params = &what.params;
         let streams = Streams::new(seed);
-        let mut sensor = FsrSensor::new(what.arm, streams);
+        let mut sensor = FsrSensor::new(what.arm, streams).with_errors(what.fsr);
         sensor.set_broken(what.broken);
         let reel = Reel::from_params(params, what.arm);
         let drive = TendonDrive::new();
         let order = drive.hold(&reel);
-        let (arm, bending): (Box<dyn Flexible>, _) = match what.beam {
-            Some(beam) => (Box::new(BeamArm::new(what.arm, beam)), ArmBending::Beam),
-            None => (Box::new(HingedArm::new(what.arm, what.spec)), ArmBending::Hinge),
+        let arm: Box<dyn Flexible> = match what.beam {
+            Some(beam) => Box::new(BeamArm::new(what.arm, beam)),
+            None => Box::new(HingedArm::new(what.arm, what.spec)),
         };
         Self {
             tilt_noise: streams.of("tilt"),
             pipe: pipe_under(0.5 * what.diameter, what.friction),
             arm,
-            tendon: Tendon::new(what.servo, TendonSpec::of(bending)),
+            tendon: Tendon::new(what.servo, what.tendon),
             sensor,
             thrust: what.thrust,
             thrust_asked: what.thrust,
@@ -367,6 +375,7 @@ impl ArmStand {
     /// Runs filter and gripper when due; `pressure` (Pa) and `tilt` (rad) are true.
     fn run_stack(&mut self, step: u64, close: bool, pressure: f64, tilt: f64) {
         if step.is_multiple_of(FSR_STEPS) {
+            self.sensor.bend(tilt);
             let counts = self.sensor.sample(pressure, 0.002);
             self.pressure = self
                 .fsr

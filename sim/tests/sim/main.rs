@@ -13,6 +13,7 @@ mod maths;
 mod misfit;
 mod motor_map;
 mod motor_pulses;
+mod parts;
 mod radio;
 mod reasons;
 mod receiver;

@@ -9,7 +9,7 @@ use crate::scenario::keys::{KEYS, Kind};
 use crate::scenario::uncertain::{QUANTITIES, Quantity, Spread};
 use crate::scenario::{Overrides, Scenario};
 
-/// A vehicle with none of its numbers at its default.
+/// A vehicle whose body, arms, rotors and servos are all unlike the default one.
 const OTHER: &str = "infill = 8\ngain_k = 6\narm_coefficients = [2.5, -0.2, -0.17, 0.016]\narm_level_share = 0.45\n\
                      arm_gain = [1.2, 1.3, 1.1, 1.2]\narm_offset_deg = [2, -1, 1, -2]\nservo = 'mg996r'\n\
                      servo_release_us = [560, 600, 2450, 550]\nservo_full_us = [2400, 2440, 560, 2450]\nmass_kg = 2\n\

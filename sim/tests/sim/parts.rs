@@ -1,0 +1,134 @@
+//! The gripper that flies on an arm whose tendon, servo and pressure sensor are as real ones: what each costs the grip.
+
+use sophie_control::gripper::grip::ArmState;
+use sophie_sim::parallel;
+use sophie_sim::plant::tendon::{ServoErrors, ServoProfile, ServoSpec, TendonSpec};
+use sophie_sim::sensors::fsr::FsrErrors;
+use sophie_sim::test_stands::arm_stand::{Closing, StandArm, Tried, try_grip};
+
+/// Longest closing, s: the default `clamp_timeout`.
+const LONGEST: f64 = 10.0;
+
+fn arm() -> StandArm {
+    StandArm::from(&Closing {
+        infill: 6.9,
+        diameter: 0.30,
+        servo: ServoProfile::Paper.into(),
+        thrust: 2.5,
+        seconds: LONGEST,
+        seed: 1,
+    })
+}
+
+fn with_tendon(change: impl FnOnce(&mut TendonSpec)) -> StandArm {
+    let mut arm = arm();
+    change(&mut arm.tendon);
+    arm
+}
+
+fn with_servo(errors: ServoErrors) -> StandArm {
+    StandArm {
+        servo: ServoSpec {
+            errors,
+            ..ServoProfile::Paper.into()
+        },
+        ..arm()
+    }
+}
+
+fn with_fsr(change: impl FnOnce(&mut FsrErrors)) -> StandArm {
+    let mut arm = arm();
+    change(&mut arm.fsr);
+    arm
+}
+
+/// Names and results, printed.
+fn tried(cases: &[(String, StandArm)]) -> Vec<Tried> {
+    let tried: Vec<Tried> = parallel::each(cases, |(_, arm)| try_grip(arm, LONGEST));
+    for ((name, _), tried) in cases.iter().zip(&tried) {
+        let Tried {
+            grip,
+            asked,
+            steady,
+            peak,
+        } = tried;
+        println!(
+            "{name:24} {:?} {:?}, closed in {:?} s, asked {asked:.0} N, {steady:.3} N m at rest, peak {peak:.0} Pa",
+            grip.state, grip.fault, grip.closure
+        );
+    }
+    tried
+}
+
+#[test]
+fn friction_costs_force_and_the_gripper_still_holds_a_smooth_channel_s_arm() {
+    let cases = [0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0].map(|friction| {
+        (
+            format!("friction {friction}"),
+            with_tendon(|spec| spec.friction = friction),
+        )
+    });
+    let tried = tried(&cases);
+    assert!(
+        tried[..3]
+            .iter()
+            .all(|tried| tried.grip.state == ArmState::Holding)
+    );
+    // At rest on the pipe the reel pulls more than in a smooth channel: 1.2 rad of bend at 0.2, half of which it costs.
+    let share = tried[2].steady / tried[0].steady;
+    assert!((1.02..1.3).contains(&share), "{share}");
+}
+
+#[test]
+fn a_soft_thread_changes_the_reel_s_way_and_not_the_grip_s_force() {
+    let cases = [8000.0, 5000.0, 3000.0, 2000.0].map(|stiffness| {
+        (
+            format!("stiffness {stiffness}"),
+            with_tendon(|spec| spec.stiffness = stiffness),
+        )
+    });
+    let tried = tried(&cases);
+    assert!(tried[1].grip.state == ArmState::Holding);
+    let share = tried[1].steady / tried[0].steady;
+    assert!((share - 1.0).abs() < 0.1, "{share}");
+    // The stack takes the reel's way for a stiff thread's: it asks for more than there is.
+    assert!(tried[1].asked > 1.2 * tried[0].asked);
+}
+
+#[test]
+fn servos_and_sensors_as_they_are() {
+    let degree = 1.0_f64.to_radians();
+    let servo = |change: fn(&mut ServoErrors, f64), by: f64| {
+        let mut errors = ServoErrors::default();
+        change(&mut errors, by);
+        with_servo(errors)
+    };
+    let cases = [
+        ("whole".to_owned(), arm()),
+        (
+            "stop 0.5 deg".to_owned(),
+            servo(|e, by| e.stop = by, 0.5 * degree),
+        ),
+        ("stop 1 deg".to_owned(), servo(|e, by| e.stop = by, degree)),
+        ("stop 2 deg".to_owned(), servo(|e, by| e.stop = by, 2.0 * degree)),
+        (
+            "backlash 1 deg".to_owned(),
+            servo(|e, by| e.backlash = by, degree),
+        ),
+        (
+            "sag 1.5 deg/N m".to_owned(),
+            servo(|e, by| e.sag = by, 1.5 * degree),
+        ),
+        ("turn-on 0.4 N".to_owned(), with_fsr(|e| e.turn_on = 0.4)),
+        ("preload 0.15 N".to_owned(), with_fsr(|e| e.preload = 0.15)),
+        ("hysteresis 10 %".to_owned(), with_fsr(|e| e.hysteresis = 0.1)),
+        ("drift 4 %".to_owned(), with_fsr(|e| e.drift = 0.04)),
+    ];
+    let tried = tried(&cases);
+    // A load that the servo gives way to, and a sensor that reads another pressure, leave a grip that the loop finds.
+    for index in [0, 4, 5, 8, 9] {
+        assert!(tried[index].grip.state == ArmState::Holding, "{}", cases[index].0);
+    }
+    // What the sensor leaves out, the grip has too much: 0.4 N of 38 mm square are 277 Pa.
+    assert!(tried[6].peak > tried[0].peak + 150.0, "{}", tried[6].peak);
+}
