@@ -227,7 +227,7 @@ impl Board {
             voltage: plant.battery_voltage(),
             current: plant.battery_current(),
             servo_voltage: plant.servo_voltage(),
-            elapsed: self.truth.get().elapsed + 1e-3,
+            elapsed: self.truth.get().elapsed + plant.lapse() * 1e-3,
         });
         self.imu_ready.signal(batch);
     }

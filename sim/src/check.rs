@@ -8,7 +8,7 @@ pub mod loops;
 mod row;
 mod stability;
 mod thrust;
-mod wind;
+pub(crate) mod wind;
 mod yaw;
 
 pub(crate) use self::grip::needed;

@@ -21,7 +21,7 @@ use crate::devices::sbus::Receiver;
 use crate::pilot::{Pilot, PilotOutput, VisibleState};
 use crate::plant::Plant;
 use crate::record::{FlightRecord, Observer, Outcome};
-use crate::scenario::{Scenario, Step};
+use crate::scenario::{LAPSE_TIME, Scenario, Step};
 
 /// Milliseconds between two calls of [`Observer::progress`].
 const PROGRESS_MS: u64 = 250;
@@ -34,6 +34,8 @@ struct Snapshot<'a, A> {
     step: Option<(usize, &'a Step)>,
     plant: &'a Plant,
     stack: &'a A,
+    /// The last millisecond of a hold's time on the pipe.
+    lapse_ends: bool,
 }
 
 impl<A> Snapshot<'_, A> {
@@ -149,10 +151,12 @@ impl<A: Aircraft> World<A> {
             if output.step != began.0 {
                 began = (output.step, t);
             }
-            let judged = judge.step(&self.snapshot(step));
-            self.plant.push = push(step, t - began.1);
+            let step_time = t - began.1;
+            let judged = judge.step(&self.snapshot(step, step_time));
+            self.plant.push = push(step, step_time);
+            self.plant.hasten(lapse(step, step_time));
             reset(step, began, ms, &mut self.stack);
-            recorder.step(&self.snapshot(step), self.pilot.throttle(), observer);
+            recorder.step(&self.snapshot(step, step_time), self.pilot.throttle(), observer);
             if ms.is_multiple_of(PROGRESS_MS) {
                 observer.progress(t, self.stack.mode(), -self.plant.pose().position.z);
             }
@@ -171,6 +175,7 @@ impl<A: Aircraft> World<A> {
         }
         let ending = Ending {
             outcome,
+            verdicts: judge.verdicts(),
             t: self.ms as f64 * 1e-3,
             wall_seconds: wall.elapsed().as_secs_f64(),
         };
@@ -191,12 +196,13 @@ impl<A: Aircraft> World<A> {
         pose.position.is_finite() && pose.omega.is_finite()
     }
 
-    fn snapshot<'a>(&'a self, step: Option<(usize, &'a Step)>) -> Snapshot<'a, A> {
+    fn snapshot<'a>(&'a self, step: Option<(usize, &'a Step)>, step_time: f64) -> Snapshot<'a, A> {
         Snapshot {
             ms: self.ms,
             step,
             plant: &self.plant,
             stack: &self.stack,
+            lapse_ends: lapse_ends(step, step_time),
         }
     }
 }
@@ -252,7 +258,7 @@ fn seen(plant: &Plant, t: f64) -> VisibleState {
 /// Sideways push: middle third of the hold, or during a reset.
 fn push(step: Option<(usize, &Step)>, step_time: f64) -> DVec3 {
     match step {
-        Some((_, Step::Hold { seconds, push }))
+        Some((_, Step::Hold { seconds, push, .. }))
             if (seconds / 3.0..2.0 * seconds / 3.0).contains(&step_time) =>
         {
             DVec3::new(0.0, *push, 0.0)
@@ -260,6 +266,26 @@ fn push(step: Option<(usize, &Step)>, step_time: f64) -> DVec3 {
         Some((_, Step::Reset { push, .. })) => DVec3::new(0.0, *push, 0.0),
         _ => DVec3::ZERO,
     }
+}
+
+/// How many times as fast as the motion slow processes run: a hold's lapse within [`LAPSE_TIME`] after it.
+fn lapse(step: Option<(usize, &Step)>, step_time: f64) -> f64 {
+    match step {
+        Some((_, Step::Hold { seconds, lapse, .. }))
+            if *lapse > 0.0 && (*seconds..seconds + LAPSE_TIME).contains(&step_time) =>
+        {
+            (lapse / LAPSE_TIME).max(1.0)
+        }
+        _ => 1.0,
+    }
+}
+
+/// The last two milliseconds of a hold with a lapse.
+fn lapse_ends(step: Option<(usize, &Step)>, step_time: f64) -> bool {
+    let Some((_, Step::Hold { seconds, lapse, .. })) = step else {
+        return false;
+    };
+    *lapse > 0.0 && step_time >= Step::hold_time(*seconds, *lapse) - 2e-3
 }
 
 /// Performs the reset of a step that has one, once.

@@ -92,6 +92,8 @@ pub struct Plant {
     pub push: DVec3,
     /// External moment, N·m, body.
     pub moment: DVec3,
+    /// Inputs of the last step.
+    actuators: Actuators,
 }
 
 /// State of the vehicle and its world except the arms.
@@ -102,6 +104,8 @@ struct Base {
     limbs: PerArm<Limb>,
     battery: Battery,
     servo_battery: Battery,
+    /// How many times as fast as the motion the slow processes run.
+    lapse: f64,
     air: Air,
     gust: Gust,
     ground_belly: Belly,
@@ -160,11 +164,30 @@ impl Plant {
             base: Base::new(scenario),
             push: DVec3::ZERO,
             moment: DVec3::ZERO,
+            actuators: Actuators::default(),
         }
+    }
+
+    /// Inputs of the last step.
+    #[must_use]
+    pub fn actuators(&self) -> Actuators {
+        self.actuators
+    }
+
+    /// Lets creep, heat, drift and batteries run `factor` times as fast as the motion: a time on the pipe within a minute.
+    pub fn hasten(&mut self, factor: f64) {
+        self.base.lapse = factor;
+    }
+
+    /// How many times as fast as the motion the slow processes run.
+    #[must_use]
+    pub fn lapse(&self) -> f64 {
+        self.base.lapse
     }
 
     /// Advances by [`STEP`].
     pub fn step(&mut self, actuators: &Actuators) {
+        self.actuators = *actuators;
         let push = Load {
             force: self.push,
             moment: self.moment,
@@ -355,6 +378,7 @@ impl Base {
             limbs: std::array::from_fn(limb),
             battery: Battery::new(v.battery_charge).aged(v.battery_age, v.battery_sag),
             servo_battery: Battery::of_servos(v.servo_charge),
+            lapse: 1.0,
             air: Air::new(v.air, scenario.air(), v.hover_speed(), scenario.streams()),
             gust: Gust::new(w.gust_force, w.gust_moment, scenario.streams())
                 .in_wind(w.steady_wind, scenario.wind_from()),
@@ -406,15 +430,16 @@ impl Base {
             let drive = Drive {
                 dt: STEP,
                 thrust: limb.thrust,
-                tendon: limb.tendon.step(STEP, servo, arm.tilt()),
+                tendon: limb.tendon.step(STEP, self.lapse, servo, arm.tilt()),
                 momentum: limb.rotor.momentum(),
                 drag: limb.rotor.drag(),
             };
             limb.pressure = arm.touch(STEP, &pose, &nearby, &mut load);
             arm.drive(&drive, &carrier, &mut load);
         }
-        self.battery.step(STEP, current);
-        self.servo_battery.step(STEP, servo_current);
+        let slow = self.lapse * STEP;
+        self.battery.step(slow, current);
+        self.servo_battery.step(slow, servo_current);
 
         let acceleration = self.body.accelerate(&pose, load, gravity, arms.each_ref());
         self.specific_force = acceleration.linear - gravity;

@@ -3,7 +3,7 @@
 use sophie_control::allocation::wrench::PerArm;
 use sophie_control::mode::Mode;
 
-use crate::scenario::Scenario;
+use crate::scenario::{Rule, Scenario};
 
 /// A flown flight.
 #[derive(Clone, Debug)]
@@ -12,6 +12,8 @@ pub struct FlightRecord {
     pub scenario: Scenario,
     /// Outcome, with the reason of a failure.
     pub outcome: Outcome,
+    /// What each rule of the judge says; the scenario's own decides the outcome.
+    pub verdicts: Vec<Verdict>,
     /// Samples at [`SAMPLE_HZ`].
     pub samples: Vec<Sample>,
     /// One entry per step begun.
@@ -34,6 +36,15 @@ pub struct FlightRecord {
 
 /// Samples per simulated second.
 pub const SAMPLE_HZ: f64 = 100.0;
+
+/// A rule's verdict.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Verdict {
+    /// The rule.
+    pub rule: Rule,
+    /// First fault that it found, with its time, in one line; `None`: none as far as the flight went.
+    pub fault: Option<String>,
+}
 
 /// How a flight ended.
 #[derive(Clone, Debug, PartialEq, Eq)]

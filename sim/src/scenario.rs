@@ -15,6 +15,7 @@ mod overrides;
 mod parts;
 mod read;
 mod read_steps;
+mod rule;
 pub mod settings;
 mod source;
 mod steps;
@@ -28,7 +29,8 @@ pub use faults::Faults;
 pub use known::{Difference, Known};
 pub use overrides::Overrides;
 pub use parts::{PressureSensors, ROOM, Servos, Tendons};
-pub use steps::{STEPS, StepKind, StepNumber};
+pub use rule::Rule;
+pub use steps::{LAPSE_TIME, STEPS, StepKind, StepNumber};
 
 use glam::DVec3;
 use sophie_control::allocation::wrench::{Configuration, PerArm};
@@ -72,6 +74,8 @@ pub struct Scenario {
     pub mixer: sophie_mixers::Variant,
     /// Arms that close on the pipe.
     pub arms: ArmChoice,
+    /// Rule that decides whether the mission is accomplished.
+    pub judge: Rule,
     /// Air and pipe.
     pub world: World,
     /// Sensors beside those of every board.
@@ -408,6 +412,8 @@ pub enum Step {
         seconds: f64,
         /// Sideways at the centre of mass in the middle third, N.
         push: f64,
+        /// Time on the pipe after it, s: within [`LAPSE_TIME`] creep, heat, drift and batteries run as if it passed.
+        lapse: f64,
     },
     /// Spool up and turn the perch switch off, until displayed.
     Open,

@@ -28,6 +28,14 @@ pub fn row(scenario: &Scenario, built: &Built) -> Row {
         .advise("raise stick_angle, make it lighter, or wait for less wind")
 }
 
+/// Force of the scenario's wind and of three times the RMS of its gusts on a vehicle whose rotors stand still, N.
+pub(crate) fn on_pipe(scenario: &Scenario) -> f64 {
+    let (world, drag) = (&scenario.world, scenario.vehicle.air.drag);
+    let gusts = GUST_FACTOR * std::f64::consts::SQRT_2;
+    let speed = world.air.wind.speed + gusts * world.air.wind.gust;
+    world.steady_wind + gusts * world.gust_force + drag.on_body(DVec3::X * speed, world.air.density).length()
+}
+
 /// Drag in the scenario's wind and three times the RMS of its gusts on both axes, N.
 fn of_air(scenario: &Scenario) -> f64 {
     let (drag, air) = (scenario.vehicle.air.drag, scenario.world.air);

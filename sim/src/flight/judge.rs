@@ -1,15 +1,20 @@
-//! Judges a flight by the plant's true state.
+//! Judges a flight by the plant's true state, by both rules at once; the scenario's own ends the flight.
+
+mod holding;
+mod push_test;
 
 use glam::DVec3;
 use sophie_control::allocation::wrench::PerArm;
 use sophie_control::gripper::tendon::ForceLimit;
 use sophie_control::mode::Mode;
 
+use self::holding::Holding;
 use super::Snapshot;
 use super::aircraft::Aircraft;
 use crate::plant::Plant;
 use crate::plant::contact::BELLY_Z;
-use crate::scenario::{Scenario, Step};
+use crate::record::Verdict;
+use crate::scenario::{Rule, Scenario, Step};
 use crate::sensors::fsr::LARGEST_ERROR;
 
 /// Largest slip of a gripped vehicle under a push, m.
@@ -51,6 +56,11 @@ pub struct Judge {
     /// Time of the last push, s.
     pushed: f64,
     last_step: Option<usize>,
+    holding: Holding,
+    /// The rule that ends the flight.
+    rule: Rule,
+    /// First fault of each rule.
+    faults: [Option<String>; 2],
 }
 
 impl Judge {
@@ -71,35 +81,74 @@ impl Judge {
             hold_start: None,
             pushed: f64::NEG_INFINITY,
             last_step: None,
+            holding: Holding::new(scenario),
+            rule: scenario.judge,
+            faults: [None, None],
         }
     }
 
-    /// Checks the truth; returns the reason if the mission failed.
+    /// What each rule has found so far.
+    pub fn verdicts(&self) -> Vec<Verdict> {
+        let [paper, holding] = self.faults.clone();
+        let verdict = |rule, fault| Verdict { rule, fault };
+        vec![verdict(Rule::Paper, paper), verdict(Rule::Holding, holding)]
+    }
+
+    /// Checks the truth; returns the reason if the mission failed by the scenario's rule.
     pub fn step(&mut self, now: &Snapshot<'_, impl Aircraft>) -> Option<String> {
-        if let Some(why) = self.harmed(now).or_else(|| self.badly_rolled(now)) {
-            return Some(why);
+        let common = self.lost(now).or_else(|| self.badly_rolled(now));
+        let common = common.or_else(|| self.after_reset(now));
+        let pressed = self.pressed_badly(now);
+        let (common, tolerances) = match common {
+            Some(why) => (Some(why), None),
+            None => self.let_go(now),
+        };
+        let held = tolerances.and_then(|tolerances| self.badly_held(now.plant, tolerances));
+        let paper = common.clone().or(pressed).or(held);
+        let holding = common.or_else(|| self.holding.step(now));
+        let found = match self.rule {
+            Rule::Paper => paper.clone(),
+            Rule::Holding => holding.clone(),
+        };
+        for (first, fault) in self.faults.iter_mut().zip([paper, holding]) {
+            if first.is_none() {
+                *first = fault.map(|fault| format!("{fault} (at {:.1} s)", now.t()));
+            }
         }
-        if let Some(why) = self.after_reset(now.t(), now.step, now.plant, now.stack) {
-            return Some(why);
-        }
+        found
+    }
+
+    /// Pressures and pulls beyond the paper's limits, and a proof that is wrong by them.
+    fn pressed_badly(&mut self, now: &Snapshot<'_, impl Aircraft>) -> Option<String> {
+        let overloaded = self.overloaded(now);
+        let hollow = self.hollow(now);
         let grip = now.stack.grip().is_some_and(|g| g.proven);
         let just_proven = grip && !self.proven;
         self.proven = grip;
-        if just_proven && let Some(why) = self.badly_held(now.plant, 1.0) {
-            return Some(format!("the grip was proven wrongly: {why}"));
-        }
-        self.let_go(now)
+        let wrongly = || {
+            let why = self.badly_held(now.plant, 1.0)?;
+            Some(format!("the grip was proven wrongly: {why}"))
+        };
+        overloaded
+            .or(hollow)
+            .or_else(|| just_proven.then(wrongly).flatten())
     }
 
-    fn harmed(&self, now: &Snapshot<'_, impl Aircraft>) -> Option<String> {
-        let (t, plant, stack) = (now.t(), now.plant, now.stack);
-        let pose = plant.pose();
+    /// A simulation that diverged, a vehicle that crashed.
+    fn lost(&self, now: &Snapshot<'_, impl Aircraft>) -> Option<String> {
+        let pose = now.plant.pose();
         if !pose.position.is_finite() || !pose.omega.is_finite() {
             return Some("the simulation diverged".to_owned());
         }
         if pose.position.z > -BELLY_Z && pose.velocity.z > CRASH_SPEED {
             return Some(format!("crashed into the ground at {:.1} m/s", pose.velocity.z));
         }
+        None
+    }
+
+    /// A pressure or a pull beyond the paper's limits.
+    fn overloaded(&self, now: &Snapshot<'_, impl Aircraft>) -> Option<String> {
+        let (t, plant, stack) = (now.t(), now.plant, now.stack);
         let jolted = stack.reset().is_some_and(|r| t - r.at < SETTLE);
         let open = stack.mode() == Mode::Flight;
         let allowed = if jolted || open {
@@ -150,8 +199,8 @@ impl Judge {
         None
     }
 
-    /// A perch that ends during a hold.
-    fn let_go(&mut self, now: &Snapshot<'_, impl Aircraft>) -> Option<String> {
+    /// A perch that ends during a hold; else how many tolerances the pressure may be off.
+    fn let_go(&mut self, now: &Snapshot<'_, impl Aircraft>) -> (Option<String>, Option<f64>) {
         let (t, plant, stack) = (now.t(), now.plant, now.stack);
         // Holds without the radio too.
         let holds = match now.step {
@@ -160,42 +209,35 @@ impl Judge {
             _ => false,
         };
         if !holds {
-            return None;
+            return (None, None);
         }
         let position = plant.pose().position;
         let (start, place) = *self.hold_start.get_or_insert((t, position));
         if stack.mode() != Mode::Perched {
-            return Some(format!(
-                "left the perch during the hold: mode {}",
-                stack.mode().name()
-            ));
+            let mode = stack.mode().name();
+            return (Some(format!("left the perch during the hold: mode {mode}")), None);
         }
         if plant.thrust().iter().any(|thrust| *thrust > STOPPED) && t - start > SETTLE {
-            return Some("a rotor turned during the hold".to_owned());
+            return (Some("a rotor turned during the hold".to_owned()), None);
         }
         let slip = (position - place).length();
         if slip > SLIP {
-            return Some(format!(
-                "slipped {:.0} mm on the pipe, allowed {:.0}",
-                slip * 1e3,
-                SLIP * 1e3
-            ));
+            let (slip, allowed) = (slip * 1e3, SLIP * 1e3);
+            return (
+                Some(format!("slipped {slip:.0} mm on the pipe, allowed {allowed:.0}")),
+                None,
+            );
         }
         if plant.push != DVec3::ZERO {
             self.pushed = t;
         }
         let quiet = t - start.max(self.pushed) > SETTLE;
-        self.badly_held(plant, if quiet { 1.0 } else { DISTURBED })
+        (None, Some(if quiet { 1.0 } else { DISTURBED }))
     }
 
     /// Across a reset no rotor turns before the pilot arms, and a gripped vehicle stays gripped.
-    fn after_reset(
-        &mut self,
-        t: f64,
-        step: Option<(usize, &Step)>,
-        plant: &Plant,
-        stack: &impl Aircraft,
-    ) -> Option<String> {
+    fn after_reset(&mut self, now: &Snapshot<'_, impl Aircraft>) -> Option<String> {
+        let (t, step, plant, stack) = (now.t(), now.step, now.plant, now.stack);
         match step {
             Some((_, Step::Reset { .. })) => {
                 let reset = stack.reset().filter(|r| Some(r.step) == step.map(|(i, _)| i));
@@ -213,12 +255,13 @@ impl Judge {
             _ => self.hanging = None,
         }
         let slip = (plant.pose().position - self.hanging?).length();
-        if slip > SLIP {
-            return Some(format!(
-                "slipped {:.0} mm on the pipe after the reset",
-                slip * 1e3
-            ));
-        }
+        (slip > SLIP).then(|| format!("slipped {:.0} mm on the pipe after the reset", slip * 1e3))
+    }
+
+    /// An arm of a vehicle that hangs after a reset without the pressure of one that touches.
+    fn hollow(&self, now: &Snapshot<'_, impl Aircraft>) -> Option<String> {
+        self.hanging?;
+        let plant = now.plant;
         let mut arms = plant.pressure().into_iter().zip(self.chosen).enumerate();
         // Without pulses a weak servo's gears slip down to their friction; no arm may come off.
         let (arm, (pressure, _)) = arms.find(|(_, (p, chosen))| *chosen && *p < self.released)?;

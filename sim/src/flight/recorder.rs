@@ -8,7 +8,7 @@ use super::Snapshot;
 use super::aircraft::{Aircraft, ReportedStatus};
 use super::strikes::Strikes;
 use crate::plant::Plant;
-use crate::record::{Event, FlightRecord, Grip, Observer, Outcome, Phase, SAMPLE_HZ, Sample};
+use crate::record::{Event, FlightRecord, Grip, Observer, Outcome, Phase, SAMPLE_HZ, Sample, Verdict};
 use crate::scenario::{Scenario, Step};
 
 const SAMPLE_MS: u64 = (1000.0 / SAMPLE_HZ) as u64;
@@ -44,6 +44,8 @@ struct Current {
 pub struct Ending {
     /// Whether and why the mission was accomplished or not.
     pub outcome: Outcome,
+    /// What each rule of the judge found.
+    pub verdicts: Vec<Verdict>,
     /// Time since power-up, s.
     pub t: f64,
     /// Wall time of the simulation, s.
@@ -125,6 +127,7 @@ impl Recorder {
     ) -> FlightRecord {
         let Ending {
             outcome,
+            verdicts,
             t,
             wall_seconds,
         } = ending;
@@ -139,6 +142,7 @@ impl Recorder {
         FlightRecord {
             scenario: scenario.clone(),
             outcome,
+            verdicts,
             samples: self.samples,
             phases: self.phases,
             events: self.events,

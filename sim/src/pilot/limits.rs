@@ -20,7 +20,7 @@ pub fn of(step: &Step, assist: Assist) -> f64 {
         Step::Touch => 180.0,
         Step::Clamp { .. } => 60.0,
         Step::Perch { .. } => 120.0,
-        Step::Hold { seconds, .. } => seconds + 1.0,
+        Step::Hold { seconds, lapse, .. } => Step::hold_time(seconds, lapse) + 1.0,
         Step::Open => 15.0,
         Step::Release => 45.0,
         Step::FlyTo { .. } => 120.0,

@@ -200,8 +200,8 @@ impl Mission {
             Step::Touch | Step::Clamp { .. } | Step::Perch { .. } if self.assist == Assist::Autonomous => {
                 self.perch_autonomously(step, view, dt)
             }
-            Step::Hold { seconds, .. } if self.assist == Assist::Autonomous => {
-                let held = self.hold(view, seconds, dt);
+            Step::Hold { seconds, lapse, .. } if self.assist == Assist::Autonomous => {
+                let held = self.hold(view, Step::hold_time(seconds, lapse), dt);
                 self.hands_off(held)
             }
             Step::Open | Step::Release if self.assist == Assist::Autonomous => {
@@ -215,7 +215,7 @@ impl Mission {
             Step::Touch => self.touch(view, sticks[3], dt),
             Step::Clamp { throttle } => self.clamp(view, throttle, sticks[3], dt),
             Step::Perch { throttle } => self.perch(view, throttle, sticks[3], dt),
-            Step::Hold { seconds, .. } => self.hold(view, seconds, dt),
+            Step::Hold { seconds, lapse, .. } => self.hold(view, Step::hold_time(seconds, lapse), dt),
             Step::Open => self.open(view, dt),
             Step::Release => self.release(view, dt),
             Step::Land => self.land(view, dt),

@@ -159,6 +159,7 @@ fn the_whole_mission_passes_the_modes_in_order() {
         Step::Hold {
             seconds: 5.0,
             push: 0.0,
+            lapse: 0.0,
         },
         Step::Release,
         Step::FlyTo {
@@ -345,6 +346,7 @@ fn every_step_ends_on_a_failsafe_with_its_reason() {
         Step::Hold {
             seconds: 5.0,
             push: 0.0,
+            lapse: 0.0,
         },
         Step::Open,
         Step::Release,

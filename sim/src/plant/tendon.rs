@@ -165,15 +165,15 @@ impl Tendon {
         (*seconds <= 0.0).then_some(*broken)
     }
 
-    /// Advances by `dt` s under pulses of `pulse_us` µs (0: none) at tilt `alpha` rad; returns the moment on the tilt,
+    /// Advances by `dt` s, creep and heat by `lapse` times as much, under pulses of `pulse_us` µs (0: none) at tilt `alpha` rad; returns the moment on the tilt,
     /// N·m (never positive). Without pulses gear friction holds 35 % of the stall torque and slips beyond.
-    pub fn step(&mut self, dt: f64, pulse_us: f64, alpha: f64) -> f64 {
+    pub fn step(&mut self, dt: f64, lapse: f64, pulse_us: f64, alpha: f64) -> f64 {
         self.to_next_frame -= dt;
         if self.to_next_frame <= 0.0 {
             self.to_next_frame += self.servo.frame;
             self.target = self.commanded(pulse_us);
         }
-        self.warm(dt);
+        self.warm(lapse * dt);
         let before = self.servo_angle();
         let broken = self.broken(dt);
         if broken != Some(TendonBreak::Stuck) {
@@ -199,7 +199,7 @@ impl Tendon {
         } else {
             0.0
         };
-        self.crept = self.creep.step(dt, self.tension / stiffness);
+        self.crept = self.creep.step(lapse * dt, self.tension / stiffness);
         // The thread's middle moves by the mean of what the reel winds and what the arm takes.
         let along = self.friction.step(0.5 * (r * turned - h * tilt_change), alpha);
         -h * self.tension * along

@@ -6,7 +6,7 @@ use sophie_control::pilot::rc::ArmChoice;
 use sophie_mixers::Variant;
 
 use super::{
-    Assist, Assumed, Expect, Faults, Known, Overrides, Pilot, ROOM, Scenario, Sensors, Servos, Tendons,
+    Assist, Assumed, Expect, Faults, Known, Overrides, Pilot, ROOM, Rule, Scenario, Sensors, Servos, Tendons,
     Vehicle, World,
 };
 use crate::plant::air::wind::WindSpec;
@@ -142,6 +142,7 @@ impl Scenario {
             params: Params::default(),
             mixer: Variant::Flexible,
             arms: ArmChoice::All,
+            judge: Rule::default(),
             world: World::default(),
             sensors: Sensors::default(),
             faults: Faults::default(),

@@ -7,7 +7,7 @@ use sophie_control::pilot::rc::ArmChoice;
 use sophie_mixers::Variant;
 
 use super::faults;
-use super::{Assist, Known, PositionSensor, Scenario};
+use super::{Assist, Known, PositionSensor, Rule, Scenario};
 use crate::devices::sbus;
 use crate::plant::rotor::delay;
 use crate::plant::tendon::ServoProfile;
@@ -364,6 +364,10 @@ pub const KEYS: &[Key] = &[
     Key {
         name: "mixer",
         kind: Kind::Choice(MIXERS, |s, v| s.mixer = mixer(v)),
+    },
+    Key {
+        name: "judge",
+        kind: Kind::Choice(Rule::WORDS, |s, v| s.judge = Rule::from_word(v)),
     },
     Key {
         name: "arms",

@@ -4,7 +4,7 @@ use sophie_control::allocation::wrench::Configuration;
 use sophie_control::pilot::rc::ArmChoice;
 use sophie_mixers::Variant;
 
-use super::{Assist, Known, PositionSensor, Scenario};
+use super::{Assist, Known, PositionSensor, Rule, Scenario};
 
 /// Command line settings, within the ranges of [`keys`](super::keys), override the file's vehicle; the stack's
 /// parameters follow, but for the file's `[params]`.
@@ -26,6 +26,8 @@ pub struct Overrides {
     pub assist: Option<Assist>,
     /// Arms that close.
     pub arms: Option<ArmChoice>,
+    /// Rule of the judge.
+    pub judge: Option<Rule>,
     /// Seed.
     pub seed: Option<u64>,
 }
@@ -45,6 +47,7 @@ impl Overrides {
         set(&mut scenario.arms, self.arms);
         set(&mut scenario.sensors.position, self.sensors);
         set(&mut scenario.pilot.assist, self.assist);
+        set(&mut scenario.judge, self.judge);
         set(&mut scenario.seed, self.seed);
     }
 }

@@ -102,8 +102,9 @@ pub const STEPS: &[StepKind] = &[
         numbers: &[
             number("seconds", Range::new(0.1, 600.0, "s"), 20.0),
             number("push_n", Range::new(0.0, 20.0, "N"), 1.5),
+            number("lapse_min", Range::new(0.0, 600.0, "min").times(60.0), 0.0),
         ],
-        build: |[seconds, push, _]| Step::Hold { seconds, push },
+        build: |[seconds, push, lapse]| Step::Hold { seconds, push, lapse },
     },
     StepKind {
         name: "open",
@@ -163,7 +164,16 @@ pub const STEPS: &[StepKind] = &[
     },
 ];
 
+/// Duration of a hold's lapse, s: the grip's loop takes seconds, so that it follows.
+pub const LAPSE_TIME: f64 = 60.0;
+
 impl Step {
+    /// Duration of a hold of `seconds` with a `lapse`, s.
+    #[must_use]
+    pub fn hold_time(seconds: f64, lapse: f64) -> f64 {
+        seconds + if lapse > 0.0 { LAPSE_TIME } else { 0.0 }
+    }
+
     /// Name in scenario files and flight records.
     pub const fn name(&self) -> &'static str {
         match self {

@@ -195,6 +195,7 @@ fn the_command_line_wins_over_the_file() {
         sensors: Some(PositionSensor::Pose),
         assist: Some(Assist::Hold),
         arms: Some(ArmChoice::Rear),
+        judge: Some(Rule::Holding),
         seed: Some(77),
     };
     let text = "seed = 3\nmixer = 'rigid'\narms = 'front'\n[vehicle]\ninfill = 8\nconfiguration = 'B'";

@@ -357,7 +357,7 @@ impl ArmStand {
         let drive = Driven {
             dt: STEP,
             thrust: self.thrust,
-            tendon: self.tendon.step(STEP, pulse, self.arm.tilt()),
+            tendon: self.tendon.step(STEP, 1.0, pulse, self.arm.tilt()),
             ..Driven::default()
         };
         self.arm.drive(&drive, &CARRIER, body);

@@ -19,6 +19,7 @@ pub(super) fn mission(seed: u64, sensors: PositionSensor, calm: bool) -> Scenari
         Step::Hold {
             seconds: 5.0,
             push: 1.5,
+            lapse: 0.0,
         },
         Step::Release,
         Step::FlyTo {

@@ -175,7 +175,7 @@ impl Bench {
         let drive = Driven {
             dt: STEP,
             thrust: self.thrust,
-            tendon: self.tendon.step(STEP, pulse, alpha) + self.push,
+            tendon: self.tendon.step(STEP, 1.0, pulse, alpha) + self.push,
             ..Driven::default()
         };
         self.arm.drive(&drive, &BENCH, body);

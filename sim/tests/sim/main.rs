@@ -8,6 +8,7 @@ mod flight_step;
 mod grip_faults;
 mod hardware_faults;
 mod imu_rates;
+mod judge;
 mod links;
 mod maths;
 mod misfit;

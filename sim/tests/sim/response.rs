@@ -90,6 +90,7 @@ fn in_flight_four_and_two_arms_grip_at_once_whatever_their_response() {
         Step::Hold {
             seconds: 3.0,
             push: 0.0,
+            lapse: 0.0,
         },
     ];
     let mut flights = vec![];

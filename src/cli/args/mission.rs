@@ -6,7 +6,7 @@ use clap::Args;
 use sophie_control::allocation::wrench::Configuration;
 use sophie_control::pilot::rc::ArmChoice;
 use sophie_sim::mixers::Variant;
-use sophie_sim::scenario::{Assist, Known, Overrides, PositionSensor, Scenario, keys};
+use sophie_sim::scenario::{Assist, Known, Overrides, PositionSensor, Rule, Scenario, keys};
 
 use super::values::{number, seed, word};
 
@@ -39,6 +39,9 @@ pub struct MissionArgs {
     /// What the flight stack knows of the vehicle: exact, calibrated (each calibration with its error), or as-built.
     #[arg(long, value_name = "NAME", value_parser = known)]
     known: Option<Known>,
+    /// Rule of the judge: paper (950 N/m2 at each sensor) or holding (a push from any side).
+    #[arg(long, value_name = "NAME", value_parser = judge)]
+    judge: Option<Rule>,
     /// Seed of every random number: a whole number from 0 to 9e15.
     #[arg(long, value_name = "N", value_parser = seed, allow_negative_numbers = true)]
     seed: Option<u64>,
@@ -67,6 +70,7 @@ impl MissionArgs {
             arms: self.arms,
             sensors: self.sensors,
             assist: self.assist,
+            judge: self.judge,
             seed: self.seed,
         }
     }
@@ -74,6 +78,10 @@ impl MissionArgs {
 
 fn known(text: &str) -> Result<Known, String> {
     word(text, Known::WORDS).map(Known::from_word)
+}
+
+fn judge(text: &str) -> Result<Rule, String> {
+    word(text, Rule::WORDS).map(Rule::from_word)
 }
 
 fn infill(text: &str) -> Result<f64, String> {

@@ -37,6 +37,8 @@ pub struct Summary {
     phases: Vec<PhaseSummary>,
     /// Chosen arms of each proven grip.
     grip: Vec<GripSummary>,
+    /// First fault that each rule of the judge found; `null`: none.
+    verdicts: BTreeMap<&'static str, Option<String>>,
     /// Strikes of turning propellers, in order.
     strikes: Vec<StrikeSummary>,
     /// What happened, in order.
@@ -47,6 +49,7 @@ pub struct Summary {
 #[derive(Serialize)]
 struct Settings {
     known: &'static str,
+    judge: &'static str,
     infill_percent: f64,
     gain_k: f64,
     configuration: &'static str,
@@ -210,6 +213,11 @@ impl Summary {
             settings: Settings::of(&record.scenario),
             phases: record.phases.iter().map(phase).collect(),
             grip: record.grip.iter().map(grip).collect(),
+            verdicts: record
+                .verdicts
+                .iter()
+                .map(|verdict| (verdict.rule.word(), verdict.fault.clone()))
+                .collect(),
             strikes: record.strikes.iter().map(strike).collect(),
             events: record
                 .events
@@ -241,6 +249,7 @@ impl Settings {
         });
         Self {
             known: s.known.word(),
+            judge: s.judge.word(),
             infill_percent: v.infill,
             gain_k: v.gain_k,
             configuration: keys::configuration_word(v.configuration),
@@ -346,6 +355,10 @@ mod tests {
         let strike = serde_json::json!({
             "arm": 2, "against": "the pipe", "start_s": 31.2, "end_s": 31.24, "depth_mm": 12.0
         });
+        assert_eq!(
+            v["verdicts"],
+            serde_json::json!({ "paper": null, "holding": null })
+        );
         assert_eq!(v["strikes"], serde_json::json!([strike]));
         assert!(grip[3]["pressure_pa"].is_number() && grip[3]["pressure_true_pa"].is_number());
     }

@@ -3,8 +3,10 @@
 use std::f64::consts::TAU;
 
 use sophie_control::mode::Mode;
-use sophie_sim::record::{Event, FlightRecord, Grip, Outcome, Phase, SAMPLE_HZ, Sample, Strike, Struck};
-use sophie_sim::scenario::{Scenario, Step};
+use sophie_sim::record::{
+    Event, FlightRecord, Grip, Outcome, Phase, SAMPLE_HZ, Sample, Strike, Struck, Verdict,
+};
+use sophie_sim::scenario::{Rule, Scenario, Step};
 
 /// Durations of the default mission's steps, s.
 const DURATIONS: [f64; 12] = [3.5, 4.0, 5.0, 4.5, 5.5, 4.0, 6.5, 20.0, 6.0, 5.0, 6.0, 1.5];
@@ -46,6 +48,13 @@ pub fn record() -> FlightRecord {
             accomplished: true,
             reason: "mission accomplished".to_owned(),
         },
+        verdicts: Rule::WORDS
+            .iter()
+            .map(|word| Verdict {
+                rule: Rule::from_word(word),
+                fault: None,
+            })
+            .collect(),
         samples,
         events: vec![
             event(2.0, "calibrated: gyro bias 0.31 0.12 -0.20 deg/s"),

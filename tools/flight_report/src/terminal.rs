@@ -57,6 +57,7 @@ pub fn finish(
     for line in attachment.iter().flat_map(|b| &b.lines) {
         console.say(line);
     }
+    console.say(&result::judged(record));
     console.say(&result::verdict(console, record));
     console.say(&format!("written: {}", written.join("  ")));
     if json {

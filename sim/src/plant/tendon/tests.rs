@@ -2,7 +2,7 @@ use super::*;
 use crate::plant::STEP as DT;
 
 fn run(t: &mut Tendon, pulse: f64, alpha: f64, seconds: f64) -> f64 {
-    (0..(seconds / DT) as u64).fold(0.0, |_, _| t.step(DT, pulse, alpha))
+    (0..(seconds / DT) as u64).fold(0.0, |_, _| t.step(DT, 1.0, pulse, alpha))
 }
 
 #[test]
@@ -253,7 +253,7 @@ fn every_servo_and_thread_comes_to_rest() {
             run(&mut t, 1600.0, -1.0, 3.0);
             let pull = t.tension();
             let swing = (0..2000).fold(0.0_f64, |most, _| {
-                t.step(DT, 1600.0, -1.0);
+                t.step(DT, 1.0, 1600.0, -1.0);
                 most.max((t.tension() - pull).abs())
             });
             assert!(

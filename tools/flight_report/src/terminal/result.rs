@@ -138,6 +138,18 @@ fn strikes(record: &FlightRecord) -> Table {
     table
 }
 
+/// What each rule of the judge found, a line.
+pub fn judged(record: &FlightRecord) -> String {
+    let found = record.verdicts.iter().map(|verdict| {
+        let rule = verdict.rule.word();
+        verdict
+            .fault
+            .as_ref()
+            .map_or(format!("{rule}: no fault"), |fault| format!("{rule}: {fault}"))
+    });
+    format!("judged: {}", found.collect::<Vec<_>>().join(" | "))
+}
+
 /// Result of the flight in one line.
 pub fn verdict(console: &Console, record: &FlightRecord) -> String {
     let word = if record.outcome.accomplished {
