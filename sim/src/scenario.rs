@@ -225,7 +225,7 @@ pub struct World {
     pub pipe_length: f64,
     /// Coefficient of sliding, vehicle on pipe.
     pub pipe_friction: f64,
-    /// What the pipe has of a real one.
+    /// Departures of the pipe from a straight, level, bare and still cylinder.
     pub pipe_shape: PipeShape,
     /// Amplitude of the pipe's vibration, m.
     pub pipe_vibration: f64,

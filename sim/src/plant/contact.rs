@@ -18,7 +18,7 @@ use glam::{DQuat, DVec3};
 
 pub use self::arm_skin::{ArmSkin, ArmTip, SkinLoad};
 pub use self::belly::{Belly, BodyLoad};
-pub use self::pad::{BELLY, FULL_DAMPING_DEPTH, Pad, SKIN, TIP};
+pub use self::pad::{BELLY, Pad, SKIN, TIP};
 pub use self::pipe::{Pipe, PipeShape};
 pub use self::point::{ContactPoint, PointMotion, Touch};
 pub use self::restitution::rebound;

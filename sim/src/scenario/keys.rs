@@ -922,6 +922,27 @@ pub const KEYS: &[Key] = &[
     },
 ];
 
+/// Numbers and flags (1 or 0) of `scenario` that are not at their default, by key, in the key's unit.
+#[must_use]
+pub fn changed(scenario: &Scenario) -> Vec<(&'static str, f64)> {
+    let (mut flown, mut usual) = (scenario.clone(), Scenario::empty());
+    let number = |key: &Key, s: &mut Scenario| match &key.kind {
+        Kind::Number(range, field) => Some(*field(s) / range.si),
+        Kind::Optional(range, field) => field(s).map(|value| value / range.si),
+        Kind::Flag(field) => Some(f64::from(u8::from(*field(s)))),
+        _ => None,
+    };
+    let mut changed = Vec::new();
+    for key in KEYS {
+        if let Some(value) = number(key, &mut flown)
+            && number(key, &mut usual).map(f64::to_bits) != Some(value.to_bits())
+        {
+            changed.push((key.name, value));
+        }
+    }
+    changed
+}
+
 /// Tables of a file; `steps` is a list.
 pub const TABLES: &[&str] = &[
     "vehicle", "world", "sensors", "faults", "pilot", "params", "expect",

@@ -101,6 +101,26 @@ fn numbers_are_converted_once() {
 }
 
 #[test]
+fn numbers_that_are_not_at_their_default_are_listed_in_the_files_unit() {
+    assert_eq!(keys::changed(&Scenario::default_mission()), []);
+    let s =
+        parse("[world]\npipe_slope_deg = 3\nlight_klux = 50\n[sensors]\nrange_mixed_pixels = true").unwrap();
+    let listed = keys::changed(&s);
+    let wanted = [
+        ("world.pipe_slope_deg", 3.0),
+        ("world.light_klux", 50.0),
+        ("sensors.range_mixed_pixels", 1.0),
+    ];
+    assert_eq!(listed.len(), 3, "{listed:?}");
+    for ((key, value), (wanted_key, wanted)) in listed.into_iter().zip(wanted) {
+        assert!(
+            key == wanted_key && (value - wanted).abs() < 1e-12,
+            "{key} {value}"
+        );
+    }
+}
+
+#[test]
 fn the_stack_knows_the_vehicle_unless_params_say_otherwise() {
     let s = parse("[sensors]\nflow_rate_hz = 100\nrange_step_m = 0.01").unwrap();
     assert_eq!(

@@ -92,6 +92,8 @@ struct Settings {
     pilot_believes_pipe_top_m: f64,
     pilot_believes_pipe_diameter_m: f64,
     faults: FaultsSummary,
+    /// Numbers and flags of the scenario file that are not at their default, by key.
+    changed_keys: BTreeMap<&'static str, f64>,
     /// Parameters of the stack that are not at their default, by name.
     params: BTreeMap<&'static str, f32>,
     /// What the parameters have wrong.
@@ -292,6 +294,10 @@ impl Settings {
             pilot_believes_pipe_top_m: pipe.top,
             pilot_believes_pipe_diameter_m: pipe.diameter,
             faults: FaultsSummary::of(&s.faults),
+            changed_keys: keys::changed(s)
+                .into_iter()
+                .map(|(key, value)| (key, tidy(value)))
+                .collect(),
             params: changed.collect(),
             differences: s
                 .differences()
@@ -379,9 +385,12 @@ mod tests {
         let mut record = synthetic::record();
         record.scenario.params.rate_p = 9.0;
         record.scenario.vehicle.body.mass = 2.0;
+        record.scenario.world.pipe_shape.sag = 0.01;
         record.grip[0].closure = f64::NAN;
         let v = json(&record);
         assert_eq!(v["settings"]["params"], serde_json::json!({ "rate_p": 9.0 }));
+        let keys = serde_json::json!({ "vehicle.mass_kg": 2.0, "world.pipe_sag_m": 0.01 });
+        assert_eq!(v["settings"]["changed_keys"], keys);
         assert!(v["grip"][0]["closure_s"].is_null());
         let mass = serde_json::json!([{ "key": "vehicle.mass_kg", "truth": 2.0, "assumed": 1.805 }]);
         assert_eq!(v["settings"]["differences"], mass);

@@ -14,7 +14,7 @@ use super::margins::Margins;
 use super::response::{Complex, quotient};
 use super::{Hovering, frequencies};
 use crate::plant::GRAVITY;
-use crate::plant::contact::{BELLY, BELLY_Z, Belly, FULL_DAMPING_DEPTH};
+use crate::plant::contact::{BELLY, BELLY_Z, Belly, rebound};
 use crate::scenario::Scenario;
 
 const ROLL: usize = 0;
@@ -80,7 +80,8 @@ fn standing(scenario: &Scenario, share: f64, omega: f64) -> Complex {
     let across: f64 = Belly::PADS.iter().map(|pad| pad.y * pad.y).sum();
     // Pads that are pressed in by less damp in proportion.
     let depth = (1.0 - share).max(0.0) * weight / (Belly::PADS.len() as f64 * BELLY.stiffness);
-    let damping = BELLY.damping * (depth / FULL_DAMPING_DEPTH).min(1.0) * across;
+    let pad = BELLY.rebounding(rebound(scenario.vehicle.pad_restitution));
+    let damping = pad.resting_damping(depth) * across;
     let stiffness = BELLY.stiffness * across - weight * lever;
     let inertia = body.inertia[ROLL] + body.mass * lever * lever;
     let own = -body.inertia[ROLL] * omega * omega;

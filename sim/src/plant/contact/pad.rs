@@ -1,13 +1,13 @@
 //! Springs and dampers of the parts that touch.
 
-use super::{SKIN_STIFFNESS, STATION_SIZE};
+use super::{SKIN_STIFFNESS, STATION_SIZE, restitution};
 
 /// Springs and dampers of a contact point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pad {
     /// Stiffness along the normal, N/m.
     pub stiffness: f64,
-    /// Damping along the normal, N·s/m; full from [`FULL_DAMPING_DEPTH`].
+    /// Damping along the normal, N·s/m; full from a depth of 1 mm.
     pub damping: f64,
     /// Stiffness of the bristle along the surface, N/m.
     pub bristle: f64,
@@ -23,10 +23,19 @@ impl Pad {
     pub const fn rebounding(self, rebound: f64) -> Self {
         Self { rebound, ..self }
     }
+
+    /// Damping (N·s/m) along the normal of a pad that rests `depth` m deep.
+    #[must_use]
+    pub fn resting_damping(&self, depth: f64) -> f64 {
+        if self.rebound > 0.0 {
+            return restitution::slope(self.rebound, self.stiffness, depth);
+        }
+        self.damping * (depth / FULL_DAMPING_DEPTH).min(1.0)
+    }
 }
 
 /// Depth from which a contact damps in full, m: no step at the touch.
-pub const FULL_DAMPING_DEPTH: f64 = 1e-3;
+const FULL_DAMPING_DEPTH: f64 = 1e-3;
 
 /// A quarter of the vehicle per belly pad: 15 Hz, damping ratio 0.5.
 pub const BELLY: Pad = Pad {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::friction::Bristle;
-use super::{FULL_DAMPING_DEPTH, Pad, Surface, restitution};
+use super::{Pad, Surface, restitution};
 
 /// Contact load of a point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -48,8 +48,7 @@ impl ContactPoint {
         let normal = if pad.rebound > 0.0 {
             restitution::force(pad.rebound, stiffness, depth, -along, touched)
         } else {
-            let damping = pad.damping * (depth / FULL_DAMPING_DEPTH).min(1.0);
-            (stiffness * depth - damping * along).max(0.0)
+            (stiffness * depth - pad.resting_damping(depth) * along).max(0.0)
         };
         let slip = velocity - n * along;
         let tangential = self.bristle.step(dt, pad, &surface.friction(), n, normal, slip);

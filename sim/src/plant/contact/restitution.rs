@@ -44,6 +44,11 @@ pub fn force(rebound: f64, stiffness: f64, depth: f64, speed: f64, touched: f64)
     (stiffness * depth * (1.0 + lambda * speed)).max(0.0)
 }
 
+/// ∂F/∂ẋ of a pad that came to rest at `depth` m by touches below [`SLOWEST`], N·s/m.
+pub fn slope(rebound: f64, stiffness: f64, depth: f64) -> f64 {
+    stiffness * depth * rebound / SLOWEST
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -74,6 +79,17 @@ mod tests {
     fn small_losses_follow_the_series_and_none_has_no_damping() {
         assert!((rebound(0.99) / 0.015 - 1.0).abs() < 0.02, "{}", rebound(0.99));
         assert_eq!(rebound(0.0), 0.0);
+    }
+
+    /// The difference of the force over the difference of the speed.
+    #[test]
+    fn a_resting_pad_damps_with_the_slope_of_the_force() {
+        let u = rebound(0.7);
+        let difference = force(u, 4e3, 1e-3, 0.01, 0.02) - force(u, 4e3, 1e-3, 0.0, 0.02);
+        assert!(
+            (difference / 0.01 - slope(u, 4e3, 1e-3)).abs() < 1e-9,
+            "{difference}"
+        );
     }
 
     #[test]

@@ -30,7 +30,7 @@ const HALF_LIGHT: f64 = 3.9e3;
 const LOBE: f64 = 0.978;
 /// Rays along each side of the beam's square, of which those in the circle count.
 const RAYS: i32 = 7;
-/// Shares of the reach from which returns begin to be missing, and from which there is none.
+/// Shares of the reach from which returns begin to be missing, and at which the last one is.
 const FADES: (f64, f64) = (0.9, 1.1);
 
 /// The return of one beam.

@@ -25,7 +25,7 @@ const BARE: f64 = 1e-3;
 pub struct Picture {
     /// About the axes right and forward, rad, in the units of a pure rotation.
     pub flow: [f64; 2],
-    /// Mean contrast of what is in view.
+    /// Mean contrast of the view.
     pub contrast: f64,
 }
 

@@ -5,7 +5,7 @@
 //! | | | source |
 //! |---|---|---|
 //! | largest share of zero frames | 0.9 | 0.5 to 0.9 reported |
-//! | contrast from which there are none | 0.3 | assumed |
+//! | contrast without zero frames | 0.3 | assumed |
 //! | light from which they are in full | 50,000 lux | assumed: half of noon |
 //! | least light | 60 lux | the maker's table of the MTF-02 |
 

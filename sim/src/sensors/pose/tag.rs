@@ -6,7 +6,7 @@
 //!
 //! A planar tag has two poses that project nearly alike (Schweighofer and Pinz, 2006; Collins and Bartoli, 2014). The wrong
 //! one mirrors the line of sight about the tag's normal, here up: it turns the vehicle about the tag by twice the angle
-//! between them, to the other side of the spot. Straight above there is no other.
+//! between them, to the other side of the spot. Straight above both are one.
 
 use crate::normal::StandardNormal;
 use glam::{DQuat, DVec3};

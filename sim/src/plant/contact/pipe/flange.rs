@@ -13,7 +13,7 @@ const HALF_STATION: f64 = 0.015;
 /// Flanges of a pipe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flange {
-    /// Distance between two, m; 0: there is none.
+    /// Distance between two, m; 0 without flanges.
     pub spacing: f64,
     /// Place of one from the pipe's middle, north, m.
     pub at: f64,
