@@ -61,7 +61,7 @@ fn tried(cases: &[(String, StandArm)]) -> Vec<Tried> {
 }
 
 #[test]
-fn friction_costs_force_and_the_gripper_still_holds_a_smooth_channel_s_arm() {
+fn friction_overshoots_on_the_way_in_and_holds_the_grip_on_the_way_back() {
     let cases = [0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0].map(|friction| {
         (
             format!("friction {friction}"),
@@ -69,10 +69,16 @@ fn friction_costs_force_and_the_gripper_still_holds_a_smooth_channel_s_arm() {
         )
     });
     let tried = tried(&cases);
-    assert!(tried[..3].iter().all(|tried| tried.grip.state == ArmState::Holding));
-    // At rest on the pipe the reel pulls more than in a smooth channel: 1.2 rad of bend at 0.2, half of which it costs.
-    let share = tried[2].steady / tried[0].steady;
-    assert!((1.02..1.3).contains(&share), "{share}");
+    let [smooth, .., worst] = tried.as_slice() else {
+        panic!("no cases");
+    };
+    let rubbing = &tried[2];
+    assert!(smooth.grip.state == ArmState::Holding && rubbing.grip.state == ArmState::Holding);
+    // The reel pulls more until the arm is there; then it turns back, and the channel holds what it has let go.
+    assert!(rubbing.asked > 1.05 * smooth.asked && rubbing.peak > 1.2 * smooth.peak);
+    assert!(rubbing.steady < smooth.steady);
+    // However it rubs, the gripper presses no arm harder than an arm whose sensor is open.
+    assert!(worst.peak < 3000.0 && worst.grip.state != ArmState::Holding);
 }
 
 #[test]
@@ -101,14 +107,20 @@ fn servos_and_sensors_as_they_are() {
     };
     let cases = [
         ("whole".to_owned(), arm()),
-        ("stop 0.5 deg".to_owned(), servo(|e, by| e.stop = by, 0.5 * degree)),
+        (
+            "stop 0.5 deg".to_owned(),
+            servo(|e, by| e.stop = by, 0.5 * degree),
+        ),
         ("stop 1 deg".to_owned(), servo(|e, by| e.stop = by, degree)),
         ("stop 2 deg".to_owned(), servo(|e, by| e.stop = by, 2.0 * degree)),
         (
             "backlash 1 deg".to_owned(),
             servo(|e, by| e.backlash = by, degree),
         ),
-        ("sag 1.5 deg/N m".to_owned(), servo(|e, by| e.sag = by, 1.5 * degree)),
+        (
+            "sag 1.5 deg/N m".to_owned(),
+            servo(|e, by| e.sag = by, 1.5 * degree),
+        ),
         ("turn-on 0.4 N".to_owned(), with_fsr(|e| e.turn_on = 0.4)),
         ("preload 0.15 N".to_owned(), with_fsr(|e| e.preload = 0.15)),
         ("hysteresis 10 %".to_owned(), with_fsr(|e| e.hysteresis = 0.1)),
@@ -117,11 +129,7 @@ fn servos_and_sensors_as_they_are() {
     let tried = tried(&cases);
     // A load that the servo gives way to, and a sensor that reads another pressure, leave a grip that the loop finds.
     for index in [0, 4, 5, 8, 9] {
-        assert!(
-            tried[index].grip.state == ArmState::Holding,
-            "{}",
-            cases[index].0
-        );
+        assert!(tried[index].grip.state == ArmState::Holding, "{}", cases[index].0);
     }
     // What the sensor leaves out, the grip has too much: 0.4 N of 38 mm square are 277 Pa.
     assert!(tried[6].peak > tried[0].peak + 150.0, "{}", tried[6].peak);
