@@ -200,9 +200,8 @@ impl Tendon {
             0.0
         };
         self.crept = self.creep.step(lapse * dt, self.tension / stiffness);
-        // The thread's middle moves by the mean of what the reel winds and what the arm takes.
-        let along = self.friction.step(0.5 * (r * turned - h * tilt_change), alpha);
-        -h * self.tension * along
+        let stretched = stiffness * h * tilt_change;
+        -h * self.friction.step(self.tension, stretched, alpha)
     }
 
     /// Pull of the tendon at the reel, N.

@@ -61,7 +61,7 @@ fn tried(cases: &[(String, StandArm)]) -> Vec<Tried> {
 }
 
 #[test]
-fn friction_costs_force_and_the_gripper_still_holds_a_smooth_channel_s_arm() {
+fn friction_overshoots_on_the_way_in_and_holds_the_grip_on_the_way_back() {
     let cases = [0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0].map(|friction| {
         (
             format!("friction {friction}"),
@@ -69,14 +69,16 @@ fn friction_costs_force_and_the_gripper_still_holds_a_smooth_channel_s_arm() {
         )
     });
     let tried = tried(&cases);
-    assert!(
-        tried[..3]
-            .iter()
-            .all(|tried| tried.grip.state == ArmState::Holding)
-    );
-    // At rest on the pipe the reel pulls more than in a smooth channel: 1.2 rad of bend at 0.2, half of which it costs.
-    let share = tried[2].steady / tried[0].steady;
-    assert!((1.02..1.3).contains(&share), "{share}");
+    let [smooth, .., worst] = tried.as_slice() else {
+        panic!("no cases");
+    };
+    let rubbing = &tried[2];
+    assert!(smooth.grip.state == ArmState::Holding && rubbing.grip.state == ArmState::Holding);
+    // The reel pulls more until the arm is there; then it turns back, and the channel holds what it has let go.
+    assert!(rubbing.asked > 1.05 * smooth.asked && rubbing.peak > 1.2 * smooth.peak);
+    assert!(rubbing.steady < smooth.steady);
+    // However it rubs, the gripper presses no arm harder than an arm whose sensor is open.
+    assert!(worst.peak < 3000.0 && worst.grip.state != ArmState::Holding);
 }
 
 #[test]
