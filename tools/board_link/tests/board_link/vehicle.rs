@@ -349,19 +349,21 @@ fn another_vehicle_is_named() {
     }
 }
 
+/// `text` in a field of N bytes.
+fn padded<const N: usize>(text: &str) -> [u8; N] {
+    let mut field = [0; N];
+    field[..text.len()].copy_from_slice(text.as_bytes());
+    field
+}
+
 /// Messages of a vehicle that calls itself 0.0.9 and has another table of parameters than this program.
 fn earlier(board: &mut Board, request: &COMMAND_LONG_DATA) {
     board.acknowledge(request.command, ACCEPTED);
-    let text = |text: &[u8]| {
-        let mut name = [0; 32];
-        name[..text.len()].copy_from_slice(text);
-        name
-    };
     match request.param1 as u32 {
         COMPONENT_INFORMATION_BASIC_DATA::ID => board.say(&COMPONENT_INFORMATION_BASIC_DATA {
-            vendor_name: text(b"SOPHIE").into(),
-            model_name: text(b"table").into(),
-            software_version: *b"0.0.9\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0".into(),
+            vendor_name: padded::<32>("SOPHIE").into(),
+            model_name: padded::<32>("table").into(),
+            software_version: padded::<24>("0.0.9").into(),
             ..COMPONENT_INFORMATION_BASIC_DATA::DEFAULT
         }),
         AUTOPILOT_VERSION_DATA::ID => board.say(&AUTOPILOT_VERSION_DATA {
@@ -383,13 +385,11 @@ fn earlier_release(files: &'static [File]) -> Listed {
                 MavMessage::COMMAND_LONG(request) => earlier(board, &request),
                 MavMessage::PARAM_REQUEST_LIST(_) => {
                     for (index, name) in (0..).zip(["infill", "old_gain"]) {
-                        let mut param_id = [0; 16];
-                        param_id[..name.len()].copy_from_slice(name.as_bytes());
                         board.say(&PARAM_VALUE_DATA {
                             param_value: 8.0,
                             param_count: 2,
                             param_index: index,
-                            param_id: param_id.into(),
+                            param_id: padded::<16>(name).into(),
                             ..PARAM_VALUE_DATA::DEFAULT
                         });
                     }
