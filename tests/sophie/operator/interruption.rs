@@ -148,7 +148,7 @@ fn a_motor_stops_at_once() {
 }
 
 #[test]
-fn a_load_stores_all_or_nothing() {
+fn an_interrupted_load_puts_the_old_values_back() {
     let (temp, board) = (Temp::new("interrupt-load"), Board::new(Hands::default()));
     let dumped = run(&temp, &["params", "dump", "p.toml", "--port", &board.name()]);
     assert_eq!(dumped.status, Some(0), "{dumped:?}");

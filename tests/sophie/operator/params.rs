@@ -195,7 +195,7 @@ fn the_line_may_be_in_any_state_and_lose_bytes_and_frames() {
         let done = params(&temp, &board, "diff", "p.toml");
         assert_eq!(done.said, "infill 6.9 -> 8 %\nrate_p 10 -> 11 1/s\n", "{done:?}");
     }
-    board.hands(|hands| (hands.loses, hands.drops) = (Some(101), Some(13)));
+    board.hands(|hands| (hands.loses, hands.drops) = (Some(307), Some(13)));
     let dumped = params(&temp, &board, "dump", "p2.toml");
     assert_eq!(dumped.status, Some(0), "{dumped:?}");
     let read = |name| fs::read_to_string(temp.0.join(name)).unwrap();

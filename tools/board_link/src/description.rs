@@ -114,7 +114,7 @@ impl Description {
         self.rows.iter().find(|row| row.name == name)
     }
 
-    /// Place of `name` in the table; behind it what it lacks.
+    /// Place of `name` in the table; a name that the table lacks is behind the last.
     pub fn place(&self, name: &str) -> usize {
         let place = self.rows.iter().position(|row| row.name == name);
         place.unwrap_or(self.rows.len())

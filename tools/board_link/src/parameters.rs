@@ -116,8 +116,9 @@ impl Listed {
             let unit = if row.unit == "1" { "" } else { row.unit };
             let described = description.row(row.name);
             if let Some(other) = described.map(|row| row.unit()).filter(|other| *other != unit) {
+                let [theirs, ours] = [other, unit].map(|unit| if unit.is_empty() { "1" } else { unit });
                 return Err(format!(
-                    "{}: the board has it in '{other}', the file in '{unit}'",
+                    "{}: its unit is {theirs} at the board, {ours} in the file",
                     row.name
                 ));
             }
@@ -367,7 +368,7 @@ mod tests {
         let why = "infill cannot be 8 there; it takes 4 to 7 %";
         assert_eq!(listed.refuses(&difference).as_deref(), Some(why));
         let why = described(r#""min":0,"max":1"#).differences(&file).unwrap_err();
-        assert_eq!(why, "infill: the board has it in '', the file in '%'");
+        assert_eq!(why, "infill: its unit is 1 at the board, % in the file");
         assert_eq!(board(defaults(), Description::own()).foreign(), None);
     }
 }

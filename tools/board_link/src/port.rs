@@ -11,7 +11,7 @@ use std::time::Duration;
 use crate::Failure;
 use crate::station::{self, Ends};
 
-/// MAVLink's rate on serial ports, baud, where none is given: that of the boards. On USB it is of no account.
+/// Default rate of serial ports, baud: that of the boards' MAVLink ports. USB ignores it.
 pub const BAUD: u32 = 57_600;
 /// Rate of the boards' serial console, baud.
 pub const CONSOLE_BAUD: u32 = 115_200;
@@ -22,7 +22,8 @@ const WRITE: Duration = Duration::from_secs(2);
 /// Longest wait for a TCP connection.
 const CONNECT: Duration = Duration::from_secs(5);
 /// The allowed names.
-const ALLOWED: &str = "allowed /dev/...[,BAUD], COM3[,BAUD], tcp:HOST:PORT, udpin:HOST:PORT, udpout:HOST:PORT, mavlink: before it or not";
+const ALLOWED: &str =
+    "allowed /dev/...[,BAUD], COM3[,BAUD], tcp:HOST:PORT, udpin:HOST:PORT, udpout:HOST:PORT";
 
 /// Name of a port: `/dev/ttyUSB0`, `COM3`, `tcp:127.0.0.1:5760`, in the notation of other clients of MAVLink.
 #[derive(Clone, Debug, PartialEq, Eq)]

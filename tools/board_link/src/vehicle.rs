@@ -221,7 +221,7 @@ impl Vehicle {
         self.name.to_string()
     }
 
-    /// Number of starts of the board that were noticed since the session began, those that nobody asked for among them.
+    /// Number of starts of the board that were noticed since the session began, unexpected ones among them.
     pub const fn starts(&self) -> u32 {
         self.boots
     }
