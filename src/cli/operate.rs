@@ -4,8 +4,8 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
 
-use sophie_board_link::parameters::{self, Difference};
-use sophie_board_link::session::Session;
+use sophie_board_link::parameters::{self, Difference, Listed};
+use sophie_board_link::vehicle::Vehicle;
 use sophie_board_link::{Failure, file};
 use sophie_sim::scenario::settings::{self, Setting};
 use sophie_terminal::{complain, console};
@@ -51,26 +51,31 @@ fn status(done: Result<bool, Failure>) -> ExitCode {
     }
 }
 
-fn session(args: &ParamsArgs) -> Result<Session, Failure> {
+fn vehicle(args: &ParamsArgs) -> Result<Vehicle, Failure> {
     let stop = on_ctrl_c().map_err(Failure::Input)?;
-    args.line.session(&args.port, stop)
+    args.line.vehicle(&args.port, stop)
+}
+
+/// The parameters of the board; a line on stderr if their table is another than this program's.
+fn listed(vehicle: &mut Vehicle) -> Result<Listed, Failure> {
+    let listed = Listed::of(vehicle)?;
+    if let Some(line) = listed.foreign() {
+        note(vehicle, &line);
+    }
+    Ok(listed)
+}
+
+fn note(vehicle: &Vehicle, line: &str) {
+    complain(PROGRAM, &format!("{}: {line}", vehicle.port()));
 }
 
 fn dump(args: &ParamsArgs) -> Result<(), Failure> {
-    let mut session = session(args)?;
-    let rows = parameters::listed(&mut session)?;
-    let unsaved = parameters::unsaved(&mut session)?;
-    if let Some(line) = unsaved.first() {
-        let more = unsaved.len();
-        complain(
-            PROGRAM,
-            &format!(
-                "{}: {more} of them not saved at the board yet: {line}",
-                session.port()
-            ),
-        );
+    let mut vehicle = vehicle(args)?;
+    let listed = listed(&mut vehicle)?;
+    if parameters::waits_for_restart(&mut vehicle)? {
+        note(&vehicle, "what is stored there is in force after a restart");
     }
-    let text = parameters::text(&parameters::version(&mut session)?, &rows);
+    let text = listed.text();
     if args.file == Path::new("-") {
         return console::print(text.trim_end()).map_err(Failure::Input);
     }
@@ -78,15 +83,15 @@ fn dump(args: &ParamsArgs) -> Result<(), Failure> {
     say(&format!(
         "written: {}, {} parameters",
         args.file.display(),
-        rows.len()
+        listed.values.0.len()
     ))
 }
 
 fn diff(args: &ParamsArgs) -> Result<bool, Failure> {
     let settings = read(&args.file)?;
-    let mut session = session(args)?;
-    let rows = parameters::listed(&mut session)?;
-    let different = parameters::differences(&settings, &rows);
+    let mut vehicle = vehicle(args)?;
+    let different = listed(&mut vehicle)?.differences(&settings);
+    let different = different.map_err(|why| Failure::Input(format!("{}: {why}", vehicle.port())))?;
     let lines: Vec<String> = different.iter().map(Difference::text).collect();
     if !lines.is_empty() {
         say(&lines.join("\n"))?;
@@ -96,8 +101,8 @@ fn diff(args: &ParamsArgs) -> Result<bool, Failure> {
 
 fn load(args: &ParamsArgs) -> Result<(), Failure> {
     let settings = read(&args.file)?;
-    let mut session = session(args)?;
-    parameters::load(&mut session, &settings, &mut |line| {
+    let mut vehicle = vehicle(args)?;
+    parameters::load(&mut vehicle, &settings, &mut |line| {
         // If stdout is closed, the board must still be set completely.
         let _ = console::print(line);
     })

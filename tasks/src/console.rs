@@ -29,7 +29,6 @@ use sophie_control::params::Params;
 use self::command::{Command, HELP, parse};
 pub use self::keys::CANCEL;
 use self::keys::{Keys, PAUSE};
-pub use self::line::NOT_TEXT;
 use self::line::{Echo, Line, LineError};
 pub use self::nearest::edits;
 use self::output::Output;

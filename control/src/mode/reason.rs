@@ -37,7 +37,7 @@ reasons! {
     /// Calibrating: the vehicle must not be moved.
     KeepStill = "keep still",
     /// Disarmed: a builder tries a motor or a servo.
-    ActuatorTest = "bench command running",
+    ActuatorTest = "actuator test running",
     /// The rotors have idled for too long.
     IdleTooLong = "idle for too long",
     /// The battery is at its end.

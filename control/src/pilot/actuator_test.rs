@@ -109,7 +109,7 @@ actuator_test_refusals! {
     /// A command to disarm came.
     Disarm = "disarmed by command";
     /// An order of another line is running.
-    InUse = "another line uses the bench";
+    InUse = "another link runs an actuator test";
 }
 
 /// State of the actuator tests as the sender of an order sees it.

@@ -13,7 +13,7 @@ use crate::wire::requests::Peer;
 /// Bytes of the message's payload: a header and data.
 pub const PAYLOAD: usize = 251;
 /// Bytes of the header.
-const HEADER: usize = 12;
+pub const HEADER: usize = 12;
 /// Bytes of a file in a message at most.
 const DATA: usize = PAYLOAD - HEADER;
 /// Largest number of simultaneous bursts.
@@ -22,8 +22,9 @@ const BURSTS: usize = 4;
 /// asks again.
 const WAITING: usize = 2 * BURSTS;
 
-/// Opcodes of the protocol.
-mod op {
+/// Opcodes of the protocol, for both of its ends.
+#[expect(missing_docs, reason = "the names are the protocol's")]
+pub mod op {
     pub const NONE: u8 = 0;
     pub const TERMINATE_SESSION: u8 = 1;
     pub const RESET_SESSIONS: u8 = 2;
@@ -52,18 +53,26 @@ enum ErrorCode {
 
 /// Head of a request or an answer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct Head {
-    sequence: u16,
-    session: u8,
-    op: u8,
-    size: u8,
-    request: u8,
-    burst_complete: bool,
-    offset: u32,
+pub struct Head {
+    /// Number of a request; its answer has the next one.
+    pub sequence: u16,
+    /// Session of the open file.
+    pub session: u8,
+    /// Opcode.
+    pub op: u8,
+    /// Bytes of data; in a read, those that are asked for.
+    pub size: u8,
+    /// In an answer: opcode of its request.
+    pub request: u8,
+    /// The last message of a burst.
+    pub burst_complete: bool,
+    /// Place in the file, bytes.
+    pub offset: u32,
 }
 
 impl Head {
-    fn of(payload: &[u8; PAYLOAD]) -> Self {
+    /// The head of `payload`.
+    pub fn of(payload: &[u8; PAYLOAD]) -> Self {
         let [s0, s1, session, op, size, request, burst, _, o0, o1, o2, o3, ..] = *payload;
         Self {
             sequence: u16::from_le_bytes([s0, s1]),
@@ -76,8 +85,9 @@ impl Head {
         }
     }
 
-    /// The payload: this head and `data`, cut to its room.
-    fn with(mut self, data: &[u8]) -> [u8; PAYLOAD] {
+    /// The payload: this head and `data`, cut to its room; its size is that of `data`.
+    #[must_use]
+    pub fn with(mut self, data: &[u8]) -> [u8; PAYLOAD] {
         let mut payload = [0; PAYLOAD];
         let (head, room) = payload.split_at_mut(HEADER);
         let mut size = 0;

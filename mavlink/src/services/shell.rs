@@ -27,8 +27,6 @@ pub struct Shell {
     heard_at: u64,
     typed: Vec<u8, TYPED>,
     said: Vec<u8, CHUNK>,
-    /// Messages so far, modulo 2^16: a gap in the count shows a lost message.
-    count: u16,
     /// A stream was sent after the console's last frame: the console has the next turn.
     pub(crate) waits: bool,
 }
@@ -40,7 +38,6 @@ impl Shell {
             heard_at: 0,
             typed: Vec::new(),
             said: Vec::new(),
-            count: 0,
             waits: false,
         }
     }
@@ -126,11 +123,9 @@ impl Shell {
         }
         let count = self.said.len() as u8;
         self.said.clear();
-        self.count = self.count.wrapping_add(1);
         Some(SERIAL_CONTROL_DATA {
             baudrate: 0,
-            // The standard does not use this field in an answer.
-            timeout: self.count,
+            timeout: 0,
             device: SerialControlDev::SERIAL_CONTROL_DEV_SHELL as u8,
             flags: SerialControlFlag::SERIAL_CONTROL_FLAG_REPLY.bits() as u8,
             count,

@@ -50,10 +50,9 @@ fn what_is_typed_is_answered_to_who_typed_it() {
     }
     assert_eq!(said(&station), "DISARMED\r\n> ");
     let answers = station.got::<SERIAL_CONTROL_DATA>();
-    for (number, answer) in (1..).zip(&answers) {
+    for answer in &answers {
         assert_eq!((answer.device, answer.flags), (SHELL, REPLY));
         assert_eq!((answer.target_system, answer.target_component), (255, 190));
-        assert_eq!(answer.timeout, number, "what is lost is seen by its number");
     }
 }
 

@@ -1,4 +1,4 @@
-//! Options of the subcommands that use a board: `bringup` over MAVLink, `params` at its console.
+//! Options of the subcommands that use a board: `bringup` and `params`.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -8,7 +8,6 @@ use std::time::Duration;
 use clap::{Args, ValueEnum};
 use sophie_board_link::Failure;
 use sophie_board_link::port::PortName;
-use sophie_board_link::session::Session;
 use sophie_board_link::vehicle::Vehicle;
 
 use super::values::within;
@@ -27,15 +26,7 @@ pub struct LineArgs {
 }
 
 impl LineArgs {
-    /// Opens a session at the console of `port`; raising `stop` ends it.
-    ///
-    /// # Errors
-    /// One line: the port cannot be opened, no console answers there, or the key is invalid.
-    pub fn session(&self, port: &PortName, stop: Arc<AtomicBool>) -> Result<Session, Failure> {
-        Session::open(port, self.key()?, self.patience, stop)
-    }
-
-    /// Opens `port` as MAVLink, whatever its name says it carries; raising `stop` ends it.
+    /// Opens `port`; raising `stop` ends the session.
     ///
     /// # Errors
     /// One line: the port cannot be opened, no vehicle answers there, or the key is invalid.
@@ -52,9 +43,9 @@ impl LineArgs {
 /// Vehicle and protocol of the set-up.
 #[derive(Args, Debug)]
 pub struct BringupArgs {
-    /// MAVLink of the vehicle: the board's USB socket as /dev/ttyACM0 or COM3; its MAVLink port as mavlink:/dev/ttyUSB0
-    /// (57,600 baud, another rate behind a comma), mavlink:tcp:HOST:PORT, udpin:HOST:PORT (listens) or
-    /// udpout:HOST:PORT. The pads of the serial console have no MAVLink.
+    /// MAVLink of the vehicle: the board's USB socket as /dev/ttyACM0 or COM3; its MAVLink port as /dev/ttyUSB0 (57,600
+    /// baud, another rate behind a comma); tcp:HOST:PORT, udpin:HOST:PORT (listens) or udpout:HOST:PORT. The pads of
+    /// the serial console have no MAVLink.
     #[arg(long, value_name = "PORT")]
     pub port: PortName,
     #[command(flatten)]
@@ -85,9 +76,9 @@ pub struct ParamsArgs {
     pub verb: ParamsVerb,
     /// Parameter file; - is stdout for `dump`.
     pub file: PathBuf,
-    /// Console of the board: /dev/ttyUSB0, COM3 or tcp:HOST:PORT, serial ports at 115,200 baud; or over MAVLink
-    /// mavlink:/dev/ttyUSB0 (another rate behind a comma), mavlink:tcp:HOST:PORT, udpin:HOST:PORT (listens) or
-    /// udpout:HOST:PORT.
+    /// MAVLink of the vehicle: the board's USB socket as /dev/ttyACM0 or COM3; its MAVLink port as /dev/ttyUSB0 (57,600
+    /// baud, another rate behind a comma); tcp:HOST:PORT, udpin:HOST:PORT (listens) or udpout:HOST:PORT. The pads of
+    /// the serial console have no MAVLink.
     #[arg(long, value_name = "PORT")]
     pub port: PortName,
     #[command(flatten)]

@@ -9,9 +9,6 @@ pub(super) const LENGTH: usize = 80;
 /// Echo of one chunk: at most three bytes for each.
 pub(super) type Echo = Vec<u8, { 3 * CHUNK }>;
 
-/// The answer to a line with other bytes than those of printable characters, blanks and tabs.
-pub const NOT_TEXT: &str = "only printable ASCII characters are understood";
-
 /// Why a line is rejected as a whole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum LineError {
@@ -27,7 +24,7 @@ impl LineError {
     pub(super) const fn text(self) -> &'static str {
         match self {
             Self::TooLong => "line too long: 80 characters at most",
-            Self::NotText => NOT_TEXT,
+            Self::NotText => "only printable ASCII characters are understood",
             Self::Damaged => "the line was damaged on its way: type it again",
         }
     }

@@ -1,4 +1,4 @@
-//! Two consoles at lines of their own: one bench, one storage.
+//! Two consoles at lines of their own: one actuator test, one storage.
 
 use sophie_control::arming::ArmingInhibit;
 use sophie_control::mode::Mode;
@@ -9,7 +9,7 @@ use crate::bench::Table;
 use crate::console::{Bench, Screen};
 
 #[test]
-fn two_lines_do_not_use_the_bench_at_once() {
+fn two_links_do_not_run_actuator_tests_at_once() {
     let mut table = Table::set();
     let (line, screen) = table.another();
     table.says("propellers off", 200);
@@ -17,7 +17,7 @@ fn two_lines_do_not_use_the_bench_at_once() {
     line.put(b"motor 2\r");
     let first = table.says("motor 1", 1000);
     let both = [first.join("\n"), screen.0.take()];
-    let refused = "refused: another line uses the bench";
+    let refused = "refused: another link runs an actuator test";
     let begun = both.iter().filter(|said| said.contains("for 2 s")).count();
     assert_eq!(begun, 1, "{both:?}");
     assert_eq!(

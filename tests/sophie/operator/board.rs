@@ -1,8 +1,9 @@
-//! A board on a table, served over TCP, a serial port or MAVLink: the console task and the tasks that it asks, on scripted parts. Its time runs
-//! faster than the clock on the wall, its stored parameters outlive its restarts.
+//! A board on a table, with MAVLink over TCP or a serial port, or its text console there: the task of the line and the
+//! tasks that it asks, on scripted parts. Its time runs faster than the clock on the wall, its stored parameters outlive
+//! its restarts.
 
 use std::cell::{Cell, RefCell};
-use std::io::{Read, Write};
+use std::io::Write;
 use std::net::TcpStream;
 use std::rc::Rc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -18,6 +19,7 @@ use sophie_control::arming::ArmingInhibit;
 use sophie_control::chain::ImuReading;
 use sophie_control::maths::scalar::GRAVITY;
 use sophie_control::maths::vector::Vec3;
+use sophie_control::mode::Mode;
 use sophie_control::params::{MotorMap, Params};
 use sophie_control::pilot::rc::Sticks;
 use sophie_fakes::{FakeAnalog, FakeBarometer, FakeImu, FakeLine, FakeMotors, FakeServos};
@@ -31,7 +33,7 @@ use sophie_ports::signing::{Key, Record, Stored};
 use sophie_ports::storage::{Loaded, Storage, StorageError};
 use sophie_tasks::console;
 use sophie_tasks::flight::{control, estimator, imu, mixer, motors};
-use sophie_tasks::ground_station::console_pipe::{ConsolePipe, ConsolePipePort};
+use sophie_tasks::ground_station::console_pipe::ConsolePipe;
 use sophie_tasks::ground_station::mavlink::{self, Lines};
 use sophie_tasks::links::Links;
 use sophie_tasks::navigation::barometer;
@@ -64,8 +66,8 @@ pub struct Hands {
     pub sticks: Option<Sticks>,
     /// The board takes what is typed and says nothing.
     pub mute: bool,
-    /// It falls silent for good with the first answer that has this text.
-    pub dies_at: Option<&'static str>,
+    /// It falls silent for good when it says that this parameter has this value.
+    pub dies_at: Option<(&'static str, f32)>,
     /// Every so many bytes one that is typed is lost.
     pub loses: Option<usize>,
     /// Every so many frames of MAVLink one that is said is lost.
@@ -78,8 +80,8 @@ pub struct Hands {
     pub forgets: bool,
     /// The chip has its brown-out level.
     pub brown_out_set: bool,
-    /// The plug is pulled with the first answer that has this text.
-    pub unplugged_at: Option<&'static str>,
+    /// The plug is pulled when it says that this parameter has this value.
+    pub unplugged_at: Option<(&'static str, f32)>,
     /// Which board it says it is.
     pub board: &'static str,
     /// Which image it is said to be.
@@ -134,7 +136,7 @@ impl Default for Hands {
 
 /// The board and its thread, which ends with it.
 pub struct Board {
-    /// Name of its console, as `--port` takes it.
+    /// Name of its line, as `--port` takes it.
     name: String,
     hands: Arc<Mutex<Hands>>,
     stored: Arc<Mutex<Params>>,
@@ -143,43 +145,38 @@ pub struct Board {
     ms: Arc<AtomicU64>,
     /// Changes of parameters that it has reported.
     changes: Arc<AtomicU64>,
+    /// Its mode, and that nothing forbids arming.
+    mode: Arc<Mutex<Option<(Mode, bool)>>>,
     stop: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl Board {
-    /// Powers a board up.
+    /// Powers a board up, with MAVLink on a socket.
     pub fn new(hands: Hands) -> Self {
-        Self::on(Wire::socket(), hands, Protocol::Console)
+        Self::with_stored(hands, Params::DEFAULT)
     }
 
-    /// The same with its console on a serial port.
-    #[cfg(target_os = "linux")]
-    pub fn on_serial(hands: Hands) -> Self {
-        Self::on(Wire::serial(), hands, Protocol::Console)
-    }
-
-    /// The same with its console over MAVLink, signed by `key` where there is one.
-    pub fn on_mavlink(hands: Hands, key: Option<Key>) -> Self {
-        let (wire, name) = Wire::socket();
-        Self::on((wire, format!("mavlink:{name}")), hands, Protocol::Mavlink(key))
+    /// The same with its frames signed by `key`.
+    pub fn with_key(hands: Hands, key: Option<Key>) -> Self {
+        Self::starting(Wire::socket(), hands, Protocol::Mavlink(key), Params::DEFAULT)
     }
 
     /// MAVLink on a serial port.
     #[cfg(target_os = "linux")]
-    pub fn on_serial_mavlink(hands: Hands) -> Self {
-        Self::on(Wire::serial(), hands, Protocol::Mavlink(None))
+    pub fn on_serial(hands: Hands) -> Self {
+        Self::starting(Wire::serial(), hands, Protocol::Mavlink(None), Params::DEFAULT)
     }
 
-    /// Over MAVLink, with the parameters that it has stored.
+    /// The pads of its console at a serial port.
+    #[cfg(target_os = "linux")]
+    pub fn at_its_console(hands: Hands) -> Self {
+        Self::starting(Wire::serial(), hands, Protocol::Console, Params::DEFAULT)
+    }
+
+    /// With the parameters that it has stored.
     pub fn with_stored(hands: Hands, stored: Params) -> Self {
-        let (wire, name) = Wire::socket();
-        let wire = (wire, format!("mavlink:{name}"));
-        Self::starting(wire, hands, Protocol::Mavlink(None), stored)
-    }
-
-    fn on(wire: (Wire, String), hands: Hands, protocol: Protocol) -> Self {
-        Self::starting(wire, hands, protocol, Params::DEFAULT)
+        Self::starting(Wire::socket(), hands, Protocol::Mavlink(None), stored)
     }
 
     fn starting((mut wire, name): (Wire, String), hands: Hands, protocol: Protocol, stored: Params) -> Self {
@@ -194,7 +191,9 @@ impl Board {
         let ms = Arc::<AtomicU64>::default();
         let outputs = Arc::<Mutex<Outputs>>::default();
         let changes = Arc::<AtomicU64>::default();
+        let mode = Arc::<Mutex<Option<(Mode, bool)>>>::default();
         let seen = Seen {
+            mode: mode.clone(),
             outputs: outputs.clone(),
             ms: ms.clone(),
             changes: changes.clone(),
@@ -214,19 +213,15 @@ impl Board {
             outputs,
             ms,
             changes,
+            mode,
             stop,
             thread: Some(thread),
         }
     }
 
-    /// Name of its console, as `--port` takes it.
+    /// Name of its line, as `--port` takes it.
     pub fn name(&self) -> String {
         self.name.clone()
-    }
-
-    /// A user of its own at the socket.
-    fn connects(&self) -> TcpStream {
-        TcpStream::connect(self.name.strip_prefix("tcp:").unwrap()).unwrap()
     }
 
     /// What its pins do now.
@@ -246,16 +241,6 @@ impl Board {
             assert!(begun.elapsed() < PATIENCE, "nothing is set");
             std::thread::sleep(ROUND);
         }
-    }
-
-    /// What is said in `seconds` of the board's time without a word of anybody.
-    pub fn says_by_itself(&self, seconds: f64) -> String {
-        let mut user = self.connects();
-        self.pass(seconds);
-        user.set_nonblocking(true).unwrap();
-        let mut said = [0; 1024];
-        let count = user.read(&mut said).unwrap_or(0);
-        String::from_utf8_lossy(&said[..count]).into_owned()
     }
 
     /// Changes what hands do.
@@ -278,35 +263,24 @@ impl Board {
         *self.stored.lock().unwrap()
     }
 
-    /// Types `bytes` over a connection of its own, which is gone afterwards.
-    pub fn type_and_leave(&self, bytes: &[u8]) {
-        let mut user = self.connects();
+    /// Sends `bytes` over a connection of its own, which is gone afterwards.
+    pub fn send_and_leave(&self, bytes: &[u8]) {
+        let mut user = TcpStream::connect(self.name.strip_prefix("tcp:").unwrap()).unwrap();
         user.write_all(bytes).unwrap();
-        user.set_read_timeout(Some(PATIENCE)).unwrap();
-        // Until it has been echoed, so that it is there; a cursor key has no echo.
-        let echoed = bytes.split(|byte| *byte == 0x1B).next().unwrap_or_default();
-        let printable = echoed.iter().filter(|byte| (b' '..=b'~').contains(byte)).count();
-        let (mut echo, mut heard) = ([0; 64], 0);
-        while heard < printable {
-            heard += user.read(&mut echo).unwrap();
-        }
+        // Until the board has read them.
+        self.pass(0.5);
     }
 
-    /// Asks for the status until it has `text`.
-    pub fn until(&self, text: &str) {
-        let mut user = self.connects();
-        user.set_read_timeout(Some(PATIENCE)).unwrap();
+    /// Waits until it is in `mode`, and nothing forbids arming if it is `free`.
+    pub fn until(&self, mode: Mode, free: bool) {
         let begun = Instant::now();
-        let mut said = String::new();
-        while !said.contains(text) {
-            assert!(begun.elapsed() < PATIENCE, "{said}");
-            said.clear();
-            user.write_all(b"status\r").unwrap();
-            while !said.ends_with("\n> ") {
-                let mut bytes = [0; 64];
-                let count = user.read(&mut bytes).unwrap();
-                said.push_str(&String::from_utf8_lossy(&bytes[..count]));
+        loop {
+            let now = *self.mode.lock().unwrap();
+            if now.is_some_and(|(now, arms)| now == mode && (arms || !free)) {
+                return;
             }
+            assert!(begun.elapsed() < PATIENCE, "{now:?}");
+            std::thread::sleep(ROUND);
         }
     }
 }
@@ -323,6 +297,7 @@ struct Seen {
     outputs: Arc<Mutex<Outputs>>,
     ms: Arc<AtomicU64>,
     changes: Arc<AtomicU64>,
+    mode: Arc<Mutex<Option<(Mode, bool)>>>,
 }
 
 /// What the wire carries.
@@ -420,8 +395,13 @@ impl Run {
         let signing = *chip.signing.lock().unwrap();
         let storage = chip.clone();
         time.spawn(mavlink::run(links, lines, shell, storage, chip.clone(), signing));
-        let tapped = Tapped(shell.port(), screen);
-        time.spawn(console::run(links, shell.port(), tapped, chip.clone(), chip));
+        time.spawn(console::run(
+            links,
+            shell.port(),
+            shell.port(),
+            chip.clone(),
+            chip,
+        ));
     }
 
     /// Runs until the board restarts or `stop` is set.
@@ -439,17 +419,27 @@ impl Run {
             seen.ms.fetch_add(ROUND_MS, Ordering::Relaxed);
             self.time.run_until(ms * 1000);
             *seen.outputs.lock().unwrap() = self.outputs(&hands);
+            let status = self.links.status.latest();
+            *seen.mode.lock().unwrap() = status.map(|it| (it.value.mode, it.value.inhibits.is_empty()));
             let mut said = self.screen.text.take();
-            let has =
-                |text: Option<&str>| text.is_some_and(|text| String::from_utf8_lossy(&said).contains(text));
-            if has(Some(", in force after save")) {
+            let frames = self.frames.as_ref().map(|frames| frames.take(hands.drops));
+            let parameters: Vec<(String, f32)> = frames
+                .iter()
+                .flatten()
+                .filter_map(|frame| parameter(frame))
+                .collect();
+            let says = |it: Option<(&str, f32)>| {
+                it.is_some_and(|(name, value)| parameters.contains(&(name.to_owned(), value)))
+            };
+            let stored = *self.chip.stored.lock().unwrap();
+            if parameters
+                .iter()
+                .any(|(name, value)| stored.get(name) != Some(*value))
+            {
                 seen.changes.fetch_add(1, Ordering::Relaxed);
             }
-            let dies = has(hands.dies_at);
-            let unplugged = has(hands.unplugged_at);
-            if let Some(frames) = &self.frames {
-                said = frames.take(hands.drops);
-            }
+            let (dies, unplugged) = (says(hands.dies_at), says(hands.unplugged_at));
+            said.extend(frames.into_iter().flatten().flatten());
             if unplugged {
                 wire.unplug();
             }
@@ -559,16 +549,6 @@ impl SerialOutput for Screen {
     }
 }
 
-/// The console over MAVLink, whose words are on the screen as well.
-struct Tapped(ConsolePipePort<'static>, Screen);
-
-impl SerialOutput for Tapped {
-    async fn write(&mut self, bytes: &[u8]) -> Result<(), PortError> {
-        self.1.write(bytes).await?;
-        self.0.write(bytes).await
-    }
-}
-
 /// Frames that are said, each in one write.
 #[derive(Clone, Default)]
 struct Frames {
@@ -578,16 +558,26 @@ struct Frames {
 
 impl Frames {
     /// What has been said, less each `drops`th frame.
-    fn take(&self, drops: Option<usize>) -> Vec<u8> {
-        let mut kept = Vec::new();
-        for frame in self.said.take() {
+    fn take(&self, drops: Option<usize>) -> Vec<Vec<u8>> {
+        let mut said = self.said.take();
+        said.retain(|_| {
             self.count.set(self.count.get() + 1);
-            if drops.is_none_or(|every| !self.count.get().is_multiple_of(every)) {
-                kept.extend(frame);
-            }
-        }
-        kept
+            drops.is_none_or(|every| !self.count.get().is_multiple_of(every))
+        });
+        said
     }
+}
+
+/// Name and value in a frame of MAVLink 2, if it is a `PARAM_VALUE` (22): ten bytes of header, then the value, count and
+/// place, and the name.
+fn parameter(frame: &[u8]) -> Option<(String, f32)> {
+    let (value, name) = (frame.get(10..14)?, frame.get(18..34)?);
+    let name = name.split(|byte| *byte == 0).next()?;
+    let is_value = frame.get(7..10)? == [22, 0, 0];
+    is_value.then(|| {
+        let value = f32::from_le_bytes(value.try_into().unwrap());
+        (String::from_utf8_lossy(name).into_owned(), value)
+    })
 }
 
 impl SerialOutput for Frames {

@@ -293,7 +293,7 @@ fn sensors_and_actuators(builder: &mut Builder, board: &Board) {
 fn a_vehicle_is_brought_up_over_four_sessions() {
     let temp = Temp::new("bringup-whole");
     let file = temp.file("key", KEY.as_bytes());
-    let board = Board::on_mavlink(factory(), Key::from_hex(KEY));
+    let board = Board::with_key(factory(), Key::from_hex(KEY));
     brought_up(&temp, &board, &["--mavlink-key", &file]);
 
     // What the board has lost is asked again, and nothing else.
@@ -320,14 +320,11 @@ fn a_vehicle_is_brought_up_over_four_sessions() {
 #[test]
 fn a_line_that_loses_frames_and_bytes_only_takes_longer() {
     let temp = Temp::new("bringup-lossy");
-    let board = Board::on_mavlink(
-        Hands {
-            drops: Some(17),
-            loses: Some(701),
-            ..factory()
-        },
-        None,
-    );
+    let board = Board::new(Hands {
+        drops: Some(17),
+        loses: Some(701),
+        ..factory()
+    });
     let mut builder = Builder::begins(&temp, &board, &[]);
     builder.hears("on table, chip 0x450 0x2003");
     first_part(&mut builder, &board);
@@ -345,13 +342,10 @@ fn a_line_that_loses_frames_and_bytes_only_takes_longer() {
 #[test]
 fn a_barometer_that_a_board_carries_is_missed() {
     let temp = Temp::new("bringup-air");
-    let board = Board::on_mavlink(
-        Hands {
-            board: "matek-h743",
-            ..Hands::default()
-        },
-        None,
-    );
+    let board = Board::new(Hands {
+        board: "matek-h743",
+        ..Hands::default()
+    });
     let mut builder = Builder::begins(&temp, &board, &[]);
     for id in ["chip", "setup", "selftest"] {
         builder.at(&format!("({id})"), "s");
@@ -499,10 +493,7 @@ fn radio(builder: &mut Builder, board: &Board) {
 
 #[test]
 fn a_file_that_is_no_protocol_is_left_alone() {
-    let (temp, board) = (
-        Temp::new("bringup-file"),
-        Board::on_mavlink(Hands::default(), None),
-    );
+    let (temp, board) = (Temp::new("bringup-file"), Board::new(Hands::default()));
     let name = board.name();
     let tried = |file: &str| run(&temp, &["bringup", "--port", &name, "--protocol", file]);
     for (text, why) in [
@@ -529,10 +520,7 @@ fn a_file_that_is_no_protocol_is_left_alone() {
 
 #[test]
 fn a_board_that_refuses_fails_the_step() {
-    let (temp, board) = (
-        Temp::new("bringup-refused"),
-        Board::on_mavlink(Hands::default(), None),
-    );
+    let (temp, board) = (Temp::new("bringup-refused"), Board::new(Hands::default()));
     let mut builder = Builder::begins(&temp, &board, &[]);
     builder.step("chip");
     for id in [

@@ -1,9 +1,8 @@
-//! What a builder does at a board's console: `sophie bringup` and `sophie params`, against the console's own code.
+//! What a builder does at a board's line: `sophie bringup` and `sophie params`, against the board's own code.
 
 mod board;
 mod bringup;
 mod interruption;
-mod mavlink;
 mod params;
 #[cfg(target_os = "linux")]
 mod serial;

@@ -1,10 +1,12 @@
-//! The console on a serial port: a pseudo-terminal, which the command opens, sets up and locks like any other.
+//! A serial port: a pseudo-terminal, which the command opens, sets up and locks like any other.
 
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::os::unix::process::CommandExt;
 use std::path::Path;
 use std::time::{Duration, Instant};
+
+use sophie_control::params::Params;
 
 use super::board::{Board, Hands};
 use super::bringup::Builder;
@@ -47,7 +49,7 @@ fn parameters_are_dumped_compared_and_loaded_over_a_serial_port() {
 #[test]
 fn a_bring_up_goes_over_a_serial_port_and_has_it_alone() {
     let temp = Temp::new("serial-bringup");
-    let board = Board::on_serial_mavlink(Hands {
+    let board = Board::on_serial(Hands {
         brown_out_set: false,
         unreadable: true,
         ..Hands::default()
@@ -103,15 +105,18 @@ fn a_bring_up_goes_over_a_serial_port_and_has_it_alone() {
 #[test]
 fn a_text_console_where_mavlink_is_wanted_is_named() {
     let temp = Temp::new("serial-console");
-    let board = Board::on_serial(Hands::default());
-    let done = run(&temp, &["bringup", "--port", &board.name(), "--patience", "2"]);
-    done.complains(
-        2,
-        "this is the text console; bring-up wants MAVLink: the board's USB socket",
-    );
-    assert!(!temp.0.join("bringup.toml").exists());
+    let board = Board::at_its_console(Hands::default());
+    for command in [&["bringup"][..], &["params", "dump", "bringup.toml"]] {
+        let port = ["--port", &board.name(), "--patience", "2"];
+        let done = run(&temp, &[command, &port].concat());
+        done.complains(
+            2,
+            "this is the text console, MAVLink is wanted: the board's USB socket",
+        );
+        assert!(!temp.0.join("bringup.toml").exists());
+    }
     // A vehicle that is signed by a key, and a line where nobody is.
-    let board = Board::on_mavlink(
+    let board = Board::with_key(
         Hands::default(),
         sophie_sim::live::Key::from_hex(super::bringup::KEY),
     );
@@ -125,7 +130,10 @@ fn a_text_console_where_mavlink_is_wanted_is_named() {
 #[test]
 fn a_plug_that_is_pulled_is_told_in_one_line() {
     let temp = Temp::new("serial-plug");
-    for (verb, at, patience) in [("dump", "rate_yaw_p", 3), ("load", "infill 6.9 -> 8", 3)] {
+    for (verb, at, patience) in [
+        ("dump", ("rate_yaw_p", Params::DEFAULT.rate_yaw_p), 3),
+        ("load", ("infill", 8.0), 3),
+    ] {
         fs::write(temp.0.join("p.toml"), "[params]\ninfill = 8\n").unwrap();
         let board = Board::on_serial(Hands {
             unplugged_at: Some(at),
@@ -146,6 +154,15 @@ fn a_plug_that_is_pulled_is_told_in_one_line() {
             "[params]\ninfill = 8\n"
         );
         assert_eq!(fs::read_dir(&temp.0).unwrap().count(), 1, "{verb}");
+        // What had come is stored, and that is said.
+        board.pass(3.0);
+        let came = verb == "load";
+        assert_eq!(board.stored().infill > 7.0, came);
+        assert_eq!(
+            done.complaint
+                .contains("; the board may store what was set until then: load again\n"),
+            came
+        );
     }
 }
 

@@ -1,4 +1,4 @@
-//! The console's far end: a socket, or a pseudo-terminal that is a serial port to whoever opens it.
+//! The far end of the line: a socket, or a pseudo-terminal that is a serial port to whoever opens it.
 
 use std::io::{ErrorKind, Read, Write};
 use std::net::{Ipv4Addr, TcpListener, TcpStream};

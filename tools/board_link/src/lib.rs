@@ -1,17 +1,15 @@
-//! A builder's line to a board: a [`vehicle`] over MAVLink, a console [`session`] over a serial port, TCP or [`mavlink`],
-//! and parameter files ([`parameters`]).
+//! A builder's line to a board: a [`vehicle`] over MAVLink on a serial port, TCP or UDP ([`port`]), and parameter files
+//! ([`parameters`]).
 //!
 //! The line may begin in any state and lose bytes; the board may restart or fall silent. Every failure is one line that
 //! names the port and the expected answer.
 
+pub mod description;
 pub mod file;
-pub mod mavlink;
 pub mod parameters;
 pub mod port;
-pub mod session;
 pub mod station;
 pub mod vehicle;
-pub mod wire;
 
 use std::fmt;
 

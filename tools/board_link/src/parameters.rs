@@ -1,33 +1,153 @@
 //! Parameters of a board: written to a file, compared with a file, and set from a file.
 //!
-//! The file is the `[params]` of a scenario. The console shows and takes numbers with up to nine digits: a difference
-//! in the last digit does not count.
+//! The file is the `[params]` of a scenario. It has numbers with up to nine digits: a difference in the last digit does
+//! not count.
 
 use std::fmt::Write;
 
-use sophie_control::maths::decimal::{self, Decimal};
-use sophie_control::params::Params;
+use sophie_control::arming::ArmingInhibit;
+use sophie_control::maths::decimal::Decimal;
 use sophie_sim::scenario::settings::Setting;
 
 use crate::Failure;
-use crate::session::{Session, restarts};
+use crate::description::Description;
+use crate::vehicle::{Identity, Values, Vehicle};
 
-/// Relative rounding error of a number on its way over the console: twice the last bit of 24.
+/// Relative rounding error of a number on its way through a file: twice the last bit of 24.
 const LAST_DIGIT: f32 = 2.0 * f32::EPSILON;
-/// Number of attempts at a list with damaged or missing rows.
-const TRIES: u32 = 3;
 
-/// A parameter in the board's working copy.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// A board's parameters.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Listed {
-    /// Its name.
-    pub name: String,
-    /// The number, as the console shows it.
-    pub value: String,
-    /// The allowed values, with the unit.
-    pub allowed: String,
-    /// The value differs from the board's default.
-    pub changed: bool,
+    /// Firmware and image of the board.
+    pub identity: Identity,
+    /// Its values, those that will be in force after a restart.
+    pub values: Values,
+    /// What its firmware says of them; `None`: its table is another than this program's, and it says nothing.
+    pub description: Option<Description>,
+}
+
+impl Listed {
+    /// Asks `vehicle`.
+    ///
+    /// # Errors
+    /// One line: the line is lost, the vehicle falls silent, is another one, or Ctrl-C.
+    pub fn of(vehicle: &mut Vehicle) -> Result<Self, Failure> {
+        let identity = vehicle.identity()?;
+        Ok(Self {
+            description: Description::of(vehicle, &identity)?,
+            values: vehicle.values()?,
+            identity,
+        })
+    }
+
+    /// A line for who must know that the board's table of parameters is another than this program's.
+    pub fn foreign(&self) -> Option<String> {
+        let says = match &self.description {
+            Some(description) if !description.foreign => return None,
+            Some(_) => "units, ranges and defaults are by its own description",
+            None => "it has no description that can be read, so units, ranges and defaults are not known",
+        };
+        Some(format!("{}; {says}", self.other_table()))
+    }
+
+    fn other_table(&self) -> String {
+        let version = &self.identity.version;
+        format!("SOPHIE {version} there has another table of parameters than this program")
+    }
+
+    /// A parameter file with all values of the board.
+    pub fn text(&self) -> String {
+        let Identity {
+            board,
+            version,
+            image,
+            table,
+            ..
+        } = &self.identity;
+        let mut rows: Vec<(&str, f32)> = self
+            .values
+            .0
+            .iter()
+            .map(|(name, value)| (&**name, *value))
+            .collect();
+        let described = |name: &str| self.description.as_ref().and_then(|all| all.row(name));
+        rows.retain(|(name, _)| is_key(name));
+        if let Some(description) = &self.description {
+            rows.sort_by_key(|(name, _)| description.place(name));
+        }
+        let mut text = format!(
+            "# Parameters of SOPHIE {version} on {board}, build {image:08x}, {} parameters, table {table:08x}.\n\
+             # By `sophie params dump`; `sophie params load` sets them. What a file leaves out stays as it is.\n[params]\n",
+            rows.len()
+        );
+        for (name, number) in rows {
+            let row = described(name);
+            let value = match row.and_then(|row| row.choice(number)) {
+                Some(named) => format!("\"{named}\""),
+                None => Decimal(number).to_string(),
+            };
+            let line = format!("{name} = {value}");
+            let _ = match row {
+                Some(row) => {
+                    let changed = row.is_changed(number);
+                    let mark = if changed { "; not the default" } else { "" };
+                    writeln!(text, "{line:34} # {row}{mark}")
+                }
+                None => writeln!(text, "{line}"),
+            };
+        }
+        text
+    }
+
+    /// The differences between file and board, in the file's order.
+    ///
+    /// # Errors
+    /// One line: a parameter of the file is another quantity at the board, or it cannot be known whether it is.
+    pub fn differences(&self, settings: &[Setting]) -> Result<Vec<Difference>, String> {
+        let Some(description) = &self.description else {
+            let version = &self.identity.version;
+            return Err(format!(
+                "{} and no description that can be read: use the `sophie` of {version}",
+                self.other_table()
+            ));
+        };
+        for Setting { row, .. } in settings {
+            let unit = if row.unit == "1" { "" } else { row.unit };
+            let described = description.row(row.name);
+            if let Some(other) = described.map(|row| row.unit()).filter(|other| *other != unit) {
+                let [theirs, ours] = [other, unit].map(|unit| if unit.is_empty() { "1" } else { unit });
+                return Err(format!(
+                    "{}: its unit is {theirs} at the board, {ours} in the file",
+                    row.name
+                ));
+            }
+        }
+        let all = settings.iter().map(|setting| Difference {
+            setting: *setting,
+            board: self.values.get(setting.row.name),
+        });
+        let differs = |it: &Difference| !it.board.is_some_and(|board| same(board, it.setting.value));
+        Ok(all.filter(differs).collect())
+    }
+
+    /// Why the board does not take `difference`, as far as that can be known before.
+    fn refuses(&self, difference: &Difference) -> Option<String> {
+        let Setting { row, value } = difference.setting;
+        if difference.board.is_none() {
+            return Some(difference.text());
+        }
+        let described = self.description.as_ref()?.row(row.name)?;
+        let (name, value) = (row.name, Decimal(value));
+        (!described.allows(difference.setting.value))
+            .then(|| format!("{name} cannot be {value} there; it takes {described}"))
+    }
+}
+
+/// A name can stand in a file as it is.
+fn is_key(name: &str) -> bool {
+    let plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+    !name.is_empty() && name.chars().all(plain)
 }
 
 /// A parameter whose value in the file differs from the board's.
@@ -36,17 +156,17 @@ pub struct Difference {
     /// Value in the file.
     pub setting: Setting,
     /// Value on the board; `None` if its firmware lacks the parameter.
-    pub board: Option<String>,
+    pub board: Option<f32>,
 }
 
 impl Difference {
     /// `infill 6.9 -> 8 %`: from the board's to the file's.
     pub fn text(&self) -> String {
         let row = self.setting.row;
-        let new = shown(&self.setting);
+        let new = Decimal(self.setting.value);
         let name = row.choice(self.setting.value).map_or("", |choice| choice.name);
-        let mut text = match &self.board {
-            Some(old) => format!("{} {old} -> {new}", row.name),
+        let mut text = match self.board {
+            Some(old) => format!("{} {} -> {new}", row.name, Decimal(old)),
             None => format!(
                 "{}: the board has no such parameter, the file has {new}",
                 row.name
@@ -61,215 +181,33 @@ impl Difference {
     }
 }
 
-/// The number of a setting, as the console shows it.
-fn shown(setting: &Setting) -> String {
-    Decimal(setting.value).to_string()
-}
-
-/// Firmware of the board.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Version {
-    /// Version and board.
-    pub firmware: String,
-    /// Its image and its table of parameters.
-    pub build: String,
-}
-
-/// Firmware of the board, by its own answer. Lost lines are asked for again; a firmware without these lines is an
-/// earlier one.
-///
-/// # Errors
-/// The line is lost.
-pub fn version(session: &mut Session) -> Result<Version, Failure> {
-    let (mut firmware, mut build) = (None, None);
-    let mut tries = 0..TRIES;
-    while (firmware.is_none() || build.is_none()) && tries.next().is_some() {
-        let said = session.ask("version")?;
-        let line = |begin: &str| said.iter().find(|line| line.starts_with(begin)).cloned();
-        firmware = firmware.or_else(|| line("SOPHIE "));
-        build = build.or_else(|| line("build "));
-    }
-    Ok(Version {
-        firmware: firmware.unwrap_or_else(|| "an earlier firmware".to_owned()),
-        build: build.unwrap_or_else(|| "build unknown".to_owned()),
-    })
-}
-
-/// The parameters of the board, in its order. Rows that are lost on the way are asked for again, one by one.
-///
-/// # Errors
-/// One line: the line is lost, or the board's answer is not a list.
-pub fn listed(session: &mut Session) -> Result<Vec<Listed>, Failure> {
-    let mut rows = Vec::new();
-    // A row that this program does not know could be lost unnoticed: rows are counted.
-    let damaged = take_rows(&session.ask("list")?, &mut rows) > 0;
-    if damaged {
-        take_rows(&session.ask("list")?, &mut rows);
-    }
-    for wanted in Params::TABLE {
-        let command = format!("list {}", wanted.name);
-        let mut tries = 0..TRIES;
-        while rows.iter().all(|row| row.name != wanted.name) {
-            let said = session.ask(&command)?;
-            take_rows(&said, &mut rows);
-            // A firmware may know fewer than this program.
-            if said.iter().any(|line| line.starts_with("no parameter has '")) {
-                break;
-            }
-            if tries.next().is_none() {
-                let port = session.port();
-                return Err(Failure::Board(format!(
-                    "{port}: '{command}' is damaged on its way each time"
-                )));
-            }
-        }
-    }
-    let place = |row: &Listed| Params::TABLE.iter().position(|known| known.name == row.name);
-    rows.sort_by_key(|row| place(row).unwrap_or(usize::MAX));
-    Ok(rows)
-}
-
-/// Takes the missing rows out of a list; returns the number of damaged ones.
-fn take_rows(lines: &[String], rows: &mut Vec<Listed>) -> usize {
-    let read: Vec<Listed> = lines.iter().filter_map(|line| row(line)).collect();
-    let damaged = lines.len() - read.len();
-    for row in read {
-        if rows.iter().all(|known| known.name != row.name) {
-            rows.push(row);
-        }
-    }
-    damaged
-}
-
-/// One row of `list`: mark, name, number, allowed values.
-fn row(line: &str) -> Option<Listed> {
-    // Stands for lost or damaged bytes.
-    if line.contains('?') {
-        return None;
-    }
-    let changed = match line.split_at_checked(2)?.0 {
-        "* " => true,
-        "  " => false,
-        _ => return None,
-    };
-    let (name, rest) = line.get(2..)?.split_once(' ')?;
-    let (value, allowed) = rest.trim_start().split_once(' ')?;
-    decimal::parse(value)?;
-    Some(Listed {
-        name: name.to_owned(),
-        value: value.to_owned(),
-        allowed: allowed.trim().to_owned(),
-        changed,
-    })
-}
-
-/// The board's unsaved changes, in its words. An answer that is damaged on its way is asked for again.
-///
-/// # Errors
-/// The line is lost.
-pub fn unsaved(session: &mut Session) -> Result<Vec<String>, Failure> {
-    let mut tries = 0..TRIES;
-    loop {
-        let mut lines = session.ask("changes")?;
-        // The last line has their number.
-        let last = lines.pop().unwrap_or_default();
-        if is_whole(&lines, &last) {
-            return Ok(lines);
-        }
-        if tries.next().is_none() {
-            let port = session.port();
-            return Err(Failure::Board(format!(
-                "{port}: 'changes' is answered with '{last}'; expected 'no changes' or their count"
-            )));
-        }
-    }
-}
-
-/// The answer to `changes`, whose last line is `last`, has come without damage.
-fn is_whole(lines: &[String], last: &str) -> bool {
-    let counted = match last.split_once(" change") {
-        Some(("no", "s")) => lines.is_empty(),
-        Some((count, _)) => count.parse() == Ok(lines.len()),
-        None => false,
-    };
-    counted && lines.iter().all(|line| !line.contains('?'))
-}
-
-/// A parameter file with all values of the board; `board` goes into its first lines.
-pub fn text(board: &Version, rows: &[Listed]) -> String {
-    let Version { firmware, build } = board;
-    let mut text = format!(
-        "# Parameters of {firmware}, {build}.\n\
-         # By `sophie params dump`; `sophie params load` sets them. What a file leaves out stays as it is.\n[params]\n"
-    );
-    for Listed {
-        name,
-        value,
-        allowed,
-        changed,
-    } in rows
-    {
-        let named = Params::row(name)
-            .zip(decimal::parse(value))
-            .and_then(|(row, value)| row.choice(value))
-            .map_or("", |choice| choice.name);
-        let value = match named {
-            "" => value.clone(),
-            named => format!("\"{named}\""),
-        };
-        let mark = if *changed { "; not the default" } else { "" };
-        let _ = writeln!(text, "{:34} # {allowed}{mark}", format!("{name} = {value}"));
-    }
-    text
-}
-
-/// The differences between file and board, in the file's order.
-pub fn differences(settings: &[Setting], rows: &[Listed]) -> Vec<Difference> {
-    let board = |setting: &Setting| {
-        let row = rows.iter().find(|listed| listed.name == setting.row.name);
-        row.map(|listed| listed.value.clone())
-    };
-    let all = settings.iter().map(|setting| Difference {
-        setting: *setting,
-        board: board(setting),
-    });
-    all.filter(|difference| {
-        let board = difference.board.as_deref().and_then(decimal::parse);
-        !board.is_some_and(|board| same(board, difference.setting.value))
-    })
-    .collect()
-}
-
 /// The same number but for its last digit.
 fn same(a: f32, b: f32) -> bool {
     (a - b).abs() <= LAST_DIGIT * a.abs().max(b.abs())
 }
 
-/// Sets the parameters that differ, saves, and compares those in force after the restart. `say` gets a line for each
-/// step.
+/// True if the board has stored values that are in force only after a restart.
 ///
 /// # Errors
-/// One line: the value that the board refused (its working copy is then put back), or the value that it has instead.
-pub fn load(session: &mut Session, settings: &[Setting], say: &mut dyn FnMut(&str)) -> Result<(), Failure> {
-    let before = listed(session)?;
-    let waiting = unsaved(session)?;
-    let port = session.port().to_owned();
-    let ours = |line: &str| {
-        settings
-            .iter()
-            .any(|s| line.split(' ').next() == Some(s.row.name))
-    };
-    if let Some(other) = waiting.iter().find(|line| !ours(line)) {
-        return Err(Failure::Board(format!(
-            "{port}: the board has a change that is neither saved nor in the file: {other}; \
-             'save' or 'restart' at its console first"
-        )));
+/// As [`Vehicle::arming`].
+pub fn waits_for_restart(vehicle: &mut Vehicle) -> Result<bool, Failure> {
+    Ok(vehicle.arming()?.contains(&ArmingInhibit::Stored))
+}
+
+/// Sets the parameters that differ, stores them, restarts the board, and compares those in force then. `say` gets a line
+/// for each step.
+///
+/// # Errors
+/// One line: the value that the board refused (those before it are then put back), or the value that it has instead.
+pub fn load(vehicle: &mut Vehicle, settings: &[Setting], say: &mut dyn FnMut(&str)) -> Result<(), Failure> {
+    let port = vehicle.port();
+    let failed = |why: String| Failure::Board(format!("{port}: {why}"));
+    let before = Listed::of(vehicle)?;
+    let different = before.differences(settings).map_err(failed)?;
+    if let Some(why) = different.iter().find_map(|difference| before.refuses(difference)) {
+        return Err(failed(why));
     }
-    let different = differences(settings, &before);
-    if let Some(absent) = different.iter().find(|difference| difference.board.is_none()) {
-        return Err(Failure::Board(format!("{port}: {}", absent.text())));
-    }
-    if different.is_empty() && waiting.is_empty() {
+    if different.is_empty() && !waits_for_restart(vehicle)? {
         say(&format!("nothing to change: all {} are in force", settings.len()));
         return Ok(());
     }
@@ -277,157 +215,160 @@ pub fn load(session: &mut Session, settings: &[Setting], say: &mut dyn FnMut(&st
         say(&difference.text());
     }
     for (done, difference) in different.iter().enumerate() {
-        if let Err(why) = set(session, difference) {
-            return Err(put_back(session, &different[..=done], why));
+        if let Err(why) = set(vehicle, difference) {
+            return Err(put_back(vehicle, &different[..=done], why));
         }
     }
-    // The values are stored already: those in force are still compared.
-    session.see_it_through();
-    if let Err(why) = save(session) {
-        return Err(put_back(session, &different, why));
+    // The values are at the board: those in force are still compared.
+    vehicle.see_it_through();
+    if let Err(why) = vehicle.store_and_restart() {
+        return Err(put_back(vehicle, &different, why));
     }
     say("saved; the board has restarted");
-    let now = listed(session)?;
-    if let Some(other) = differences(settings, &now).first() {
-        return Err(Failure::Board(format!(
-            "{port}: read back after the restart: {}",
-            other.text()
-        )));
-    }
-    if let Some(line) = unsaved(session)?.first() {
-        return Err(Failure::Board(format!(
-            "{port}: not in force after the restart: {line}"
-        )));
+    let now = Listed::of(vehicle)?.differences(settings).map_err(failed)?;
+    if let Some(other) = now.first() {
+        return Err(failed(format!("read back after the restart: {}", other.text())));
     }
     say(&format!("all {} are in force", settings.len()));
     Ok(())
 }
 
-fn set(session: &mut Session, difference: &Difference) -> Result<(), Failure> {
-    let name = difference.setting.row.name;
-    let command = format!("set {name} {}", shown(&difference.setting));
-    let mut said = session.command(&command)?;
-    // Lost bytes leave open whether it was taken.
-    let mut tries = 1..TRIES;
-    while said.iter().any(|line| line.contains('?')) && tries.next().is_some() {
-        said = session.command(&command)?;
-    }
-    let last = said.last().map_or("", String::as_str);
-    if last.starts_with(&format!("{name} ")) && last.contains(" -> ") {
+fn set(vehicle: &mut Vehicle, difference: &Difference) -> Result<(), Failure> {
+    let Setting { row, value } = difference.setting;
+    let now = vehicle.set(row.name, value)?;
+    if same(now, value) {
         return Ok(());
     }
-    let port = session.port();
-    Err(Failure::Board(format!(
-        "{port}: nothing is saved, the board refused: {last}"
-    )))
+    Err(vehicle.refused(&format!("the board refused {}", difference.text())))
 }
 
-/// Restores the old values in the working copy, as far as the line allows; `why` is the reason for not saving.
-fn put_back(session: &mut Session, different: &[Difference], why: Failure) -> Failure {
-    let why = match why {
-        Failure::Stopped(line) => {
-            // If this fails, the next command fails as well.
-            let _ = session.calm();
-            Failure::Stopped(format!("{line}; nothing is saved"))
-        }
-        other => other,
+/// Puts the old values back, as far as the line allows; `why` is the reason for not saving.
+fn put_back(vehicle: &mut Vehicle, different: &[Difference], why: Failure) -> Failure {
+    // Ctrl-C is obeyed once.
+    vehicle.see_it_through();
+    let mut olds = different
+        .iter()
+        .filter_map(|it| Some((it.setting.row.name, it.board?)));
+    // The first that fails is the last: a silent board is not waited for again.
+    let back = olds.all(|(name, old)| vehicle.set(name, old).is_ok_and(|now| same(now, old)));
+    let end = if back {
+        "nothing is saved"
+    } else {
+        "the board may store what was set until then: load again"
     };
-    for Difference { setting, board } in different {
-        if let Some(old) = board {
-            // A failure here is harmless: the working copy ends with the next restart.
-            let _ = session.command(&format!("set {} {old}", setting.row.name));
-        }
+    match why {
+        Failure::Stopped(line) => Failure::Stopped(format!("{line}; {end}")),
+        Failure::Board(line) => Failure::Board(format!("{line}; {end}")),
+        why @ Failure::Input(_) => why,
     }
-    why
-}
-
-/// Stores the working copy and waits for the restarted board.
-///
-/// # Errors
-/// One line: the board's refusal, or the line is lost.
-pub fn save(session: &mut Session) -> Result<(), Failure> {
-    let said = session.restart("save")?;
-    if restarts(&said) {
-        return Ok(());
-    }
-    let (port, last) = (session.port(), said.last().map_or("nothing", String::as_str));
-    Err(Failure::Board(format!(
-        "{port}: nothing is saved, the board refused: {last}"
-    )))
 }
 
 #[cfg(test)]
 mod tests {
+    use sophie_control::params::Params;
     use sophie_sim::scenario::settings;
 
     use super::*;
 
-    #[test]
-    fn rows_of_a_list_are_read_and_damaged_ones_are_not() {
-        let read = row("* infill           8         4 to 10 %").unwrap();
-        assert_eq!(
-            (&*read.name, &*read.value, &*read.allowed, read.changed),
-            ("infill", "8", "4 to 10 %", true)
-        );
-        for line in [
-            "",
-            "* ",
-            "  infill",
-            "  infill           x         4 to 10 %",
-            "infill 8 4",
-            "? infill 8 4 to 10 %",
-        ] {
-            assert!(row(line).is_none(), "{line}");
+    /// A board of this program's table with `values`, whose description is `description`.
+    fn board(values: Values, description: Option<Description>) -> Listed {
+        Listed {
+            identity: Identity {
+                board: "matek-h743".to_owned(),
+                version: "0.1.0".to_owned(),
+                chip: String::new(),
+                image: 0x1234_ABCD,
+                table: 0x5678,
+            },
+            values,
+            description,
         }
     }
 
-    #[test]
-    fn an_answer_to_changes_is_whole_by_its_count_and_without_lost_bytes() {
-        let lines = ["infill 6.9 -> 8 %".to_owned()];
-        assert!(is_whole(&[], "no changes") && is_whole(&lines, "1 change, save keeps it"));
-        assert!(!is_whole(&[], "? changes") && !is_whole(&lines, "2 changes, save keeps them"));
-        assert!(!is_whole(&["infill ? -> 8 %".to_owned()], "1 change"));
+    fn defaults() -> Values {
+        let rows = Params::TABLE.iter();
+        Values(rows.map(|row| (row.name.to_owned(), row.default)).collect())
     }
 
     #[test]
     fn a_dump_is_read_back_as_what_was_dumped() {
-        let rows: Vec<Listed> = Params::TABLE
-            .iter()
-            .map(|row| Listed {
-                name: row.name.to_owned(),
-                value: Decimal(row.default).to_string(),
-                allowed: sophie_tasks::storage::parameters::Allowed(row).to_string(),
-                changed: false,
-            })
-            .collect();
-        let board = Version {
-            firmware: "SOPHIE 0.1.0 on matek-h743".to_owned(),
-            build: "build 1234abcd".to_owned(),
-        };
-        let text = text(&board, &rows);
+        let listed = board(defaults(), Description::own());
+        let text = listed.text();
         let read = settings::parse(&text, "dump.toml").unwrap();
         assert_eq!(read.len(), Params::TABLE.len());
-        assert!(differences(&read, &rows).is_empty());
+        assert!(listed.differences(&read).unwrap().is_empty());
         assert!(text.contains("motor_protocol = \"dshot300\""), "{text}");
+        assert!(!text.contains("not the default"), "{text}");
         assert!(text.lines().all(|line| line.len() <= 160), "{text}");
-        let other = settings::parse("[params]\ninfill = 8\nmotor_protocol = \"pwm\"\n", "p.toml").unwrap();
-        let texts: Vec<String> = differences(&other, &rows).iter().map(Difference::text).collect();
-        assert_eq!(texts, ["infill 6.9 -> 8 %", "motor_protocol 300 -> 400 pwm"]);
-        // A neighbour in the last bit is the same; the next digit is not.
-        let file = settings::parse("[params]\ninertia_pitch = 0.04356\n", "p.toml").unwrap();
-        for (shown, differs) in [("0.04356", 0), ("0.04356000", 0), ("0.0435601", 1)] {
-            let row = Listed {
-                name: "inertia_pitch".to_owned(),
-                value: shown.to_owned(),
-                allowed: String::new(),
-                changed: true,
-            };
-            assert_eq!(differences(&file, &[row]).len(), differs, "{shown}");
-        }
-        let absent = differences(&other, &[]);
-        assert_eq!(
-            absent[0].text(),
-            "infill: the board has no such parameter, the file has 8 %"
+        let rows = text.lines().skip(3).zip(Params::TABLE);
+        assert!(
+            rows.into_iter()
+                .all(|(line, row)| line.starts_with(&format!("{} = ", row.name)))
         );
+        let other = settings::parse("[params]\ninfill = 8\nmotor_protocol = \"pwm\"\n", "p.toml").unwrap();
+        let differences = listed.differences(&other).unwrap();
+        let texts: Vec<String> = differences.iter().map(Difference::text).collect();
+        assert_eq!(texts, ["infill 6.9 -> 8 %", "motor_protocol 300 -> 400 pwm"]);
+        let mut changed = defaults();
+        changed.0.insert("infill".to_owned(), 8.0);
+        let text = board(changed, Description::own()).text();
+        assert!(text.contains("# 4 to 10 %; not the default\n"), "{text}");
+    }
+
+    #[test]
+    fn a_neighbour_in_the_last_bit_is_the_same_and_the_next_digit_is_not() {
+        let file = settings::parse("[params]\ninertia_pitch = 0.04356\n", "p.toml").unwrap();
+        for (value, differs) in [
+            (0.04356, 0),
+            (f32::from_bits(0.04356_f32.to_bits() + 1), 0),
+            (0.043_560_1, 1),
+        ] {
+            let values = Values([("inertia_pitch".to_owned(), value)].into());
+            let listed = board(values, Description::own());
+            assert_eq!(listed.differences(&file).unwrap().len(), differs, "{value}");
+        }
+        let absent = board(Values::default(), Description::own());
+        let difference = absent.differences(&file).unwrap().remove(0);
+        let why = "inertia_pitch: the board has no such parameter, the file has 0.04356 kg m2";
+        assert_eq!(absent.refuses(&difference).as_deref(), Some(why));
+    }
+
+    #[test]
+    fn a_board_of_another_table_is_dumped_and_takes_what_it_describes() {
+        let file = settings::parse("[params]\ninfill = 8\n", "p.toml").unwrap();
+        let mut values = defaults();
+        values.0.insert("old_gain".to_owned(), 3.0);
+        values.0.insert("broken\nname".to_owned(), 1.0);
+        // Without a description: values alone.
+        let unknown = board(values.clone(), None);
+        let text = unknown.text();
+        assert!(
+            text.contains("\ninfill = 6.9\n") && text.contains("\nold_gain = 3\n"),
+            "{text}"
+        );
+        assert!(!text.contains("broken"), "{text}");
+        let why = unknown.differences(&file).unwrap_err();
+        assert!(why.ends_with("use the `sophie` of 0.1.0"), "{why}");
+        assert!(unknown.foreign().unwrap().contains("are not known"));
+        // With its own.
+        let described = |infill: &str| {
+            let json = format!(
+                r#"{{"parameters":[{{"name":"old_gain","min":0,"max":5,"default":2,"units":"1/s"}},{{"name":"infill",{infill}}}]}}"#
+            );
+            board(values.clone(), Description::parse(&json, true))
+        };
+        let listed = described(r#""min":4,"max":7,"units":"%""#);
+        let text = listed.text();
+        assert!(
+            text.contains("# 0 to 5 1/s; not the default\ninfill = 6.9 "),
+            "{text}"
+        );
+        assert!(listed.foreign().unwrap().contains("by its own description"));
+        let difference = listed.differences(&file).unwrap().remove(0);
+        let why = "infill cannot be 8 there; it takes 4 to 7 %";
+        assert_eq!(listed.refuses(&difference).as_deref(), Some(why));
+        let why = described(r#""min":0,"max":1"#).differences(&file).unwrap_err();
+        assert_eq!(why, "infill: its unit is 1 at the board, % in the file");
+        assert_eq!(board(defaults(), Description::own()).foreign(), None);
     }
 }

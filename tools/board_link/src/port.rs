@@ -1,4 +1,4 @@
-//! The port of a console: a serial port, a TCP socket (of an emulated board), or MAVLink.
+//! The port of a vehicle: a serial port, a TCP socket (of an emulated board) or UDP, which carry MAVLink.
 
 use std::fmt;
 use std::fs::File;
@@ -8,41 +8,26 @@ use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Duration;
 
-use sophie_ports::signing::Key;
-
 use crate::Failure;
-use crate::mavlink;
 use crate::station::{self, Ends};
-use crate::wire::Wire;
 
-/// The console's rate on serial ports.
-pub const BAUD: u32 = 115_200;
-/// Longest wait of one read or write: the resolution of a session's time-outs.
+/// Default rate of serial ports, baud: that of the boards' MAVLink ports. USB ignores it.
+pub const BAUD: u32 = 57_600;
+/// Rate of the boards' serial console, baud.
+pub const CONSOLE_BAUD: u32 = 115_200;
+/// Longest wait of one read or write: the resolution of time-outs.
 const SLICE: Duration = Duration::from_millis(20);
 /// Longest wait of a write; then the line counts as lost.
 const WRITE: Duration = Duration::from_secs(2);
 /// Longest wait for a TCP connection.
 const CONNECT: Duration = Duration::from_secs(5);
-/// MAVLink's default rate on serial ports, baud: that of the boards.
-const MAVLINK_BAUD: u32 = 57_600;
 /// The allowed names.
-const ALLOWED: &str = "allowed /dev/..., COM3, tcp:HOST:PORT, or over MAVLink mavlink:/dev/...[,BAUD], \
-                       mavlink:tcp:HOST:PORT, udpin:HOST:PORT, udpout:HOST:PORT";
+const ALLOWED: &str =
+    "allowed /dev/...[,BAUD], COM3[,BAUD], tcp:HOST:PORT, udpin:HOST:PORT, udpout:HOST:PORT";
 
-/// Name of a port: `/dev/ttyUSB0`, `COM3`, `tcp:127.0.0.1:5000`; for MAVLink in the notation of its other clients.
+/// Name of a port: `/dev/ttyUSB0`, `COM3`, `tcp:127.0.0.1:5760`, in the notation of other clients of MAVLink.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PortName {
-    /// A serial port.
-    Serial(PathBuf),
-    /// HOST:PORT.
-    Tcp(String),
-    /// A console over MAVLink.
-    Mavlink(Carrier),
-}
-
-/// The carrier of MAVLink.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Carrier {
     /// A serial port and its rate.
     Serial(PathBuf, u32),
     /// HOST:PORT.
@@ -57,40 +42,29 @@ impl FromStr for PortName {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        if let Some(behind) = text.strip_prefix("mavlink:") {
-            return carrier(behind).map(Self::Mavlink);
+        let text = text.strip_prefix("mavlink:").unwrap_or(text);
+        // As in pymavlink, udp: without in or out listens.
+        for listens in ["udpin:", "udp:"] {
+            if let Some(at) = text.strip_prefix(listens) {
+                return Ok(Self::UdpIn(address(at, listens)?));
+            }
         }
-        if text.starts_with("udp") {
-            return carrier(text).map(Self::Mavlink);
+        if let Some(to) = text.strip_prefix("udpout:") {
+            return Ok(Self::UdpOut(address(to, "udpout:")?));
         }
-        match text.strip_prefix("tcp:") {
-            Some(to) => Ok(Self::Tcp(address(to, "tcp:")?)),
-            None if text.is_empty() => Err(ALLOWED.to_owned()),
-            None => Ok(Self::Serial(PathBuf::from(text))),
+        if let Some(to) = text.strip_prefix("tcp:") {
+            return Ok(Self::Tcp(address(to, "tcp:")?));
         }
-    }
-}
-
-fn carrier(text: &str) -> Result<Carrier, String> {
-    // As in pymavlink, udp: without in or out listens.
-    for listens in ["udpin:", "udp:"] {
-        if let Some(at) = text.strip_prefix(listens) {
-            return Ok(Carrier::UdpIn(address(at, listens)?));
+        match text.rsplit_once(',') {
+            _ if text.is_empty() || text.starts_with("udp") => Err(ALLOWED.to_owned()),
+            None => Ok(Self::Serial(PathBuf::from(text), BAUD)),
+            Some((path, baud)) => match baud.parse() {
+                Ok(baud @ 1200..=4_000_000) if !path.is_empty() => {
+                    Ok(Self::Serial(PathBuf::from(path), baud))
+                }
+                _ => Err("allowed /dev/...,BAUD, BAUD 1200 to 4000000".to_owned()),
+            },
         }
-    }
-    if let Some(to) = text.strip_prefix("udpout:") {
-        return Ok(Carrier::UdpOut(address(to, "udpout:")?));
-    }
-    if let Some(to) = text.strip_prefix("tcp:") {
-        return Ok(Carrier::Tcp(address(to, "mavlink:tcp:")?));
-    }
-    match text.rsplit_once(',') {
-        _ if text.is_empty() || text.starts_with("udp") => Err(ALLOWED.to_owned()),
-        None => Ok(Carrier::Serial(PathBuf::from(text), MAVLINK_BAUD)),
-        Some((path, baud)) => match baud.parse() {
-            Ok(baud @ 1200..=4_000_000) if !path.is_empty() => Ok(Carrier::Serial(PathBuf::from(path), baud)),
-            _ => Err("allowed mavlink:/dev/...,BAUD, BAUD 1200 to 4000000".to_owned()),
-        },
     }
 }
 
@@ -107,54 +81,28 @@ fn address(text: &str, before: &str) -> Result<String, String> {
 impl fmt::Display for PortName {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Serial(path) => write!(f, "{}", path.display()),
+            Self::Serial(path, BAUD) => write!(f, "{}", path.display()),
+            Self::Serial(path, baud) => write!(f, "{},{baud}", path.display()),
             Self::Tcp(address) => write!(f, "tcp:{address}"),
-            Self::Mavlink(Carrier::Serial(path, baud)) => write!(f, "mavlink:{},{baud}", path.display()),
-            Self::Mavlink(Carrier::Tcp(address)) => write!(f, "mavlink:tcp:{address}"),
-            Self::Mavlink(Carrier::UdpIn(address)) => write!(f, "udpin:{address}"),
-            Self::Mavlink(Carrier::UdpOut(address)) => write!(f, "udpout:{address}"),
+            Self::UdpIn(address) => write!(f, "udpin:{address}"),
+            Self::UdpOut(address) => write!(f, "udpout:{address}"),
         }
     }
 }
 
 impl PortName {
-    /// Opens the port. `key` signs MAVLink.
+    /// Opens the port.
     ///
     /// # Errors
     /// One line: the port, and why it cannot be used.
-    pub fn open(&self, key: Option<Key>) -> Result<Box<dyn Wire>, Failure> {
-        if key.is_some() && !matches!(self, Self::Mavlink(_)) {
-            return Err(Failure::Input(format!(
-                "{self}: has nothing to sign: a key is for MAVLink"
-            )));
-        }
-        let opened = match self {
-            Self::Serial(path) => serial(path, BAUD).map(|port| Box::new(port) as Box<dyn Wire>),
-            Self::Tcp(address) => tcp(address).map(|stream| Box::new(stream) as Box<dyn Wire>),
-            Self::Mavlink(carrier) => carrier.open().and_then(|ends| mavlink::open(ends, key)),
-        };
-        opened.map_err(|error| self.cannot_be_opened(&error))
-    }
-}
-
-impl PortName {
-    /// Opens the port for MAVLink, whatever its name says it carries.
-    ///
-    /// # Errors
-    /// One line: the port, and why it cannot be used.
-    pub fn open_mavlink(&self) -> Result<Ends, Failure> {
-        let opened = match self {
-            Self::Serial(path) => Carrier::Serial(path.clone(), BAUD).open(),
-            Self::Tcp(address) => Carrier::Tcp(address.clone()).open(),
-            Self::Mavlink(carrier) => carrier.open(),
-        };
-        opened.map_err(|error| self.cannot_be_opened(&error))
+    pub fn open(&self) -> Result<Ends, Failure> {
+        self.ends().map_err(|error| self.cannot_be_opened(&error))
     }
 
     /// One line: the port, and why it cannot be used.
     fn cannot_be_opened(&self, error: &io::Error) -> Failure {
         let path = match self {
-            Self::Serial(path) | Self::Mavlink(Carrier::Serial(path, _)) => Some(path),
+            Self::Serial(path, _) => Some(path),
             _ => None,
         };
         let hint = match (path, error.kind()) {
@@ -165,10 +113,8 @@ impl PortName {
         };
         Failure::Input(format!("{self}: cannot be opened: {error}{hint}"))
     }
-}
 
-impl Carrier {
-    fn open(&self) -> io::Result<Ends> {
+    fn ends(&self) -> io::Result<Ends> {
         Ok(match self {
             Self::Serial(path, baud) => {
                 let port = serial(path, *baud)?;
@@ -251,20 +197,20 @@ mod tests {
     fn names_are_read_and_shown() {
         for text in [
             "/dev/ttyUSB0",
+            "/dev/ttyUSB0,115200",
             "COM3",
             "tcp:127.0.0.1:5000",
             "tcp:bench.local:1",
             "udpin:0.0.0.0:14550",
             "udpout:10.0.0.2:14550",
-            "mavlink:tcp:127.0.0.1:5760",
-            "mavlink:/dev/ttyUSB0,115200",
         ] {
             assert_eq!(text.parse::<PortName>().unwrap().to_string(), text);
+            let name = format!("mavlink:{text}");
+            assert_eq!(name.parse::<PortName>().unwrap().to_string(), text);
         }
         for (text, shown) in [
             ("udp:127.0.0.1:14550", "udpin:127.0.0.1:14550"),
-            ("mavlink:udpin:127.0.0.1:14550", "udpin:127.0.0.1:14550"),
-            ("mavlink:/dev/ttyACM0", "mavlink:/dev/ttyACM0,57600"),
+            ("/dev/ttyACM0,57600", "/dev/ttyACM0"),
         ] {
             assert_eq!(text.parse::<PortName>().unwrap().to_string(), shown);
         }
@@ -278,7 +224,8 @@ mod tests {
             "tcp:host:65536",
             "mavlink:",
             "mavlink:/dev/ttyACM0,fast",
-            "mavlink:,57600",
+            "/dev/ttyACM0,0",
+            ",57600",
             "udp:14550",
             "udpbcast:10.0.0.255:14550",
             "udpout:host:0",
@@ -292,13 +239,8 @@ mod tests {
 
     #[test]
     fn a_port_that_is_not_there_is_named() {
-        for name in [
-            "/dev/no-such-port",
-            "tcp:127.0.0.1:1",
-            "mavlink:/dev/no-such-port,57600",
-            "mavlink:tcp:127.0.0.1:1",
-        ] {
-            let Err(Failure::Input(line)) = name.parse::<PortName>().unwrap().open(None) else {
+        for name in ["/dev/no-such-port", "/dev/no-such-port,9600", "tcp:127.0.0.1:1"] {
+            let Err(Failure::Input(line)) = name.parse::<PortName>().unwrap().open() else {
                 panic!("{name} was opened");
             };
             assert!(

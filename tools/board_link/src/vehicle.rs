@@ -3,6 +3,8 @@
 //! A command is repeated until it is acknowledged; progress extends the wait. The vehicle is judged by numbers; its texts
 //! are kept for the builder alone.
 
+mod files;
+
 use std::collections::{BTreeMap, VecDeque};
 use std::io::ErrorKind;
 use std::sync::Arc;
@@ -19,7 +21,7 @@ use sophie_ports::signing::Key;
 use sophie_tasks::perching::arms;
 
 use crate::Failure;
-use crate::port::PortName;
+use crate::port::{CONSOLE_BAUD, PortName};
 use crate::station::{Heard, Line, STATION, STATION_COMPONENT};
 
 /// Least time from the first attempt at a request to the second; each further one waits half as long again, which makes
@@ -133,6 +135,8 @@ pub struct Vehicle {
     /// The board's time since its start by its newest message, ms, and the number of restarts seen in it.
     boot_ms: u32,
     boots: u32,
+    /// Number of the newest request for a file.
+    sequence: u16,
     /// Raised from outside, as by Ctrl-C. It is obeyed once, so that the caller can still tidy up.
     stop: Arc<AtomicBool>,
     heeds: bool,
@@ -159,18 +163,21 @@ impl Vehicle {
             texts: Vec::new(),
             boot_ms: 0,
             boots: 0,
+            sequence: 0,
             stop,
             heeds: true,
         };
-        vehicle.connect()?;
+        vehicle.connect(port)?;
         if vehicle.heartbeat(patience)?.is_none() {
             return Err(Failure::Input(vehicle.unanswered()?));
         }
         Ok(vehicle)
     }
 
-    fn connect(&mut self) -> Result<(), Failure> {
-        let ends = self.name.open_mavlink()?;
+    fn connect(&mut self, port: &PortName) -> Result<(), Failure> {
+        // Closed first: the system reuses the name of a port that went away only when no process has it open.
+        self.line = None;
+        let ends = port.open()?;
         let line = Line::open(ends, self.key, Inbox::default());
         self.line = Some(line.map_err(|error| Failure::Input(format!("{}: {error}", self.name)))?);
         self.boot_ms = 0;
@@ -185,21 +192,25 @@ impl Vehicle {
         };
         let mut came = bytes(self);
         if !has_prompt(&came) {
+            if let PortName::Serial(path, _) = &self.name {
+                self.connect(&PortName::Serial(path.clone(), CONSOLE_BAUD))?;
+            }
             // A console is silent until something is typed.
             if let Some(line) = &self.line {
                 let _ = line.station().send_raw(b"\r");
             }
             self.wait(QUIET, |_| None::<()>)?;
-            came = bytes(self);
+            came.extend(bytes(self));
         }
         let (port, time) = (&self.name, self.patience.as_secs_f32());
         Ok(if has_prompt(&came) {
             format!(
-                "{port}: this is the text console; bring-up wants MAVLink: the board's USB socket, or its MAVLink \
-                 port as mavlink:/dev/..."
+                "{port}: this is the text console, MAVLink is wanted: the board's USB socket, or its MAVLink port"
             )
         } else if came.is_empty() {
             format!("{port}: no vehicle answers within {time} s, nothing came; expected MAVLink")
+        } else if self.key.is_some() {
+            format!("{port}: no vehicle answers within {time} s that signs with this key")
         } else {
             format!("{port}: no vehicle answers within {time} s, what came is no MAVLink")
         })
@@ -210,7 +221,7 @@ impl Vehicle {
         self.name.to_string()
     }
 
-    /// Number of starts of the board that were noticed since the session began, those that nobody asked for among them.
+    /// Number of starts of the board that were noticed since the session began, unexpected ones among them.
     pub const fn starts(&self) -> u32 {
         self.boots
     }
@@ -729,7 +740,7 @@ impl Vehicle {
         while begun.elapsed() < self.longest_start() {
             if self.line.is_none() {
                 std::thread::sleep(AGAIN);
-                match self.connect() {
+                match self.connect(&self.name.clone()) {
                     Ok(()) => self.boots += 1,
                     Err(failure) => {
                         last = failure;

@@ -1,4 +1,3 @@
-//! Sessions and vehicles over lines that fail.
+//! Vehicles over lines that fail.
 
-mod line;
 mod vehicle;

@@ -9,10 +9,14 @@ use std::time::Duration;
 
 use mavlink_core::{MavlinkVersion, Message, MessageData};
 use sophie_board_link::Failure;
+use sophie_board_link::parameters::Listed;
 use sophie_board_link::vehicle::Vehicle;
 use sophie_dialect::*;
+use sophie_mavlink::services::files::{FILES, File, GENERAL};
+use sophie_mavlink::services::ftp::Ftp;
 use sophie_mavlink::wire::frame::{COMPONENT, Encoder, SYSTEM};
 use sophie_mavlink::wire::parser::Parser;
+use sophie_mavlink::wire::requests::Peer;
 
 /// Longest silence while an answer is due.
 const PATIENCE: Duration = Duration::from_secs(3);
@@ -342,5 +346,118 @@ fn another_vehicle_is_named() {
         );
         drop(vehicle);
         board.join().unwrap();
+    }
+}
+
+/// `text` in a field of N bytes.
+fn padded<const N: usize>(text: &str) -> [u8; N] {
+    let mut field = [0; N];
+    field[..text.len()].copy_from_slice(text.as_bytes());
+    field
+}
+
+/// Messages of a vehicle that calls itself 0.0.9 and has another table of parameters than this program.
+fn earlier(board: &mut Board, request: &COMMAND_LONG_DATA) {
+    board.acknowledge(request.command, ACCEPTED);
+    match request.param1 as u32 {
+        COMPONENT_INFORMATION_BASIC_DATA::ID => board.say(&COMPONENT_INFORMATION_BASIC_DATA {
+            vendor_name: padded::<32>("SOPHIE").into(),
+            model_name: padded::<32>("table").into(),
+            software_version: padded::<24>("0.0.9").into(),
+            ..COMPONENT_INFORMATION_BASIC_DATA::DEFAULT
+        }),
+        AUTOPILOT_VERSION_DATA::ID => board.say(&AUTOPILOT_VERSION_DATA {
+            flight_custom_version: [0x12, 0x34, 0xAB, 0xCD, 0, 0, 0, 1],
+            ..AUTOPILOT_VERSION_DATA::DEFAULT
+        }),
+        _ => (),
+    }
+}
+
+/// What is read of a vehicle of an earlier release that serves `files`; its line loses every eighth piece of one.
+fn earlier_release(files: &'static [File]) -> Listed {
+    let mut ftp = Ftp::new(files);
+    let mut pieces = 0;
+    let (mut vehicle, board) = vehicle(
+        |_| (),
+        move |board, message| {
+            match message {
+                MavMessage::COMMAND_LONG(request) => earlier(board, &request),
+                MavMessage::PARAM_REQUEST_LIST(_) => {
+                    for (index, name) in (0..).zip(["infill", "old_gain"]) {
+                        board.say(&PARAM_VALUE_DATA {
+                            param_value: 8.0,
+                            param_count: 2,
+                            param_index: index,
+                            param_id: padded::<16>(name).into(),
+                            ..PARAM_VALUE_DATA::DEFAULT
+                        });
+                    }
+                }
+                MavMessage::FILE_TRANSFER_PROTOCOL(request) => {
+                    let station = Peer {
+                        system: 254,
+                        component: 190,
+                    };
+                    ftp.ask(station, &request.payload);
+                    pieces += 1;
+                    while let Some((to, payload)) = ftp.answer() {
+                        if pieces % 8 != 3 {
+                            board.say(&FILE_TRANSFER_PROTOCOL_DATA {
+                                target_network: 0,
+                                target_system: to.system,
+                                target_component: to.component,
+                                payload,
+                            });
+                        }
+                    }
+                }
+                _ => (),
+            }
+            true
+        },
+    );
+    let listed = Listed::of(&mut vehicle).unwrap();
+    drop(vehicle);
+    board.join().unwrap();
+    listed
+}
+
+#[test]
+fn a_vehicle_of_another_release_describes_its_own_parameters() {
+    let listed = earlier_release(&FILES);
+    let line = listed.foreign().unwrap();
+    assert!(
+        line.starts_with("SOPHIE 0.0.9 there has another table of parameters"),
+        "{line}"
+    );
+    let text = listed.text();
+    assert!(
+        text.starts_with(
+            "# Parameters of SOPHIE 0.0.9 on table, build 1234abcd, 2 parameters, table 00000001."
+        ),
+        "{text}"
+    );
+    // What it does not describe comes behind.
+    assert!(
+        text.contains("# 4 to 10 %; not the default\nold_gain = 8\n"),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_vehicle_without_a_description_has_its_values_alone() {
+    static LIST_ALONE: [File; 1] = [GENERAL];
+    for files in [&[][..], &LIST_ALONE] {
+        let listed = earlier_release(files);
+        assert!(
+            listed
+                .foreign()
+                .unwrap()
+                .contains("no description that can be read")
+        );
+        let text = listed.text();
+        assert!(text.ends_with("[params]\ninfill = 8\nold_gain = 8\n"), "{text}");
+        assert!(listed.differences(&[]).is_err());
     }
 }
