@@ -20,7 +20,7 @@ mod vehicles;
 
 use std::process::ExitCode;
 
-use sophie_flight_report::terminal::{FILES, finish, live::watch, result};
+use sophie_flight_report::terminal::{finish, live::watch, result};
 use sophie_sim::check::Check;
 use sophie_sim::flight::fly;
 use sophie_sim::record::FlightRecord;
@@ -68,12 +68,11 @@ pub fn main() -> ExitCode {
 
 fn run(args: &FlyArgs) -> Result<bool, String> {
     let scenario = args.mission.scenario()?;
-    // Before the flight, so that a bad directory is reported at once.
-    let out = OutDir::prepare(&args.out, &FILES)?;
+    let out = args.report_directory()?;
     let console = Console::new(args.json);
     introduce(&scenario, &console);
     let record = watch(&console, |observer| fly(&scenario, observer));
-    report(&record, &out, &console, args.json)
+    report(&record, out.as_ref(), &console, args.json)
 }
 
 /// Prints the planned flight, and warns if the design check fails.
@@ -85,8 +84,13 @@ fn introduce(scenario: &Scenario, console: &Console) {
     }
 }
 
-/// Writes and shows the report. True when the mission was accomplished.
-fn report(record: &FlightRecord, out: &OutDir, console: &Console, json: bool) -> Result<bool, String> {
+/// Writes the report into `out`, if any, and shows it. True when the mission was accomplished.
+fn report(
+    record: &FlightRecord,
+    out: Option<&OutDir>,
+    console: &Console,
+    json: bool,
+) -> Result<bool, String> {
     finish(record, None, out, console, json)?;
     if !record.outcome.accomplished {
         let reason = console::one_line(&record.outcome.reason);

@@ -3,12 +3,11 @@
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-use sophie_flight_report::terminal::{FILES, live::watch};
+use sophie_flight_report::terminal::live::watch;
 use sophie_sim::flight::live::LiveFlight;
 use sophie_sim::live::{Live, Pace, Udp};
 use sophie_terminal::complain;
 use sophie_terminal::console::Console;
-use sophie_terminal::output::OutDir;
 
 use super::args::{FlyArgs, LiveArgs};
 use super::interrupt::on_ctrl_c;
@@ -37,11 +36,11 @@ pub fn run(args: &FlyArgs) -> Result<bool, String> {
     let mut flight = LiveFlight::new(&scenario, live);
     let mut accomplished = true;
     if pilot.is_none() {
-        let out = OutDir::prepare(&args.out, &FILES)?;
+        let out = args.report_directory()?;
         introduce(&scenario, &console);
         console.say(&clients);
         let record = watch(&console, |observer| flight.fly(observer));
-        accomplished = report(&record, &out, &console, args.json)?;
+        accomplished = report(&record, out.as_ref(), &console, args.json)?;
     } else {
         console.say(&clients);
     }

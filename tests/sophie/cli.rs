@@ -345,6 +345,30 @@ fn json_has_stdout_to_itself() {
 }
 
 #[test]
+fn without_files_a_flight_prints_the_same_and_leaves_nothing() {
+    let temp = Temp::new("no-files");
+    let hop = temp.file("hop.toml", HOP);
+    let summary = |args: &[&str]| -> serde_json::Value {
+        let output = sophie(&temp, &[&[&*hop, "--json"], args].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+        let mut summary: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert!(summary["wall_seconds"].take().is_number());
+        summary
+    };
+    let line = refused(&temp, &[&hop, "--no-files", "--out", "x"]);
+    assert!(line.contains("--no-files") && line.contains("--out"), "{line}");
+    let bare = summary(&["--no-files"]);
+    assert_eq!(below(&temp.0), [PathBuf::from(&hop)]);
+    assert_eq!(bare, summary(&[]));
+    let printed = shown(&temp, &[&hop, "--no-files"]);
+    assert!(
+        printed.contains("4/4 disarm") && printed.contains("accomplished: "),
+        "{printed}"
+    );
+    assert!(!printed.contains("written: "), "{printed}");
+}
+
+#[test]
 fn a_mission_that_fails_ends_with_1_and_the_reason() {
     let temp = Temp::new("fail");
     let late = temp.file("late.toml", &[b"time_limit_s = 3\n", HOP].concat());

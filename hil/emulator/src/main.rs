@@ -207,7 +207,7 @@ fn write(
     let logs = [text.into_bytes(), flight.board.log.clone()];
     let logs: Vec<_> = LOG_FILES.into_iter().zip(logs).collect();
     let _ = out.write(&logs)?;
-    finish(&flight.record, Some(&attachment), out, console, args.json)?;
+    finish(&flight.record, Some(&attachment), Some(out), console, args.json)?;
     Ok(())
 }
 

@@ -14,45 +14,72 @@ pub struct Column {
     pub angular: DVec3,
 }
 
-impl Column {
-    /// `a` times `self` and `b` times `other`.
-    #[must_use]
-    pub fn mixed(&self, a: f64, other: &Self, b: f64) -> Self {
-        Self {
-            linear: self.linear * a + other.linear * b,
-            angular: self.angular * a + other.angular * b,
-        }
+/// A symmetric matrix, 3×3.
+#[derive(Clone, Copy, Debug)]
+struct Symmetric {
+    xx: f64,
+    xy: f64,
+    xz: f64,
+    yy: f64,
+    yz: f64,
+    zz: f64,
+}
+
+impl Symmetric {
+    /// m⁻¹ times `v`, by cofactors.
+    fn solve(&self, v: DVec3) -> DVec3 {
+        let Self {
+            xx,
+            xy,
+            xz,
+            yy,
+            yz,
+            zz,
+        } = *self;
+        let x = DVec3::new(yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy);
+        let y = DVec3::new(x.y, xx * zz - xz * xz, xy * xz - xx * yz);
+        let z = DVec3::new(x.z, y.z, xx * yy - xy * xy);
+        DVec3::new(x.dot(v), y.dot(v), z.dot(v)) / (xx * x.x + xy * x.y + xz * x.z)
     }
 }
 
-/// 6×6 mass matrix by blocks: linear `a`, coupling (rows linear, columns angular) `c`, angular `j`. Entries are written
-/// out, as a tip adds to few: this takes a third of the plant's time.
+/// 6×6 mass matrix by blocks: linear `a`, coupling (rows linear, columns angular) C, angular `j`. Entries are written
+/// out, as an arm adds to few.
 #[derive(Clone, Copy, Debug)]
 pub struct MassMatrix {
     mass: f64,
     ayy: f64,
     ayz: f64,
     azz: f64,
+    /// Σ m r of the point masses: C is its skew matrix and `c`.
+    moment: DVec3,
     c: [DVec3; 3],
-    j: DMat3,
+    j: Symmetric,
 }
 
 impl MassMatrix {
-    /// Rigid part, centre of mass at `centre`.
+    /// Rigid part, centre of mass at `centre`; `inertia` is symmetric.
     pub fn new(mass: f64, centre: DVec3, inertia: DMat3) -> Self {
-        let DVec3 { x, y, z } = centre * mass;
-        let c = [
-            DVec3::new(0.0, z, -y),
-            DVec3::new(-z, 0.0, x),
-            DVec3::new(y, -x, 0.0),
-        ];
+        let DMat3 {
+            x_axis,
+            y_axis,
+            z_axis,
+        } = inertia;
         Self {
             mass,
             ayy: mass,
             ayz: 0.0,
             azz: mass,
-            c,
-            j: inertia,
+            moment: centre * mass,
+            c: [DVec3::ZERO; 3],
+            j: Symmetric {
+                xx: x_axis.x,
+                xy: y_axis.x,
+                xz: z_axis.x,
+                yy: y_axis.y,
+                yz: z_axis.y,
+                zz: z_axis.z,
+            },
         }
     }
 
@@ -70,45 +97,70 @@ impl MassMatrix {
         self.c[1] += lever * my;
         self.c[2] += lever * mz;
         let (tx, t) = (lever_x * tip, lever * tip);
-        self.j.x_axis += t * lever.x;
-        self.j.y_axis += tx * lever_x.y + t * lever.y;
-        self.j.z_axis += tx * lever_x.z + t * lever.z;
+        self.j.xx += t.x * lever.x;
+        self.j.xy += t.x * lever.y;
+        self.j.xz += t.x * lever.z;
+        self.j.yy += tx.y * lever_x.y + t.y * lever.y;
+        self.j.yz += tx.y * lever_x.z + t.y * lever.z;
+        self.j.zz += tx.z * lever_x.z + t.z * lever.z;
     }
 
     /// Adds a mass (kg) at `r`.
     pub fn add_point(&mut self, mass: f64, r: DVec3) {
-        let DVec3 { x, y, z } = r * mass;
+        let moment = r * mass;
         self.mass += mass;
         self.ayy += mass;
         self.azz += mass;
-        self.c[0] += DVec3::new(0.0, z, -y);
-        self.c[1] += DVec3::new(-z, 0.0, x);
-        self.c[2] += DVec3::new(y, -x, 0.0);
-        self.add_inertia_about(r.length_squared() * mass, r * mass, r);
+        self.moment += moment;
+        self.add_inertia_about(moment, r);
     }
 
     /// Adds `inertia` (kg·m²) about every axis but the unit vector `free`.
     pub fn add_inertia(&mut self, inertia: f64, free: DVec3) {
-        self.add_inertia_about(inertia, free * inertia, free);
+        self.add_inertia_about(free * inertia, free);
     }
 
-    /// Adds `all` times the unit matrix less u vᵀ.
-    fn add_inertia_about(&mut self, all: f64, u: DVec3, v: DVec3) {
-        self.j.x_axis += DVec3::X * all - u * v.x;
-        self.j.y_axis += DVec3::Y * all - u * v.y;
-        self.j.z_axis += DVec3::Z * all - u * v.z;
+    /// Adds u·v times the unit matrix less u vᵀ, for parallel vectors.
+    fn add_inertia_about(&mut self, u: DVec3, v: DVec3) {
+        let (xx, yy, zz) = (u.x * v.x, u.y * v.y, u.z * v.z);
+        self.j.xx += yy + zz;
+        self.j.yy += xx + zz;
+        self.j.zz += xx + yy;
+        self.j.xy -= u.x * v.y;
+        self.j.xz -= u.x * v.z;
+        self.j.yz -= u.y * v.z;
     }
 
-    /// Subtracts u vᵀ; the calls of one step must sum to a symmetric matrix. Neither vector has a linear part along x.
-    pub fn give_way(&mut self, u: &Column, v: &Column) {
-        self.ayy -= u.linear.y * v.linear.y;
-        self.ayz -= u.linear.y * v.linear.z;
-        self.azz -= u.linear.z * v.linear.z;
-        self.c[1] -= v.angular * u.linear.y;
-        self.c[2] -= v.angular * u.linear.z;
-        self.j.x_axis -= u.angular * v.angular.x;
-        self.j.y_axis -= u.angular * v.angular.y;
-        self.j.z_axis -= u.angular * v.angular.z;
+    /// Subtracts what the two coordinates of an arm give way: Cᵀ A⁻¹ C of its `columns` C and the
+    /// symmetric `inverse` of its own matrix A. No column has a linear part along x.
+    pub fn give_way(&mut self, columns: &[Column; 2], inverse: &[[f64; 2]; 2]) {
+        let ([p, q], [[aa, ab], [_, bb]]) = (columns, inverse);
+        // p uᵀ + q vᵀ is symmetric.
+        let (ly, lz) = (
+            [
+                aa * p.linear.y + ab * q.linear.y,
+                ab * p.linear.y + bb * q.linear.y,
+            ],
+            [
+                aa * p.linear.z + ab * q.linear.z,
+                ab * p.linear.z + bb * q.linear.z,
+            ],
+        );
+        let (u, v) = (
+            p.angular * *aa + q.angular * *ab,
+            p.angular * *ab + q.angular * *bb,
+        );
+        self.ayy -= p.linear.y * ly[0] + q.linear.y * ly[1];
+        self.ayz -= p.linear.y * lz[0] + q.linear.y * lz[1];
+        self.azz -= p.linear.z * lz[0] + q.linear.z * lz[1];
+        self.c[1] -= u * p.linear.y + v * q.linear.y;
+        self.c[2] -= u * p.linear.z + v * q.linear.z;
+        self.j.xx -= p.angular.x * u.x + q.angular.x * v.x;
+        self.j.xy -= p.angular.x * u.y + q.angular.x * v.y;
+        self.j.xz -= p.angular.x * u.z + q.angular.x * v.z;
+        self.j.yy -= p.angular.y * u.y + q.angular.y * v.y;
+        self.j.yz -= p.angular.y * u.z + q.angular.y * v.z;
+        self.j.zz -= p.angular.z * u.z + q.angular.z * v.z;
     }
 
     /// Accelerations under `load`.
@@ -117,14 +169,25 @@ impl MassMatrix {
         let inv_x = 1.0 / self.mass;
         let inv_det = 1.0 / (self.ayy * self.azz - self.ayz * self.ayz);
         let (byy, byz, bzz) = (self.azz * inv_det, -self.ayz * inv_det, self.ayy * inv_det);
-        let [cx, cy, cz] = self.c;
+        let DVec3 { x, y, z } = self.moment;
+        let cx = self.c[0] + DVec3::new(0.0, z, -y);
+        let cy = self.c[1] + DVec3::new(-z, 0.0, x);
+        let cz = self.c[2] + DVec3::new(y, -x, 0.0);
         // Rows of A⁻¹ C.
         let (gx, gy, gz) = (cx * inv_x, cy * byy + cz * byz, cy * byz + cz * bzz);
-        let mut j = self.j;
-        j.x_axis -= cx * gx.x + cy * gy.x + cz * gz.x;
-        j.y_axis -= cx * gx.y + cy * gy.y + cz * gz.y;
-        j.z_axis -= cx * gx.z + cy * gy.z + cz * gz.z;
-        let angular = j.inverse() * (moment - gx * force.x - gy * force.y - gz * force.z);
+        // J - Cᵀ A⁻¹ C.
+        let less = |a: f64, at: fn(DVec3) -> f64, by: fn(DVec3) -> f64| {
+            a - (at(cx) * by(gx) + at(cy) * by(gy) + at(cz) * by(gz))
+        };
+        let j = Symmetric {
+            xx: less(self.j.xx, |v| v.x, |v| v.x),
+            xy: less(self.j.xy, |v| v.x, |v| v.y),
+            xz: less(self.j.xz, |v| v.x, |v| v.z),
+            yy: less(self.j.yy, |v| v.y, |v| v.y),
+            yz: less(self.j.yz, |v| v.y, |v| v.z),
+            zz: less(self.j.zz, |v| v.z, |v| v.z),
+        };
+        let angular = j.solve(moment - gx * force.x - gy * force.y - gz * force.z);
         let rest = force - DVec3::new(cx.dot(angular), cy.dot(angular), cz.dot(angular));
         let linear = DVec3::new(
             inv_x * rest.x,

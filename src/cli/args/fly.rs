@@ -5,6 +5,8 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use clap::Args;
+use sophie_flight_report::terminal::FILES;
+use sophie_terminal::output::OutDir;
 
 use super::MissionArgs;
 use super::values::{within, word};
@@ -20,6 +22,9 @@ pub struct FlyArgs {
     /// Directory for report.html, flight.mcap and summary.json.
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
+    /// Fly and print only, in less than half the processor time: no directory, no files.
+    #[arg(long, conflicts_with = "out")]
+    pub no_files: bool,
     /// Print the summary as JSON on stdout, everything else on stderr.
     #[arg(long)]
     pub json: bool,
@@ -45,6 +50,17 @@ pub struct LiveArgs {
     /// Who flies: none waits on the ground without a transmitter, and leaves no report.
     #[arg(long, value_name = "none", value_parser = no_pilot, requires = "wanted", conflicts_with_all = ["json", "out"])]
     pub pilot: Option<NoPilot>,
+}
+
+impl FlyArgs {
+    /// The directory of the report, tried before the flight, so that a bad one is reported at once; `None` without files.
+    ///
+    /// # Errors
+    /// One line: directory, reason, allowed values.
+    pub fn report_directory(&self) -> Result<Option<OutDir>, String> {
+        let wanted = (!self.no_files).then_some(&self.out);
+        wanted.map(|out| OutDir::prepare(out, &FILES)).transpose()
+    }
 }
 
 /// No pilot.

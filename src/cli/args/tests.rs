@@ -35,6 +35,7 @@ fn fly_may_be_left_out() {
     }
     let fly = args("").unwrap();
     assert!(fly.mission.scenario.is_none() && !fly.json && fly.out.as_os_str() == "out");
+    assert!(!fly.no_files && args("--no-files --json").unwrap().no_files);
     let o = args("--config a --mixer paper --gain-k 1 --seed 9 --json")
         .unwrap()
         .mission
@@ -133,6 +134,7 @@ fn refusals_are_one_line_that_says_what_is_allowed() {
         "--mavlink 127.0.0.1:14550",
         "--pilot none",
         "--live --pilot none --json",
+        "--no-files --out x",
         "--live --mavlink 127.0.0.1:0",
         "--live --mavlink 0.0.0.0:14550",
         "--live --mavlink 224.0.0.1:14550",

@@ -24,32 +24,22 @@ pub struct Attachment {
     pub lines: Vec<String>,
 }
 
-/// Writes the report of `record` into `out` and shows it; `json` prints the summary on stdout.
+/// Shows the report of `record` and writes its files into `out`, if any; `json` prints the summary on stdout.
 ///
 /// # Errors
 /// One line: the file that cannot be written, and the reason.
 pub fn finish(
     record: &FlightRecord,
     attachment: Option<&Attachment>,
-    out: &OutDir,
+    out: Option<&OutDir>,
     console: &Console,
     json: bool,
 ) -> Result<(), String> {
     let summary = Summary::of(record).to_json();
-    let mut files: Vec<(String, Vec<u8>)> = FILES
-        .map(str::to_owned)
-        .into_iter()
-        .zip([
-            page::html(record).into_bytes(),
-            log::mcap(record)?,
-            summary.clone().into_bytes(),
-        ])
-        .collect();
-    if let Some(attachment) = attachment {
-        let text = serde_json::to_string_pretty(&attachment.value).unwrap_or_default() + "\n";
-        files.push((format!("{}.json", attachment.name), text.into_bytes()));
-    }
-    let written = out.write(&files)?;
+    let written = match out {
+        Some(out) => out.write(&files(record, &summary, attachment)?)?,
+        None => Vec::new(),
+    };
     for line in result::tables(record) {
         console.say(&line);
     }
@@ -59,11 +49,32 @@ pub fn finish(
     }
     console.say(&result::judged(record));
     console.say(&result::verdict(console, record));
-    console.say(&format!("written: {}", written.join("  ")));
+    if !written.is_empty() {
+        console.say(&format!("written: {}", written.join("  ")));
+    }
     if json {
         console::print(&printed(summary, attachment))?;
     }
     console.end()
+}
+
+/// Names and contents of the files. Page and log cost as much as the flight.
+fn files(
+    record: &FlightRecord,
+    summary: &str,
+    attachment: Option<&Attachment>,
+) -> Result<Vec<(String, Vec<u8>)>, String> {
+    let contents = [
+        page::html(record).into_bytes(),
+        log::mcap(record)?,
+        summary.as_bytes().to_vec(),
+    ];
+    let mut files: Vec<(String, Vec<u8>)> = FILES.map(str::to_owned).into_iter().zip(contents).collect();
+    if let Some(attachment) = attachment {
+        let text = serde_json::to_string_pretty(&attachment.value).unwrap_or_default() + "\n";
+        files.push((format!("{}.json", attachment.name), text.into_bytes()));
+    }
+    Ok(files)
 }
 
 /// The JSON on stdout: the summary, and the additional value in a field of its own.

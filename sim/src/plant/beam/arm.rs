@@ -16,7 +16,7 @@ use super::super::flexible::{Carried, Carrier, Drive, Flexible, Nearby};
 use super::super::mass_matrix::{Column, MassMatrix};
 use super::masses::MIDDLE;
 use super::section::BeamSpec;
-use super::shape::{Point, points};
+use super::shape::{Point, points, sin_cos};
 use super::skin::{BeamContact, Bent};
 use super::{PerTerm, TERMS};
 use crate::plant::load::Acceleration;
@@ -116,8 +116,7 @@ impl BeamArm {
 
     fn place(&mut self) {
         self.places = points(&self.q, &self.rate, [MIDDLE, 1.0]);
-        (self.sin, self.cos) = libm::sincos(self.tilt());
-        (self.twist_sin, self.twist_cos) = libm::sincos(self.twist);
+        ([self.sin, self.twist_sin], [self.cos, self.twist_cos]) = sin_cos([self.tilt(), self.twist]);
     }
 
     /// In body axes.
@@ -168,12 +167,12 @@ impl BeamArm {
         let twist_rest = twisting - masses.block * tangent.dot(turning);
         // The twist's own equation put into those of the shape.
         let stiffer = masses.block + nutation * nutation / masses.block;
-        let mut own = [[stiffer; TERMS]; TERMS];
+        let [mut aa, mut ab, mut bb] = [stiffer; 3];
         let mut columns = [Column {
             linear: DVec3::ZERO,
             angular: axis * masses.block,
         }; TERMS];
-        let given = masses.block * axis.dot(turning) + twist_rest * nutation / masses.block;
+        let given = masses.block * self.side * turning.x + twist_rest * nutation / masses.block;
         let mut rest = forces.map(|force| force - given);
         let mut held = Load {
             force: DVec3::ZERO,
@@ -181,26 +180,30 @@ impl BeamArm {
         };
         for (point, mass) in self.places.iter().zip([masses.middle, masses.tip]) {
             let r = self.position(point);
-            let by: [DVec3; TERMS] = std::array::from_fn(|k| self.vector(point.out_by[k], point.up_by[k]));
-            let moving = by[0] * self.rate[0] + by[1] * self.rate[1];
+            // All but the body's motion is in the arm's plane.
+            let Point { out_by, up_by, .. } = point;
+            let moving = self.vector(
+                out_by[0] * self.rate[0] + out_by[1] * self.rate[1],
+                up_by[0] * self.rate[0] + up_by[1] * self.rate[1],
+            );
             let bias = omega.cross(omega.cross(r) + 2.0 * moving) + self.vector(point.bias.0, point.bias.1);
             let force = (gravity - bias) * mass;
             held.add(force, r.cross(force));
+            // The spring holds the level bench's weight: Eq. 1 is measured with it.
+            let (outward, upward) = (-self.side * force.y, mass * GRAVITY - force.z);
             for k in 0..TERMS {
-                let momentum = by[k] * mass;
-                columns[k].linear += momentum;
-                columns[k].angular += r.cross(momentum);
-                // The spring holds the level bench's weight: Eq. 1 is measured with it.
-                rest[k] += by[k].dot(force) + mass * GRAVITY * point.up_by[k];
-                for l in 0..TERMS {
-                    own[k][l] += momentum.dot(by[l]);
-                }
+                let DVec3 { y, z, .. } = self.vector(mass * out_by[k], mass * up_by[k]);
+                columns[k].linear += DVec3::new(0.0, y, z);
+                columns[k].angular += DVec3::new(r.y * z - r.z * y, -r.x * z, r.x * y);
+                rest[k] += out_by[k] * outward + up_by[k] * upward;
             }
+            aa += mass * (out_by[0] * out_by[0] + up_by[0] * up_by[0]);
+            ab += mass * (out_by[0] * out_by[1] + up_by[0] * up_by[1]);
+            bb += mass * (out_by[1] * out_by[1] + up_by[1] * up_by[1]);
         }
-        let [[a, b], [_, d]] = own;
-        let scale = 1.0 / (a * d - b * b);
+        let scale = 1.0 / (aa * bb - ab * ab);
         Equations {
-            inverse: [[d * scale, -b * scale], [-b * scale, a * scale]],
+            inverse: [[bb * scale, -ab * scale], [-ab * scale, aa * scale]],
             columns,
             rest,
             twist_rest,
@@ -230,7 +233,7 @@ fn product(m: &[PerTerm; TERMS], v: &PerTerm) -> PerTerm {
 
 impl Carried for BeamArm {
     fn condense(&self, _: &Carrier, mass: &mut MassMatrix, load: &mut Load) {
-        let e = self.equations;
+        let e = &self.equations;
         let (tangent, _) = self.tip_axes();
         let masses = self.spec.masses;
         for (point, kg) in self.places.iter().zip([masses.middle, masses.tip]) {
@@ -238,17 +241,15 @@ impl Carried for BeamArm {
         }
         // The motor turns with the body except for the twist.
         mass.add_inertia(masses.block, tangent);
-        let [c, d] = e.columns;
-        let [[aa, ab], [_, bb]] = e.inverse;
-        mass.give_way(&c, &c.mixed(aa, &d, ab));
-        mass.give_way(&d, &c.mixed(ab, &d, bb));
+        let [c, d] = &e.columns;
+        mass.give_way(&e.columns, &e.inverse);
         let free = product(&e.inverse, &e.rest);
-        let passed = c.mixed(free[0], &d, free[1]);
         let [_, tip] = &self.places;
         let thrust = self.rotor_axis() * self.thrust;
         load.add(e.held.force, e.held.moment);
         load.add(thrust, self.position(tip).cross(thrust));
-        load.add(-passed.linear, -passed.angular - tangent * e.twist_rest);
+        load.force -= c.linear * free[0] + d.linear * free[1];
+        load.moment -= c.angular * free[0] + d.angular * free[1] + tangent * e.twist_rest;
     }
 
     fn condense_massless(&self, load: &mut Load) {

@@ -5,10 +5,10 @@ use glam::DVec3;
 
 use super::super::contact::{
     ARM_LENGTH, ContactPoint, HINGE_Z, Pad, Pipe, PointMotion, Pose, SKIN, STATION_AREA, STATIONS, Surface,
-    TIP,
+    TIP, Touch,
 };
 use super::super::flexible::Nearby;
-use super::shape::{Point, points, slope};
+use super::shape::{Point, points, sin_cos, slope};
 use super::{DEPTH, PerTerm, TERMS};
 use crate::plant::load::Load;
 
@@ -40,19 +40,26 @@ impl Bent {
     pub fn underside(&self) -> [SkinPoint; 3] {
         let ends = STATIONS.map(|s| s / ARM_LENGTH);
         let neutral = points(&self.q, &self.rate, ends);
-        std::array::from_fn(|i| self.skin_point(&neutral[i], ends[i], DEPTH))
+        let [a, b, c] = ends.map(|xi| slope(&self.q, xi));
+        let ((sin, cos), (last_sin, last_cos)) = (sin_cos([a, b]), sin_cos([c, 0.0]));
+        let [inner, middle, outer] = &neutral;
+        [
+            self.skin_point(inner, ends[0], DEPTH, (sin[0], cos[0])),
+            self.skin_point(middle, ends[1], DEPTH, (sin[1], cos[1])),
+            self.skin_point(outer, ends[2], DEPTH, (last_sin[0], last_cos[0])),
+        ]
     }
 
     /// End of the neutral line.
     #[must_use]
     pub fn tip(&self) -> SkinPoint {
         let [tip] = points(&self.q, &self.rate, [1.0]);
-        self.skin_point(&tip, 1.0, 0.0)
+        self.skin_point(&tip, 1.0, 0.0, (0.0, 0.0))
     }
 
-    /// `depth` m below the neutral line's `point` at ξ.
-    fn skin_point(&self, point: &Point, xi: f64, depth: f64) -> SkinPoint {
-        let (sin, cos) = libm::sincos(slope(&self.q, xi));
+    /// `depth` m below the neutral line's `point` at ξ, where the slope has `sin` and `cos`.
+    #[inline(always)]
+    fn skin_point(&self, point: &Point, xi: f64, depth: f64, (sin, cos): (f64, f64)) -> SkinPoint {
         let body = |out: f64, up: f64| DVec3::new(0.0, self.side * out, -up);
         let mut power = 1.0;
         let by = std::array::from_fn(|k| {
@@ -151,6 +158,9 @@ impl BeamContact {
             velocity: pose.point_velocity(skin_point.place, moving),
         };
         let touch = point.force(dt, pad, motion, surface);
+        if touch == Touch::default() {
+            return 0.0;
+        }
         let force = pose.to_body(touch.force);
         load.add(force, skin_point.place.cross(force));
         for (sum, by) in self.forces.iter_mut().zip(skin_point.by) {
