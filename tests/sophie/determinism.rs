@@ -36,6 +36,7 @@ fn perch_digest(seed: u64) -> u64 {
         Step::Hold {
             seconds: 3.0,
             push: 1.5,
+            lapse: 0.0,
         },
     ];
     flown(&Scenario {
