@@ -74,7 +74,7 @@ fn friction_overshoots_on_the_way_in_and_holds_the_grip_on_the_way_back() {
     };
     let rubbing = &tried[2];
     assert!(smooth.grip.state == ArmState::Holding && rubbing.grip.state == ArmState::Holding);
-    // The reel pulls more until the arm is there; then it turns back, and the channel holds what it has let go.
+    // The reel pulls more until the arm is there; then it turns back, and the channel still holds.
     assert!(rubbing.asked > 1.05 * smooth.asked && rubbing.peak > 1.2 * smooth.peak);
     assert!(rubbing.steady < smooth.steady);
     // However it rubs, the gripper presses no arm harder than an arm whose sensor is open.
