@@ -54,7 +54,10 @@ mod tests {
     use super::*;
 
     fn held(heat: &mut Heat, load: f64, seconds: u32) -> Option<f64> {
-        (0..seconds).fold(Some(1.0), |_, _| heat.step(1.0, load))
+        for _ in 1..seconds {
+            heat.step(1.0, load);
+        }
+        heat.step(1.0, load)
     }
 
     #[test]
