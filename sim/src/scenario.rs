@@ -167,7 +167,7 @@ pub struct Vehicle {
     pub servo_release: PerArm<f64>,
     /// Pulse of each servo after its whole travel, µs; below the release mark's for one that is mounted in reverse.
     pub servo_full: PerArm<f64>,
-    /// What its servos have beside their label. The stack knows the label alone.
+    /// Errors of its servos. The stack knows their label alone.
     pub servos: Servos,
     /// Its tendons with their reels. The stack knows only its parameters, which may differ.
     pub tendons: Tendons,
@@ -341,9 +341,9 @@ pub struct Sensors {
     pub barometer: bool,
     /// Fault of the barometer.
     pub barometer_fault: BarometerFault,
-    /// What the arms' pressure sensors have beside the data sheet's middle.
+    /// Errors of the arms' pressure sensors.
     pub pressure: PressureSensors,
-    /// What the arms' tilt sensors have beside their data sheet.
+    /// Errors of the arms' tilt sensors.
     pub tilt: TiltErrors,
     /// Sensors that answer in the slots behind each frame of an SBUS receiver, 0 to [`crate::devices::sbus::SLOTS`]; 0: none has slots.
     pub sbus_slots: f64,

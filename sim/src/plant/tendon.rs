@@ -1,8 +1,8 @@
 //! Servo, reel and tendon of one arm.
 //!
 //! The servo winds a nylon thread along the arm's underside, which only pulls, and is slack until the reel has wound
-//! the length that the tilt frees. Numbers are the vehicle's; the flight stack's are parameters. What a real thread and
-//! a real servo have beside is off by default: [`friction`], [`creep`](super::creep), [`stop`], [`give`], [`heat`].
+//! the length that the tilt frees. Numbers are the vehicle's; the flight stack's are parameters. Errors of
+//! real threads and servos are off by default: friction, [`creep`](super::creep), stop, give and heat, a file each.
 
 mod friction;
 mod give;
@@ -219,7 +219,7 @@ impl Tendon {
         self.position - self.given
     }
 
-    /// Warms the servo by what it has held since the last step; a burnt one has no target.
+    /// Warms the servo by its load since the last step; a burnt one has no target.
     fn warm(&mut self, dt: f64) {
         let load = match self.target {
             Some(_) => self.servo_torque() / self.servo.stall,

@@ -36,7 +36,7 @@ impl Default for Tendons {
     }
 }
 
-/// What the four servos have beside their label.
+/// Errors of the four servos that their label leaves out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Servos {
     /// Half width of the band in which they stop, rad.
@@ -66,7 +66,7 @@ impl Default for Servos {
     }
 }
 
-/// What the four pressure sensors have beside the data sheet's middle; [`FsrErrors`] has each number's meaning.
+/// Errors of the four pressure sensors, each as in [`FsrErrors`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PressureSensors {
     /// Turn-on force of each, N.

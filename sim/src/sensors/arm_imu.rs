@@ -1,7 +1,7 @@
 //! Sensor at an arm's tip: the BNO055's fused gravity vector, after its datasheet.
 //!
-//! [`TiltErrors`] has what users measure beside, off by default: a fusion that stands still while the sensor turns
-//! slowly ([`still`]), and steps of the running calibration ([`steps`]).
+//! [`TiltErrors`] adds those that users report, off by default: a fusion that stands still while the sensor turns slowly,
+//! and steps of the running calibration.
 
 mod steps;
 mod still;
@@ -32,7 +32,7 @@ const MOUNTING: f64 = 0.0087;
 /// Share of the acceleration that leaks into the vector, and its time constant, s (assumed).
 const LEAK: (f64, f64) = (0.1, 0.3);
 
-/// What a sensor has beside its data sheet; zero: nothing.
+/// Errors of a sensor that its data sheet leaves out; zero: none.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TiltErrors {
     /// Rate below which the fused vector stands still, rad/s.

@@ -4,7 +4,7 @@
 //! force (10 kΩ at 1 N), with part-to-part spread, hysteresis and creep: in all the paper's error of about 50 N/m² at
 //! 950 N/m².
 //!
-//! [`FsrErrors`] has what a sensor in a curved skin has beside: the conductance is
+//! [`FsrErrors`] adds those of a sensor in a curved skin, off by default: the conductance is
 //! G = g (1 + e) F_e^n (1 + c_T (T − 23 °C)), F_e = max(0, F + F_p − F_0), of the force F on the pad, the preload F_p by
 //! the skin's curvature and the turn-on force F_0; it drifts upwards by a share of itself per decade of time.
 
@@ -43,7 +43,7 @@ pub const LARGEST_ERROR: f64 = PART_ERROR + DIVIDER.1 + HYSTERESIS + 3.0 * CREEP
 /// Time from which the drift of a loaded sensor counts, s (Interlink's guide plots from 0.1 s).
 const DRIFT_BEGIN: f64 = 0.1;
 
-/// What a sensor in its skin has beside the data sheet's middle.
+/// Errors of a sensor in its skin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FsrErrors {
     /// Turn-on force F_0, N, in place of the threshold; 0: the conductance is that of the whole force above 0.1 N.

@@ -93,7 +93,7 @@ pub struct StandArm {
     pub servo: ServoSpec,
     /// Its tendon with the reel.
     pub tendon: TendonSpec,
-    /// What its pressure sensor has beside the data sheet's middle.
+    /// Errors of its pressure sensor.
     pub fsr: FsrErrors,
     /// Time constant of the rotor, s.
     pub rotor_tau: f64,

@@ -54,10 +54,10 @@ mod tests {
     use super::*;
 
     fn held(heat: &mut Heat, load: f64, seconds: u32) -> Option<f64> {
-        (0..seconds)
-            .map(|_| heat.step(1.0, load))
-            .last()
-            .unwrap_or(Some(1.0))
+        for _ in 1..seconds {
+            heat.step(1.0, load);
+        }
+        heat.step(1.0, load)
     }
 
     #[test]

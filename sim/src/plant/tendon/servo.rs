@@ -26,11 +26,11 @@ pub struct ServoSpec {
     pub full_us: f64,
     /// Period of accepted pulses, s: 20 ms for an analog servo.
     pub frame: f64,
-    /// What it has beside its label.
+    /// Errors that the label leaves out.
     pub errors: ServoErrors,
 }
 
-/// What a real servo has beside its label; all zero of one that reaches its target and stays cold.
+/// Errors of a servo that its label leaves out; all zero: it reaches its target and stays cold.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ServoErrors {
     /// Half width of the band in which it stops, rad.
