@@ -22,7 +22,7 @@ pub struct FlyArgs {
     /// Directory for report.html, flight.mcap and summary.json.
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
-    /// Fly and print only, in less than half the processor time: no directory, no files.
+    /// Fly and print only, in half the processor time: no directory, no files.
     #[arg(long, conflicts_with = "out")]
     pub no_files: bool,
     /// Print the summary as JSON on stdout, everything else on stderr.
