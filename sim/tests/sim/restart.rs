@@ -384,9 +384,12 @@ fn a_reset_on_the_ground_keeps_the_calibration() {
 
 #[test]
 fn the_grip_on_the_pipe_hardly_notices_a_reset() {
-    for (file, event, tension) in [
-        ("reset-perched", "board reset", 3.0),
-        ("power-cycle-perched", "power lost", 3.0),
+    // The restarted loop begins with the force that it estimates, wrong by 2.1 N (tilt by 12.7 mrad on 15 mm, servo by 5
+    // mrad on 15 mm, 8 kN/m), and the pressure may be off by its 50 N/m² before and after: 0.53 N each at 94 N/m² per N.
+    let tension = 3.2;
+    for (file, event) in [
+        ("reset-perched", "board reset"),
+        ("power-cycle-perched", "power lost"),
     ] {
         let record = flown(file);
         assert!(record.outcome.accomplished, "{file}: {:?}", record.outcome);
