@@ -40,7 +40,7 @@ use self::servo_power::MG996R;
 use self::tendon::Tendon;
 use crate::plant::flexible::ArmBending;
 use crate::plant::load::Load;
-use crate::scenario::{Scenario, Vehicle};
+use crate::scenario::Scenario;
 
 /// Integration step, s.
 pub const STEP: f64 = 0.5e-3;
@@ -119,31 +119,33 @@ struct Base {
     specific_force: DVec3,
 }
 
-/// Arm `arm` (0 to 3) of `vehicle` as built.
+/// Arm `arm` (0 to 3) of the scenario's vehicle as built, at the day's temperature.
 #[must_use]
-pub fn arm_spec(vehicle: &Vehicle, arm: usize) -> ArmSpec {
-    let v = vehicle;
+pub fn arm_spec(scenario: &Scenario, arm: usize) -> ArmSpec {
+    let v = &scenario.vehicle;
     ArmSpec::of(&ArmPrint {
         coefficients: v.arm_coefficients,
         infill: v.infill,
         gain_k: v.gain_k,
-        gain: v.arm_gain[arm],
+        gain: scenario.arm_softness(arm),
         offset: v.arm_offset[arm],
         zeta: v.arm_damping,
     })
     .level_at(v.arm_level_thrust())
 }
 
-/// The beam of arm `arm` (0 to 3) of `vehicle` as built.
+/// The beam of arm `arm` (0 to 3) of the scenario's vehicle as built.
 #[must_use]
-pub fn beam_spec(vehicle: &Vehicle, arm: usize) -> BeamSpec {
+pub fn beam_spec(scenario: &Scenario, arm: usize) -> BeamSpec {
+    let vehicle = &scenario.vehicle;
     let masses = Masses::of(&vehicle.body);
     BeamSpec::tapered(
-        &arm_spec(vehicle, arm),
+        &arm_spec(scenario, arm),
         masses,
         vehicle.arm_damping,
         vehicle.arm_taper,
     )
+    .twisting(vehicle.arm_torsion)
 }
 
 impl Plant {
@@ -153,10 +155,12 @@ impl Plant {
         let v = &scenario.vehicle;
         let arms = match v.arm_bending {
             ArmBending::Hinge => Arms::Hinged(Box::new(std::array::from_fn(|i| {
-                HingedArm::new(i, arm_spec(v, i))
+                HingedArm::new(i, arm_spec(scenario, i))
             }))),
             ArmBending::Beam => Arms::Beams(Box::new(std::array::from_fn(|i| {
-                BeamArm::new(i, beam_spec(v, i))
+                BeamArm::new(i, beam_spec(scenario, i))
+                    .of_material(v.arm_material)
+                    .bending_in_plane(v.in_plane())
             }))),
         };
         Self {
@@ -429,6 +433,7 @@ impl Base {
             }
             let drive = Drive {
                 dt: STEP,
+                slow: self.lapse * STEP,
                 thrust: limb.thrust,
                 tendon: limb.tendon.step(STEP, self.lapse, servo, arm.tilt()),
                 momentum: limb.rotor.momentum(),

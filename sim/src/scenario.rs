@@ -42,6 +42,8 @@ use sophie_ports::retained::StartCause;
 use crate::plant::GRAVITY as STANDARD_GRAVITY;
 use crate::plant::air::wind::WindSpec;
 use crate::plant::air::{AirSpec, AirframeSpec};
+use crate::plant::beam::in_plane::InPlaneSpec;
+use crate::plant::beam::material::MaterialSpec;
 use crate::plant::body::BodySpec;
 use crate::plant::contact::PipeShape;
 use crate::plant::esc::EscSpec;
@@ -153,6 +155,16 @@ pub struct Vehicle {
     pub coupled_arms: bool,
     /// Damping ratio of the bending mode in hover.
     pub arm_damping: f64,
+    /// Torsional stiffness over the derived one.
+    pub arm_torsion: f64,
+    /// Softening with the temperature, 1/K.
+    pub arm_warming: f64,
+    /// What printed TPU has beside springs and damping.
+    pub arm_material: MaterialSpec,
+    /// Mode of an arm in the plane of its disc, Hz; `None`: rigid.
+    pub arm_in_plane: Option<f64>,
+    /// Its damping ratio.
+    pub arm_in_plane_damping: f64,
     /// Battery charge at power-up, 0..1.
     pub battery_charge: f64,
     /// Resistance of the battery over that of a new one.
@@ -188,6 +200,15 @@ pub struct Vehicle {
 }
 
 impl Vehicle {
+    /// Bending of the arms in the plane of their discs.
+    #[must_use]
+    pub fn in_plane(&self) -> Option<InPlaneSpec> {
+        self.arm_in_plane.map(|frequency| InPlaneSpec {
+            frequency,
+            damping: self.arm_in_plane_damping,
+        })
+    }
+
     /// Thrust of a level nominal arm, N.
     #[must_use]
     pub fn arm_level_thrust(&self) -> f64 {

@@ -55,8 +55,8 @@ fn stand(scenario: &Scenario, arm: usize) -> StandArm {
     });
     StandArm {
         arm,
-        spec: arm_spec(v, arm),
-        beam: (v.arm_bending == ArmBending::Beam).then(|| beam_spec(v, arm)),
+        spec: arm_spec(scenario, arm),
+        beam: (v.arm_bending == ArmBending::Beam).then(|| beam_spec(scenario, arm)),
         servo: scenario.servo_on(arm),
         tendon: TendonSpec {
             slack_error: 0.0,
@@ -114,7 +114,7 @@ fn advice(tried: &Tried) -> String {
 /// plant's arm at rest.
 pub fn needed(scenario: &Scenario, arm: usize, thrust: f64, target: f64) -> Option<f64> {
     let (v, w) = (&scenario.vehicle, &scenario.world);
-    let print = arm_spec(v, arm);
+    let print = arm_spec(scenario, arm);
     let beam = BeamSpec::tapered(&print, Masses::of(&v.body), DAMPING, v.arm_taper);
     let pipe = pipe_under(0.5 * w.pipe_diameter, w.pipe_friction);
     SlowArm::new(arm, beam, TENDON_LEVER, thrust, Some(pipe)).pull_to(target)

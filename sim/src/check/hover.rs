@@ -36,8 +36,8 @@ impl Built {
         let v: &Vehicle = &scenario.vehicle;
         let chi = f64::from(v.configuration.chi());
         let mut built = Self {
-            arms: std::array::from_fn(|arm| arm_spec(v, arm)),
-            beams: std::array::from_fn(|arm| beam_spec(v, arm)),
+            arms: std::array::from_fn(|arm| arm_spec(scenario, arm)),
+            beams: std::array::from_fn(|arm| beam_spec(scenario, arm)),
             geometry: Geometry::new(
                 ARM_LENGTH as f32,
                 ARM_X as f32,

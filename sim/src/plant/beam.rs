@@ -7,7 +7,9 @@
 //! The neutral line lies at [`HINGE_Z`] at the root; the underside [`DEPTH`] below it.
 
 mod arm;
+pub mod in_plane;
 mod masses;
+pub mod material;
 pub mod rest;
 mod section;
 mod shape;

@@ -31,6 +31,8 @@ pub struct Nearby {
 pub struct Drive {
     /// Length of the step, s.
     pub dt: f64,
+    /// Time that passes for slow processes of the material, s.
+    pub slow: f64,
     /// Thrust of the rotor, N.
     pub thrust: f64,
     /// Moment of the tendon on the tip's tilt, N·m.

@@ -163,6 +163,16 @@ impl MassMatrix {
         self.j.zz -= p.angular.z * u.z + q.angular.z * v.z;
     }
 
+    /// Subtracts a `mass` (kg) at `r` that gives way along x alone, with its inertia about the other axes.
+    pub fn give_way_along_x(&mut self, mass: f64, r: DVec3) {
+        let lever = DVec3::new(0.0, r.z, -r.y);
+        self.mass -= mass;
+        self.c[0] -= lever * mass;
+        self.j.yy -= mass * lever.y * lever.y;
+        self.j.yz -= mass * lever.y * lever.z;
+        self.j.zz -= mass * lever.z * lever.z;
+    }
+
     /// Accelerations under `load`.
     pub fn solve(&self, load: &Load) -> Acceleration {
         let Load { force, moment } = *load;

@@ -6,9 +6,9 @@
 use toml::Spanned;
 use toml::de::DeTable;
 
+use super::Scenario;
 use super::error::{Place, ScenarioError};
 use super::source::{Result, Source, Value};
-use super::{Scenario, Vehicle};
 use crate::plant::{GRAVITY, arm_spec};
 
 /// Slope without thrust, rad/N (0.1 deg/N): at 0.02 the lightest vehicle's bending mode is too fast for the plant's
@@ -76,15 +76,15 @@ impl Slope {
     }
 }
 
-fn unbuilt(vehicle: &Vehicle) -> Option<String> {
-    let v = vehicle;
+fn unbuilt(scenario: &Scenario) -> Option<String> {
+    let v = &scenario.vehicle;
     let slope = Slope::new(v.arm_coefficients, v.infill, v.gain_k, v.body.mass);
     let thrust_max = v.rotor.thrust_max;
-    v.arm_gain.iter().enumerate().find_map(|(arm, gain)| {
-        if let Some(fault) = slope.fault(*gain) {
+    (0..4).find_map(|arm| {
+        if let Some(fault) = slope.fault(scenario.arm_softness(arm)) {
             return Some(fault);
         }
-        let spec = arm_spec(v, arm);
+        let spec = arm_spec(scenario, arm);
         let tilt = [0.0, thrust_max].map(|thrust| spec.static_tilt(thrust));
         let far = tilt.into_iter().find(|t| t.is_nan() || t.abs() > LARGEST_TILT)?;
         Some(format!(
@@ -100,7 +100,7 @@ fn unbuilt(vehicle: &Vehicle) -> Option<String> {
 impl Source<'_> {
     /// Refuses numbers that are each allowed but give no arm.
     pub(super) fn arms(&self, root: &Spanned<DeTable<'_>>, scenario: &Scenario) -> Result<()> {
-        if let Some(allowed) = unbuilt(&scenario.vehicle) {
+        if let Some(allowed) = unbuilt(scenario) {
             // The defaults are valid at every infill and gain of the command line: the file has a key.
             let (key, value) = named(root, "vehicle", &BUILT).ok_or_else(|| self.no_key(&allowed))?;
             return Err(self.bad(&key, value, allowed));

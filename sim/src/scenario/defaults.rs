@@ -11,6 +11,7 @@ use super::{
 };
 use crate::plant::air::wind::WindSpec;
 use crate::plant::air::{AirSpec, AirframeSpec};
+use crate::plant::beam::material::MaterialSpec;
 use crate::plant::body::BodySpec;
 use crate::plant::contact::PipeShape;
 use crate::plant::contact::pipe::Flange;
@@ -40,6 +41,11 @@ impl Default for Vehicle {
             arm_offset: [0.0; 4],
             coupled_arms: true,
             arm_damping: 0.15,
+            arm_torsion: 1.0,
+            arm_warming: 0.0,
+            arm_material: MaterialSpec::default(),
+            arm_in_plane: None,
+            arm_in_plane_damping: 0.1,
             battery_charge: 1.0,
             battery_age: 1.0,
             battery_sag: 0.0,

@@ -419,6 +419,41 @@ pub const KEYS: &[Key] = &[
         vehicle.arm_damping
     ),
     number!(
+        "vehicle.arm_torsion",
+        Range::new(0.3, 3.0, ""),
+        vehicle.arm_torsion
+    ),
+    number!(
+        "vehicle.arm_temperature_percent_k",
+        Range::new(0.0, 3.0, "%/K").times(PERCENT),
+        vehicle.arm_warming
+    ),
+    number!(
+        "vehicle.arm_stiffening",
+        Range::new(0.0, 2.0, ""),
+        vehicle.arm_material.stiffening
+    ),
+    number!(
+        "vehicle.arm_relaxation_percent",
+        Range::new(0.0, 15.0, "%").times(PERCENT),
+        vehicle.arm_material.relaxation
+    ),
+    number!(
+        "vehicle.arm_first_cycles_percent",
+        Range::new(0.0, 50.0, "%").times(PERCENT),
+        vehicle.arm_material.first_cycles
+    ),
+    optional!(
+        "vehicle.arm_in_plane_hz",
+        Range::new(2.0, 30.0, "Hz"),
+        vehicle.arm_in_plane
+    ),
+    number!(
+        "vehicle.arm_in_plane_damping",
+        Range::new(0.02, 1.0, ""),
+        vehicle.arm_in_plane_damping
+    ),
+    number!(
         "vehicle.battery_charge_percent",
         Range::new(5.0, 100.0, "%").times(PERCENT),
         vehicle.battery_charge

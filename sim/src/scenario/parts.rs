@@ -98,6 +98,14 @@ impl Default for PressureSensors {
 }
 
 impl Scenario {
+    /// Factor on the elastic tilt of `arm`, 0 to 3, at the day's temperature: TPU softens by a share a kelvin.
+    #[must_use]
+    pub fn arm_softness(&self, arm: usize) -> f64 {
+        let v = &self.vehicle;
+        let warmer = v.arm_warming * (self.world.temperature - ROOM);
+        v.arm_gain[arm] * libm::exp(warmer)
+    }
+
     /// The servo of `arm`, 0 to 3, on the day's temperature.
     #[must_use]
     pub fn servo_on(&self, arm: usize) -> ServoSpec {

@@ -368,6 +368,55 @@ pub const QUANTITIES: &[Quantity] = &[
         ..FIXED
     },
     Quantity {
+        key: "vehicle.arm_torsion",
+        all: Some(Spread::Within(0.5, 2.0)),
+        source: "derived of a square section; infill and skin share it differently (assumed)",
+        truth: |s| vec![s.vehicle.arm_torsion],
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.arm_temperature_percent_k",
+        all: Some(Spread::Within(1.0, 1.7)),
+        source: "1.25 times the stiffness at 5 °C, 0.7 to 0.8 at 40 °C (Covestro Texin 245)",
+        truth: |s| vec![s.vehicle.arm_warming / PERCENT],
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.arm_stiffening",
+        all: Some(Spread::Within(0.2, 0.8)),
+        source: "up to 2.8 times from 0.006 to 16 1/s (Haid 2023): 1.5 to 2 at 5 Hz over a bench's minutes",
+        truth: |s| vec![s.vehicle.arm_material.stiffening],
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.arm_relaxation_percent",
+        all: Some(Spread::Within(2.0, 6.0)),
+        source: "5 % per decade; compression set 18 % in 22 h (Covestro Texin 245)",
+        truth: |s| vec![s.vehicle.arm_material.relaxation / PERCENT],
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.arm_first_cycles_percent",
+        all: Some(Spread::Within(0.0, 20.0)),
+        source: "10 to 20 % in the first five to ten closings of a new arm (Eng. Proc. 85, 18), none later",
+        truth: |s| vec![s.vehicle.arm_material.first_cycles / PERCENT],
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.arm_in_plane_hz",
+        all: Some(Spread::Within(4.0, 7.5)),
+        source: "3.5 Hz of EI 0.11 N m², more with a wider root (estimated; Fig. 4 of the paper shows the bend)",
+        truth: |s| s.vehicle.arm_in_plane.into_iter().collect(),
+        ..FIXED
+    },
+    Quantity {
+        key: "vehicle.arm_in_plane_damping",
+        all: Some(Spread::Within(0.05, 0.15)),
+        source: "as `arm_damping`",
+        truth: |s| vec![s.vehicle.arm_in_plane_damping],
+        ..FIXED
+    },
+    Quantity {
         key: "vehicle.servo_release_us",
         each: Some(Spread::Plus(0.0, 100.0)),
         calibration: Some(SERVO_MARK),

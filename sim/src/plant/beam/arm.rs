@@ -14,7 +14,9 @@ use super::super::GRAVITY;
 use super::super::contact::{ARM_LENGTH, ARM_X, BELLY_Z, HINGE_Z, Pose};
 use super::super::flexible::{Carried, Carrier, Drive, Flexible, Nearby};
 use super::super::mass_matrix::{Column, MassMatrix};
+use super::in_plane::{InPlane, InPlaneSpec};
 use super::masses::MIDDLE;
+use super::material::{Material, MaterialSpec};
 use super::section::BeamSpec;
 use super::shape::{Point, points, sin_cos};
 use super::skin::{BeamContact, Bent};
@@ -33,6 +35,12 @@ pub struct BeamArm {
     pub(super) twist: f64,
     pub(super) twist_rate: f64,
     contact: BeamContact,
+    /// Time that passes for slow processes of the material in the step, s.
+    slow: f64,
+    /// `None`: elastic.
+    material: Option<Material>,
+    /// `None`: rigid in the plane of the disc.
+    in_plane: Option<InPlane>,
     /// Middle and tip, as `q` and `rate` have them.
     places: [Point; 2],
     /// Sine of the tilt.
@@ -75,6 +83,9 @@ impl BeamArm {
             twist: 0.0,
             twist_rate: 0.0,
             contact: BeamContact::default(),
+            slow: 0.0,
+            material: None,
+            in_plane: None,
             places: [Point::default(); 2],
             sin: 0.0,
             cos: 1.0,
@@ -85,6 +96,21 @@ impl BeamArm {
         };
         arm.place();
         arm
+    }
+
+    /// The same arm of `material`, new.
+    #[must_use]
+    pub fn of_material(mut self, material: MaterialSpec) -> Self {
+        let printed = material != MaterialSpec::default();
+        self.material = printed.then(|| Material::new(material, self.spec.in_hover()));
+        self
+    }
+
+    /// The same arm with its bending in the plane of the disc.
+    #[must_use]
+    pub fn bending_in_plane(mut self, spec: Option<InPlaneSpec>) -> Self {
+        self.in_plane = spec.map(|spec| InPlane::new(spec, self.spec.masses.tip));
+        self
     }
 
     /// Bends the arm to the shape `q` at rest.
@@ -212,11 +238,22 @@ impl BeamArm {
         }
     }
 
+    /// Generalised forces of the bent material, N·m.
+    fn elastic(&self) -> PerTerm {
+        let Some(material) = &self.material else {
+            return self.spec.elastic(&self.q);
+        };
+        let kept = material.kept();
+        let [a, b] = self.spec.elastic(&[self.q[0] - kept[0], self.q[1] - kept[1]]);
+        let ([fast_a, fast_b], virgin) = (material.force(), material.virgin());
+        [virgin * a + fast_a, virgin * b + fast_b]
+    }
+
     /// Generalised forces other than weight and contact.
     fn forces(&self, drive: &Drive, moment: DVec3) -> PerTerm {
         let [_, tip] = &self.places;
         let damping = &self.spec.damping;
-        let mut forces = self.spec.elastic(&self.q);
+        let mut forces = self.elastic();
         // The thrust's part across the arm, and the rotor's moment about the bending axis.
         let (across, about) = (drive.thrust * self.twist_cos, moment.dot(self.axis()));
         for k in 0..TERMS {
@@ -248,6 +285,10 @@ impl Carried for BeamArm {
         let thrust = self.rotor_axis() * self.thrust;
         load.add(e.held.force, e.held.moment);
         load.add(thrust, self.position(tip).cross(thrust));
+        if let Some(in_plane) = &self.in_plane {
+            in_plane.condense(mass, load);
+            load.moment += (DVec3::X * in_plane.way()).cross(thrust);
+        }
         load.force -= c.linear * free[0] + d.linear * free[1];
         load.moment -= c.angular * free[0] + d.angular * free[1] + tangent * e.twist_rest;
     }
@@ -296,6 +337,17 @@ impl Flexible for BeamArm {
         let carrier = if carrier.coupled { carrier } else { &bench };
         let nutation = 0.5 * drive.dt * drive.momentum * self.twist_cos;
         self.equations = self.equations(carrier, forces, twisting, nutation);
+        if let Some(in_plane) = &mut self.in_plane
+            && carrier.coupled
+        {
+            let [_, tip] = &self.places;
+            let place = DVec3::new(self.x, -self.side * tip.out, HINGE_Z - tip.up);
+            let omega = carrier.omega;
+            let inertia = carrier.gravity.x - omega.cross(omega.cross(place)).x;
+            let force = self.spec.masses.tip * inertia + axis.x * drive.thrust;
+            in_plane.load(force, moment.z, place);
+        }
+        self.slow = drive.slow;
     }
 
     fn advance(&mut self, dt: f64, body: &Acceleration, carrier: &Carrier) {
@@ -308,11 +360,21 @@ impl Flexible for BeamArm {
             let (tangent, _) = self.tip_axes();
             twisting -= tangent.dot(body.angular);
         }
+        if let Some(in_plane) = &mut self.in_plane
+            && carrier.coupled
+        {
+            in_plane.advance(dt, body);
+        }
         let bending = product(&e.inverse, &left);
         twisting += e.nutation * (bending[0] + bending[1]) / self.spec.masses.block;
         for ((q, rate), acceleration) in self.q.iter_mut().zip(&mut self.rate).zip(bending) {
             *rate += acceleration * dt;
             *q += *rate * dt;
+        }
+        let bend = [self.q[0] - self.spec.rest, self.q[1]];
+        if let Some(material) = &mut self.material {
+            // At the rates after the step, as the shape: at those before it the branch would feed its own swing.
+            material.step(dt, self.slow, &bend, &self.rate);
         }
         self.twist_rate += twisting * dt;
         self.twist += self.twist_rate * dt;

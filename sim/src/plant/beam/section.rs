@@ -79,6 +79,19 @@ impl BeamSpec {
         beam
     }
 
+    /// The same with `factor` times the torsional stiffness; its damping keeps the ratio.
+    #[must_use]
+    pub fn twisting(mut self, factor: f64) -> Self {
+        self.twist.stiffness *= factor;
+        self.twist.damping *= factor.sqrt();
+        self
+    }
+
+    /// Tangent stiffness in hover, N·m.
+    pub(super) fn in_hover(&self) -> [PerTerm; TERMS] {
+        self.tangent(HOVER_THRUST)
+    }
+
     /// Bending stiffness of the root at rest, N·m².
     #[must_use]
     pub fn bending_stiffness(&self) -> f64 {

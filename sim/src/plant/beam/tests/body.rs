@@ -2,6 +2,7 @@
 
 use glam::DQuat;
 
+use super::super::in_plane::InPlaneSpec;
 use super::super::masses::MIDDLE;
 use super::super::shape::points;
 use super::*;
@@ -149,10 +150,26 @@ fn nothing_is_lost_without_damping() {
 
 #[test]
 fn a_slow_moment_meets_the_whole_inertia() {
+    slow_moments(None);
+}
+
+/// Arms that bend in the plane of their discs are carried along by their springs.
+#[test]
+fn a_slow_moment_meets_the_whole_inertia_of_arms_that_bend_in_plane() {
+    slow_moments(Some(InPlaneSpec {
+        frequency: 5.0,
+        damping: 0.3,
+    }));
+}
+
+fn slow_moments(in_plane: Option<InPlaneSpec>) {
     let spec = uniform(1.0, 0.15);
     for (axis, inertia) in [(0, 0.021), (1, 0.044), (2, 0.063)] {
         let mut loose = Loose::new(spec);
-        loose.arms.iter_mut().for_each(|arm| arm.bend([0.0, 0.0]));
+        for arm in &mut loose.arms {
+            arm.bend([0.0, 0.0]);
+            *arm = arm.clone().bending_in_plane(in_plane);
+        }
         let mut moment = DVec3::ZERO;
         moment[axis] = 0.1 * inertia;
         for _ in 0..4000 {
