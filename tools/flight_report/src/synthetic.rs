@@ -3,7 +3,9 @@
 use std::f64::consts::TAU;
 
 use sophie_control::mode::Mode;
-use sophie_sim::record::{Event, FlightRecord, Grip, Outcome, Phase, SAMPLE_HZ, Sample, Strike, Struck};
+use sophie_sim::record::{
+    Ended, Event, FlightRecord, Grip, Outcome, Phase, SAMPLE_HZ, Sample, Strike, Struck,
+};
 use sophie_sim::scenario::{Scenario, Step};
 
 /// Durations of the default mission's steps, s.
@@ -44,6 +46,7 @@ pub fn record() -> FlightRecord {
     FlightRecord {
         outcome: Outcome {
             accomplished: true,
+            ended: Ended::Done,
             reason: "mission accomplished".to_owned(),
         },
         samples,
