@@ -16,6 +16,7 @@ mod publish;
 mod recording;
 mod study;
 mod timing;
+mod unknown;
 mod vehicles;
 
 use std::process::ExitCode;
@@ -51,9 +52,8 @@ pub fn main() -> ExitCode {
         Task::Bringup(args) => return operate::bringup(&args),
         Task::Params(args) => return operate::params(&args),
         Task::Capture(args) => capture::run(&args),
-        Task::Study(args) => match args.study {
-            Study::Vehicles => vehicles::run(&args),
-        },
+        Task::Study(Study::Vehicles(args)) => vehicles::run(&args),
+        Task::Study(Study::Unknown(args)) => unknown::run(&args),
         Task::Paper(args) => study::paper(&args),
         Task::FitArm(args) => study::fit_arm(&args),
         Task::Timing(args) => timing::run(&args).map(|()| true),

@@ -3,7 +3,9 @@
 
 pub mod allocation;
 pub mod capture;
+pub mod cause;
 pub mod perturbation;
 pub mod rig;
 pub mod touch;
+pub mod unknown;
 pub mod vehicles;

@@ -20,7 +20,7 @@ use self::stack::Stack;
 use crate::devices::sbus::Receiver;
 use crate::pilot::{Pilot, PilotOutput, VisibleState};
 use crate::plant::Plant;
-use crate::record::{FlightRecord, Observer, Outcome};
+use crate::record::{Ended, FlightRecord, Observer, Outcome};
 use crate::scenario::{LAPSE_TIME, Scenario, Step};
 
 /// Milliseconds between two calls of [`Observer::progress`].
@@ -134,6 +134,7 @@ impl<A: Aircraft> World<A> {
         let limit_ms = (scenario.time_limit * 1e3) as u64;
         let mut outcome = Outcome {
             accomplished: false,
+            ended: Ended::TimeLimit,
             reason: format!("time limit of {:.0} s reached", scenario.time_limit),
         };
         let mut began = (usize::MAX, 0.0);
@@ -143,6 +144,7 @@ impl<A: Aircraft> World<A> {
             let output = match stepped {
                 Ok(output) => output,
                 Err(why) => {
+                    outcome.ended = Ended::Stopped;
                     outcome.reason = format!("{why} (at {t:.1} s)");
                     break;
                 }
@@ -161,6 +163,7 @@ impl<A: Aircraft> World<A> {
                 observer.progress(t, self.stack.mode(), -self.plant.pose().position.z);
             }
             if let Some(reason) = judged {
+                outcome.ended = Ended::Judged;
                 outcome.reason = format!("{reason} (at {t:.1} s)");
                 break;
             }

@@ -34,7 +34,7 @@ pub use self::perch::throttle_on_pipe;
 use self::referee::Referee;
 use self::stick_dynamics::{StickDynamics, StickTarget};
 use crate::devices::crsf::{FRAME_HZ, Frame, Telemetry, rc_frame};
-use crate::record::Outcome;
+use crate::record::{Ended, Outcome};
 use crate::scenario::{Scenario, Step};
 
 /// The vehicle's true state that an observer on the ground sees.
@@ -147,7 +147,7 @@ impl Pilot {
             && self.index > 0
             && let Some(why) = self.referee.judge(&seen, self.mission.heading, dt)
         {
-            self.fail(&why, &mut out);
+            self.fail(&why, Ended::Lost, &mut out);
         }
         self.elapsed += dt;
         if self.elapsed >= 1.0 / FRAME_HZ {
@@ -205,6 +205,7 @@ impl Pilot {
         let Some(step) = self.steps.get(self.index).cloned() else {
             self.outcome = Some(Outcome {
                 accomplished: true,
+                ended: Ended::Done,
                 reason: "mission accomplished".to_owned(),
             });
             out.outcome.clone_from(&self.outcome);
@@ -232,14 +233,15 @@ impl Pilot {
                 self.index += 1;
                 self.begun = false;
             }
-            Progress::Failed(why) => self.fail(&why, out),
+            Progress::Failed(why) => self.fail(&why, Ended::GivenUp, out),
         }
     }
 
-    fn fail(&mut self, why: &str, out: &mut PilotOutput) {
+    fn fail(&mut self, why: &str, ended: Ended, out: &mut PilotOutput) {
         let name = self.steps.get(self.index).map_or("end", Step::name);
         self.outcome = Some(Outcome {
             accomplished: false,
+            ended,
             reason: format!("{name}: {why}"),
         });
         out.outcome.clone_from(&self.outcome);

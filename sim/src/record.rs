@@ -51,8 +51,27 @@ pub struct Verdict {
 pub struct Outcome {
     /// All steps done.
     pub accomplished: bool,
+    /// Who or what ended it.
+    pub ended: Ended,
     /// One line: `mission accomplished`, or what failed and when.
     pub reason: String,
+}
+
+/// Who or what ends a flight.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ended {
+    /// The pilot, with every step done.
+    Done,
+    /// The pilot: a step takes too long, or the stack does not obey.
+    GivenUp,
+    /// The referee: tipped over, spun, sunk below the ground or flown away.
+    Lost,
+    /// The judge, by the plant's true state.
+    Judged,
+    /// The scenario's time limit.
+    TimeLimit,
+    /// The electronics cannot run on.
+    Stopped,
 }
 
 /// True and estimated state.

@@ -5,6 +5,7 @@
 
 mod arm;
 mod defaults;
+pub mod draw;
 mod error;
 pub mod faults;
 pub mod keys;

@@ -20,7 +20,7 @@ pub use data::{FitArgs, Kind, RecordingArgs, TimingArgs};
 pub use fly::{FlyArgs, LiveArgs};
 pub use message::Message;
 pub use mission::MissionArgs;
-pub use studies::{CaptureArgs, Study, StudyArgs};
+pub use studies::{CaptureArgs, Study, UnknownArgs, VehiclesArgs};
 
 /// SOPHIE, the soft quadrotor that perches on pipes, flown in virtual time.
 #[derive(Parser)]
@@ -63,10 +63,17 @@ pub enum Task {
     /// Half come from anywhere on the pipe, half are what a careful pilot means; of these the half-widths are measured.
     /// Exit status: 0 nothing lost, 1 a vehicle was lost, 2 bad input or unwritable output.
     Capture(CaptureArgs),
-    /// Fly a family of varied vehicles, and compare the results with the design check of each.
+    /// Fly many vehicles, each another one.
     ///
-    /// Exit status: 0 done, 2 bad input or unwritable output.
-    Study(StudyArgs),
+    /// Exit status: 0 done, 1 of the unknown vehicles one is fallen or not holding, 2 bad input or unwritable output.
+    #[command(
+        subcommand,
+        arg_required_else_help = false,
+        subcommand_value_name = "STUDY",
+        subcommand_help_heading = "Studies",
+        disable_help_subcommand = true
+    )]
+    Study(Study),
     /// Compute and fly every table and figure of the paper, and set them beside the printed numbers.
     ///
     /// Exit status: 0 done, 2 bad input or unwritable output.
@@ -126,7 +133,8 @@ fn parse_from(
     // Options that are valid one by one, but not together.
     let together = match &task {
         Task::Capture(args) => values::seeds(args.seed, args.touches, "touches"),
-        Task::Study(args) => values::seeds(args.seed, args.count, "vehicles"),
+        Task::Study(Study::Vehicles(args)) => values::seeds(args.seed, args.count, "vehicles"),
+        Task::Study(Study::Unknown(args)) => args.together(),
         _ => Ok(()),
     };
     together.map_err(|why| Message(Cli::command().error(ErrorKind::ValueValidation, why)))?;

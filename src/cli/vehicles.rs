@@ -2,11 +2,11 @@
 
 use sophie_research::study::vehicles::{self, report};
 
-use super::args::StudyArgs;
+use super::args::VehiclesArgs;
 use super::publish::Publisher;
 
 /// Flies and writes the family. Always true: a failed flight is a result.
-pub fn run(args: &StudyArgs) -> Result<bool, String> {
+pub fn run(args: &VehiclesArgs) -> Result<bool, String> {
     let publisher = Publisher::new(&args.out, ["vehicles.html", "vehicles.json"], args.json)?;
     publisher.say(&format!("{} vehicles from seed {}", args.count, args.seed));
     let flown = vehicles::fly(args.count, args.seed, args.spread)?;

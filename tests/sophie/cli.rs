@@ -211,7 +211,7 @@ fn help_is_a_word_and_an_option_everywhere() {
         ("fly", "--infill"),
         ("check", "--infill"),
         ("capture", "--touches"),
-        ("study", "--spread"),
+        ("study", "vehicles"),
         ("paper", "paper.html"),
         ("fit-arm", "tilt_deg"),
         ("timing", "--analyse"),

@@ -15,5 +15,6 @@ mod parameters;
 mod recording;
 mod study;
 mod tuning;
+mod unknown;
 mod wiring;
 mod words;

@@ -56,9 +56,9 @@ fn options_out_of_range_are_refused_in_one_line() {
         (&["vehicles", "--spread", "1.1"], "allowed 0 to 1"),
         (&["vehicles", "--spread", "nan"], "allowed 0 to 1"),
         (&["vehicles", "--seed", "-1"], "a whole number from 0"),
-        (&["birds"], "vehicles"),
-        (&[], "<STUDY>"),
-        (&["vehicles", "v.toml"], "allowed is vehicles and no file"),
+        (&["birds"], "no study 'birds': allowed are vehicles, unknown"),
+        (&[], "<STUDY> is missing: allowed are vehicles, unknown"),
+        (&["vehicles", "v.toml"], "allowed is one study and no file"),
     ] {
         let line = refused(&temp, &[&["study"], args].concat());
         assert!(line.contains(message), "{args:?}: {line}");

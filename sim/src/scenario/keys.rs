@@ -45,6 +45,34 @@ pub enum Kind {
     Text(fn(&mut Scenario, &str)),
 }
 
+/// Sets the numbers of the key `name`, given in its unit, whatever its range. False if no key has numbers under it.
+pub fn set(scenario: &mut Scenario, name: &str, numbers: &[f64]) -> bool {
+    let Some(Key { kind, .. }) = KEYS.iter().find(|key| key.name == name) else {
+        return false;
+    };
+    let mut si = numbers.iter().copied();
+    match kind {
+        Kind::Number(range, field) => {
+            if let Some(number) = si.next() {
+                *field(scenario) = number * range.si;
+            }
+        }
+        Kind::Optional(range, field) => *field(scenario) = si.next().map(|number| number * range.si),
+        Kind::PerArm(range, field) => {
+            for (slot, number) in field(scenario).iter_mut().zip(si) {
+                *slot = number * range.si;
+            }
+        }
+        Kind::PerAxis(ranges, field) => {
+            for ((slot, range), number) in field(scenario).iter_mut().zip(ranges).zip(si) {
+                *slot = number * range.si;
+            }
+        }
+        _ => return false,
+    }
+    true
+}
+
 /// Allowed range of a number, in the file's unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
@@ -133,6 +161,9 @@ pub const ASSISTS: &[&str] = &["none", "hold", "self"];
 pub const INFILL: Range = Range::new(4.0, 10.0, "%");
 /// Gain on Eq. 1's elastic term: 1 is the literal equation, Table III needs 5.0 to 8.4.
 pub const GAIN_K: Range = Range::new(1.0, 10.0, "");
+
+/// Mean wind.
+pub const WIND: Range = Range::new(0.0, 15.0, "m/s");
 
 /// Whole numbers up to it are exact as TOML floats.
 const SEED_MAX: f64 = 9e15;
@@ -678,11 +709,7 @@ pub const KEYS: &[Key] = &[
         Range::new(-360.0, 360.0, "deg").times(DEGREE),
         world.steady_wind_from
     ),
-    number!(
-        "world.wind_m_s",
-        Range::new(0.0, 15.0, "m/s"),
-        world.air.wind.speed
-    ),
+    number!("world.wind_m_s", WIND, world.air.wind.speed),
     number!(
         "world.wind_gust_m_s",
         Range::new(0.0, 5.0, "m/s"),

@@ -3,8 +3,8 @@
 
 use sophie_control::params::ServoMarks;
 
-use super::Scenario;
 use super::uncertain::{Calibration, QUANTITIES, Quantity};
+use super::{Scenario, keys};
 use crate::plant::tendon::ServoSpec;
 
 /// Knowledge of the vehicle that the stack's parameters have.
@@ -109,6 +109,32 @@ fn learn(scenario: &mut Scenario, quantity: &Quantity, calibration: Option<&Cali
 }
 
 impl Scenario {
+    /// The scenario with the vehicle and the pipe that the parameters assume, nominal where they assume nothing: what a
+    /// builder can check before the first flight.
+    #[must_use]
+    pub fn assumed(&self) -> Self {
+        let mut built = Self {
+            params: self.params,
+            steps: self.steps.clone(),
+            sensors: self.sensors,
+            pilot: self.pilot.clone(),
+            arms: self.arms,
+            mixer: self.mixer,
+            ..Self::default_mission()
+        };
+        built.world.air.wind = self.world.air.wind;
+        built.vehicle.infill = self.vehicle.infill;
+        built.vehicle.servo = self.vehicle.servo;
+        built.vehicle.configuration = self.vehicle.configuration;
+        for quantity in QUANTITIES {
+            let numbers = (quantity.assumed)(&built);
+            if !numbers.is_empty() && !(quantity.truth)(&built).is_empty() {
+                keys::set(&mut built, quantity.key, &numbers);
+            }
+        }
+        built
+    }
+
     /// What the parameters have wrong, in the order of the table.
     #[must_use]
     pub fn differences(&self) -> Vec<Difference> {

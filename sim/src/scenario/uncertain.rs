@@ -901,8 +901,8 @@ pub const QUANTITIES: &[Quantity] = &[
     },
     Quantity {
         key: "world.pipe_flange_spacing_m",
-        all: Some(Spread::Within(0.0, 6.0)),
-        source: "a flange each length of pipe, or none",
+        all: Some(Spread::Within(1.0, 6.0)),
+        source: "a flange each length of pipe, or none (below)",
         truth: |s| vec![s.world.pipe_shape.flange.spacing],
         ..FIXED
     },

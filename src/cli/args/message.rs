@@ -21,6 +21,9 @@ const VERBS: [&str; 10] = [
     "recording",
 ];
 
+/// The studies, as listed in messages.
+const STUDIES: &str = "vehicles, unknown";
+
 /// A message shown instead of a flight.
 pub struct Message(pub(super) clap::Error);
 
@@ -38,10 +41,13 @@ impl Message {
 
     /// clap's message without its usage and hints at help, as one line.
     pub(super) fn line(&self) -> String {
-        // Only `help` forbids a file in a subcommand's place.
+        // Only `study` and `help` forbid a file in a subcommand's place.
         if self.0.kind() == ErrorKind::InvalidSubcommand
             && let Some(ContextValue::String(topic)) = self.0.get(ContextKind::InvalidSubcommand)
         {
+            if std::env::args().nth(1).as_deref() == Some("study") {
+                return format!("no study '{topic}': allowed are {STUDIES}");
+            }
             return format!("no help on '{topic}': allowed are {}", VERBS.join(", "));
         }
         // clap reports a second file as an unknown subcommand if one could stand there.
@@ -56,7 +62,7 @@ impl Message {
         {
             let allowed = match std::env::args().nth(1).as_deref() {
                 Some("paper" | "capture") => "no file",
-                Some("study") => "vehicles and no file",
+                Some("study") => "one study and no file",
                 Some("fit-arm") => "one CSV file",
                 Some("recording") => "one recording",
                 Some("timing") => "one log file",
@@ -65,6 +71,9 @@ impl Message {
                 _ => "one scenario file",
             };
             return format!("unexpected argument '{extra}': allowed is {allowed}");
+        }
+        if self.0.kind() == ErrorKind::MissingSubcommand {
+            return format!("<STUDY> is missing: allowed are {STUDIES}");
         }
         let text = self.0.to_string();
         let lines = text.lines().map(str::trim).filter(|l| !l.is_empty());

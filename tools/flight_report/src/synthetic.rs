@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use sophie_control::mode::Mode;
 use sophie_sim::record::{
-    Event, FlightRecord, Grip, Outcome, Phase, SAMPLE_HZ, Sample, Strike, Struck, Verdict,
+    Ended, Event, FlightRecord, Grip, Outcome, Phase, SAMPLE_HZ, Sample, Strike, Struck, Verdict,
 };
 use sophie_sim::scenario::{Rule, Scenario, Step};
 
@@ -46,6 +46,7 @@ pub fn record() -> FlightRecord {
     FlightRecord {
         outcome: Outcome {
             accomplished: true,
+            ended: Ended::Done,
             reason: "mission accomplished".to_owned(),
         },
         verdicts: Rule::WORDS

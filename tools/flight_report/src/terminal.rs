@@ -3,6 +3,7 @@
 pub mod check;
 pub mod live;
 pub mod result;
+pub mod tally;
 
 use sophie_sim::record::FlightRecord;
 use sophie_terminal::console::{self, Console};

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use sophie_control::params::{Params, ServoMarks};
 
 use super::parse;
+use crate::scenario::draw::CHANCES;
 use crate::scenario::keys::{KEYS, Kind};
 use crate::scenario::uncertain::{QUANTITIES, Quantity, Spread};
 use crate::scenario::{Overrides, Scenario};
@@ -192,9 +193,14 @@ fn the_page_has_the_table() {
         )
         .unwrap();
     }
+    let mut chances = String::from("| scenario key | of a hundred | source |\n|---|---|---|\n");
+    for chance in CHANCES {
+        let (key, of_hundred, source) = (chance.key, 100.0 * chance.share, chance.source);
+        writeln!(chances, "| `{key}` | {of_hundred:.0} | {source} |").unwrap();
+    }
     sophie_pages::hold(
         "uncertainty",
-        &[("quantities", text)],
+        &[("quantities", text), ("chances", chances)],
         "--package sophie-sim --lib scenario",
     );
 }
