@@ -178,7 +178,8 @@ impl Plant {
         self.actuators
     }
 
-    /// Lets creep, heat, drift and batteries run `factor` times as fast as the motion: a time on the pipe within a minute.
+    /// Lets creep, heat and drift run `factor` times as fast as the motion: a time on the pipe within a minute. The batteries
+    /// do not: how long they last is a row of the design check.
     pub fn hasten(&mut self, factor: f64) {
         self.base.lapse = factor;
     }
@@ -442,9 +443,8 @@ impl Base {
             limb.pressure = arm.touch(STEP, &pose, &nearby, &mut load);
             arm.drive(&drive, &carrier, &mut load);
         }
-        let slow = self.lapse * STEP;
-        self.battery.step(slow, current);
-        self.servo_battery.step(slow, servo_current);
+        self.battery.step(STEP, current);
+        self.servo_battery.step(STEP, servo_current);
 
         let acceleration = self.body.accelerate(&pose, load, gravity, arms.each_ref());
         self.specific_force = acceleration.linear - gravity;

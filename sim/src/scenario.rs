@@ -434,7 +434,7 @@ pub enum Step {
         seconds: f64,
         /// Sideways at the centre of mass in the middle third, N.
         push: f64,
-        /// Time on the pipe after it, s: within [`LAPSE_TIME`] creep, heat, drift and batteries run as if it passed.
+        /// Time on the pipe after it, s: within [`LAPSE_TIME`] creep, heat and drift run as if it passed.
         lapse: f64,
     },
     /// Spool up and turn the perch switch off, until displayed.

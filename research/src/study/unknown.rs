@@ -29,7 +29,7 @@ pub use self::row::Row;
 /// RMS of the gusts on each horizontal axis over the mean wind.
 const TURBULENCE: f64 = 0.2;
 
-/// Time on the pipe after the hold, s, within one minute: creep, heat, drift and the servos' battery.
+/// Time on the pipe after the hold, s, within one minute: creep, heat and drift.
 pub const LAPSE: f64 = 30.0 * 60.0;
 
 /// A campaign.

@@ -70,7 +70,7 @@ pub fn inspection(scenario: &Scenario, tries: &[TriedArm]) -> Row {
         .steps
         .iter()
         .map(|step| match *step {
-            Step::Hold { seconds, lapse, .. } => seconds + lapse,
+            Step::Hold { seconds, .. } => seconds,
             _ => 0.0,
         })
         .sum();

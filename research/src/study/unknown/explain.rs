@@ -187,12 +187,12 @@ mod tests {
             "{:?}",
             found[0].chance
         );
-        assert!(
-            found[1].chance > 0.05,
-            "{}: {}",
-            found[1].quantity,
-            found[1].chance
-        );
+        // What the parameters assume of it less itself goes with it.
+        let mut others = found
+            .iter()
+            .filter(|f| !f.quantity.starts_with("world.pipe_friction"));
+        let other = others.next().unwrap();
+        assert!(other.chance > 0.05, "{}: {}", other.quantity, other.chance);
         assert!(explain(&rows(60, None))[0].chance > 0.05);
         // A dozen flights prove little.
         assert!(
