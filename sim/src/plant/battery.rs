@@ -1,5 +1,5 @@
 //! Flight and servo battery: lithium cells with a resistance, and a slow sag: a second resistance beside a capacity, the
-//! concentration that a current builds up in the cells within [`SAG_TIME`].
+//! concentration that a current builds up in the cells within 20 s.
 
 use super::servo_power;
 
