@@ -83,7 +83,7 @@ mod tests {
         );
         // Cheeseman and Bennett's single rotor gives 1.067 there: a multirotor gains more.
         assert!(over_floor(RADIUS) > 1.0 / (1.0 - 0.0625));
-        // Published: the effect is felt up to about five radii.
+        // Published: the effect reaches up to about five radii.
         assert!(over_floor(5.0 * RADIUS) < 1.03);
         assert!(over_floor(3.0) - 1.0 < 2e-3);
         assert_eq!(over_floor(0.0), over_floor(LOWEST * RADIUS));

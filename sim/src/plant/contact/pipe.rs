@@ -25,7 +25,7 @@ pub struct Pipe {
     pub radius: f64,
     /// Coefficient of sliding friction.
     pub friction: f64,
-    /// What it has of a real one.
+    /// Errors of a real one.
     pub shape: PipeShape,
 }
 
