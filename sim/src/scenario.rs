@@ -173,6 +173,8 @@ pub struct Vehicle {
     pub battery_age: f64,
     /// Resistance that the battery's current meets slowly, Ω.
     pub battery_sag: f64,
+    /// Capacity of the servo battery, A·s.
+    pub servo_capacity: f64,
     /// Charge of the servo battery at power-up, 0..1.
     pub servo_charge: f64,
     /// The tendon servo.

@@ -19,6 +19,7 @@ use crate::plant::esc::EscSpec;
 use crate::plant::flexible::ArmBending;
 use crate::plant::hinged::link::TABLE_1;
 use crate::plant::rotor::{RotorSpec, STANDARD_DENSITY};
+use crate::plant::servo_power::CAPACITY;
 use crate::plant::tendon::ServoProfile;
 use crate::sensors::flow::Optics;
 use crate::sensors::imu::VibrationSpec;
@@ -49,6 +50,7 @@ impl Default for Vehicle {
             battery_charge: 1.0,
             battery_age: 1.0,
             battery_sag: 0.0,
+            servo_capacity: CAPACITY,
             servo_charge: 1.0,
             servo: ServoProfile::Paper,
             servo_release: [550.0; 4],

@@ -520,6 +520,11 @@ pub const KEYS: &[Key] = &[
         vehicle.battery_sag
     ),
     number!(
+        "vehicle.servo_battery_mah",
+        Range::new(200.0, 20_000.0, "mAh").times(3.6),
+        vehicle.servo_capacity
+    ),
+    number!(
         "vehicle.servo_charge_percent",
         Range::new(0.0, 100.0, "%").times(PERCENT),
         vehicle.servo_charge
