@@ -7,3 +7,5 @@ pub mod csv;
 pub mod least_squares;
 pub mod tendon;
 pub mod tendon_data;
+pub mod thrust;
+pub mod thrust_data;
