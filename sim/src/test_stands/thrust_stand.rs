@@ -8,7 +8,6 @@ use sophie_control::pilot::static_thrust_test::{Rotors, StaticThrustTest};
 
 use super::scale::Scale;
 use crate::normal::StandardNormal;
-use crate::plant::arm_spec;
 use crate::plant::battery::Battery;
 use crate::plant::hinged::link::ArmSpec;
 use crate::plant::rotor::Rotor;
@@ -56,7 +55,7 @@ impl ThrustStand {
         let rotor = |i: usize| Rotor::new(i, 1.0, v.rotor).in_air(v.rotor_thrust[i], density);
         Self {
             rotors: core::array::from_fn(rotor),
-            arms: core::array::from_fn(|arm| arm_spec(scenario, arm)),
+            arms: core::array::from_fn(|arm| scenario.arm_spec(arm)),
             battery: charged(scenario, v.battery_charge),
             loss: v.air.wash.loss,
             scale: Scale::new(streams),

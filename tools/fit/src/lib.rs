@@ -5,6 +5,8 @@ pub mod arm;
 pub mod arm_data;
 pub mod csv;
 pub mod least_squares;
+pub mod motor_lag;
+pub mod rotor_sound;
 pub mod tendon;
 pub mod tendon_data;
 pub mod thrust;
