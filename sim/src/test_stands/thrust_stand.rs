@@ -115,7 +115,7 @@ impl ThrustStand {
     /// Force on the scale, N.
     fn lift(&self) -> f64 {
         let arms = self.thrust().into_iter().zip(self.tilt());
-        arms.map(|(thrust, tilt)| thrust * tilt.cos()).sum()
+        arms.map(|(thrust, tilt)| thrust * libm::cos(tilt)).sum()
     }
 }
 
@@ -134,7 +134,7 @@ mod tests {
         let mut stand = ThrustStand::new(&scenario, Streams::new(1));
         let one = stand.run(Rotors::One(2), 0.6);
         let expected = scenario.vehicle.rotor.steady_thrust(0.6, one.voltage);
-        let tilt = arm_spec(&scenario, 2).static_tilt(expected);
+        let tilt = scenario.arm_spec(2).static_tilt(expected);
         let share = one.grams * 9.806_65e-3 / (expected * tilt.cos());
         assert!((share - 1.0).abs() < 0.04, "{share}");
         let before = stand.battery.voltage();
