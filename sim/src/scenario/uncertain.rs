@@ -257,8 +257,8 @@ pub const QUANTITIES: &[Quantity] = &[
         key: "vehicle.motor_tau_s",
         all: Some(Spread::Within(0.04, 0.10)),
         calibration: Some(Calibration {
-            by: "step of thrust on a scale ([tuning](tuning.md), 4)",
-            error: Spread::Times(0.85, 1.15),
+            by: "`bringup`'s step `lag`, by sound ([lag](calibration.md#lag-of-the-motors)), the mean of rise and fall",
+            error: Spread::Times(0.9, 1.1),
             apart: false,
             demanded: false,
         }),
@@ -266,8 +266,14 @@ pub const QUANTITIES: &[Quantity] = &[
         source: "0.0125 up and 0.025 s down (RotorS, a small one) to 0.17 s (2212-920, 9450, 30 A on PWM: \
                  CrissCCL/DIY_UAV_Motor_System_Identification)",
         truth: |s| vec![s.vehicle.rotor.spin.up],
-        assumed: |s| vec![s.params.motor_tau.into()],
-        learn: |s, n| set([&mut s.params.motor_tau], n),
+        assumed: |s| vec![f64::from(s.params.motor_tau) / mean_over_rise(s)],
+        learn: |s, n| {
+            let mean = mean_over_rise(s);
+            set(
+                [&mut s.params.motor_tau],
+                &n.iter().map(|n| n * mean).collect::<Vec<_>>(),
+            );
+        },
         ..FIXED
     },
     Quantity {
@@ -1008,6 +1014,12 @@ pub const QUANTITIES: &[Quantity] = &[
 /// Mean of an arm's numbers each.
 fn mean(numbers: &[f64]) -> f64 {
     numbers.iter().sum::<f64>() / numbers.len().max(1) as f64
+}
+
+/// Mean of a motor's lags up and down over the one up; at least 1, as `sophie_fit::motor_lag` takes it.
+fn mean_over_rise(s: &Scenario) -> f64 {
+    let spin = s.vehicle.rotor.spin;
+    0.5 * (1.0 + spin.down.map_or(1.0, |down| (down / spin.up).max(1.0)))
 }
 
 /// Thrust at full drive that the arms receive on the scenario's day over that of the nominal rotor in the standard's air.

@@ -132,6 +132,14 @@ pub struct FitThrustArgs {
     pub nominal: f64,
 }
 
+/// Options of `fit-lag`.
+#[derive(Args, Debug)]
+pub struct FitLagArgs {
+    /// Recording of the steps.
+    #[arg(value_name = "SOUND.wav")]
+    pub sound: PathBuf,
+}
+
 fn nominal(text: &str) -> Result<f64, String> {
     within(text, &(6.0..=52.0), " V")
 }

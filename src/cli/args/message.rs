@@ -8,7 +8,7 @@ use sophie_terminal::console;
 use crate::cli::refuse;
 
 /// The subcommands, as listed in messages.
-const VERBS: [&str; 11] = [
+const VERBS: [&str; 12] = [
     "fly",
     "check",
     "bringup",
@@ -18,6 +18,7 @@ const VERBS: [&str; 11] = [
     "paper",
     "fit-arm",
     "fit-thrust",
+    "fit-lag",
     "timing",
     "recording",
 ];
@@ -65,6 +66,7 @@ impl Message {
                 Some("paper" | "capture") => "no file",
                 Some("study") => "one study and no file",
                 Some("fit-arm" | "fit-thrust") => "one CSV file",
+                Some("fit-lag") => "one WAV file",
                 Some("recording") => "one recording",
                 Some("timing") => "one log file",
                 Some("params") => "one parameter file",

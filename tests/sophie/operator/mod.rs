@@ -3,6 +3,7 @@
 mod board;
 mod bringup;
 mod interruption;
+mod lag;
 mod params;
 #[cfg(target_os = "linux")]
 mod serial;

@@ -42,7 +42,7 @@ const OVER: &str = "refused: this run has ended";
 
 /// What is known of a run at its end.
 #[derive(Default)]
-struct Averages {
+pub(super) struct Averages {
     volts: Vec<f64>,
     tilts: Vec<[f64; 4]>,
 }
@@ -98,13 +98,13 @@ pub(super) fn thrust(walk: &mut Walk<'_>, _: &Step) -> Judged {
 }
 
 /// The builder's word that the vehicle is tied down; the vehicle's reason if it refuses.
-fn tied_down(walk: &mut Walk<'_>) -> Result<Option<String>, Stop> {
+pub(super) fn tied_down(walk: &mut Walk<'_>) -> Result<Option<String>, Stop> {
     while walk.ask("Type tied once it is tied down, propellers on, everyone away:")? != "tied" {}
     walk.order(MavCmd::MAV_CMD_USER_1, &[2.0])
 }
 
 /// A number that grows from session to session: ten a second, within what a float counts.
-fn first_run() -> u32 {
+pub(super) fn first_run() -> u32 {
     let since = std::time::SystemTime::now()
         .duration_since(std::time::UNIX_EPOCH)
         .unwrap_or_default();
@@ -131,7 +131,12 @@ fn battery(
                 break None;
             }
             *run += 1;
-            match one(walk, rotor, percent, *run)? {
+            let rotors = rotor.map_or(Rotors::All, Rotors::One);
+            match one(
+                walk,
+                &StaticThrustTest::steady(rotors, (0.01 * percent) as f32),
+                *run,
+            )? {
                 Ok(averages) => {
                     if let Some(reading) = read(walk, params, rotor, percent, &averages)? {
                         break Some(reading);
@@ -150,17 +155,19 @@ fn battery(
     Ok(())
 }
 
-/// Runs `rotor`, or all, at `percent` of full drive as run number `run`; why it ended early, or what was measured.
-fn one(
+/// Runs `test` as run number `run`; why it ended early, or what was measured.
+pub(super) fn one(
     walk: &mut Walk<'_>,
-    rotor: Option<usize>,
-    percent: f64,
+    test: &StaticThrustTest,
     run: u32,
 ) -> Result<Result<Averages, String>, Stop> {
-    let test = StaticThrustTest::steady(rotor.map_or(Rotors::All, Rotors::One), (0.01 * percent) as f32);
     let length_ms = (1e3 * test.longest()) as u32;
-    let number = rotor.map_or(0.0, |rotor| (rotor + 1) as f32);
-    let order = [number, percent as f32, 0.0, test.hold, run as f32];
+    let number = match test.rotors {
+        Rotors::All => 0.0,
+        Rotors::One(rotor) => (rotor + 1) as f32,
+    };
+    let step_to = 100.0 * test.step_to.unwrap_or_default();
+    let order = [number, 100.0 * test.drive, step_to, test.hold, run as f32];
     walk.vehicle
         .stream(&[SYS_STATUS_DATA::ID, SOPHIE_ARMS_DATA::ID], PERIOD_US)?;
     let ended = renewed(walk, &order, length_ms);

@@ -20,7 +20,9 @@ const LATE: f64 = 0.06;
 /// Standard error of a median over that of a mean.
 const MEDIAN: f64 = 1.25;
 /// What the window's model leaves: s, and share of the lag (tests/lag.rs).
-const SYSTEMATIC: (f64, f64) = (0.003, 0.03);
+const SYSTEMATIC: (f64, f64) = (0.004, 0.04);
+/// The same of a fall faster than the window is long, s: the louder tones before it hide its end.
+const HIDDEN: f64 = 0.35 * WINDOW;
 /// Parts of a hop into which the model is divided.
 const FINE: usize = 4;
 
@@ -47,9 +49,13 @@ pub struct MotorLag {
 }
 
 impl MotorLag {
-    /// The one lag that the stack takes: the mean of both, since a loop about hover speeds up and slows down alike.
+    /// The one lag that the stack takes (`motor_tau`): the mean of both, since a loop about hover speeds up and slows down
+    /// alike; never less than the rise, which is heard more exactly.
     #[must_use]
-    pub fn mean(&self) -> Lag {
+    pub fn lag(&self) -> Lag {
+        if self.down.tau < self.up.tau {
+            return self.up;
+        }
         Lag {
             tau: 0.5 * (self.up.tau + self.down.tau),
             half: 0.5 * self.up.half.hypot(self.down.half),
@@ -122,7 +128,11 @@ pub fn fit(track: &Track, hold: f64) -> Result<MotorLag, String> {
     }
     let of = |odd: usize| {
         let taus: Vec<f64> = steps.iter().skip(1 - odd).step_by(2).map(|s| s.tau).collect();
-        lag(&taus)
+        let mut found = lag(&taus);
+        if odd == 0 && found.tau < WINDOW {
+            found.half = found.half.hypot(HIDDEN);
+        }
+        found
     };
     Ok(MotorLag {
         up: of(1),

@@ -56,7 +56,11 @@ impl Sound {
         Self::of_wav(&bytes).map_err(complaint)
     }
 
-    fn of_wav(bytes: &[u8]) -> Result<Self, String> {
+    /// A recording in the bytes of a WAV file.
+    ///
+    /// # Errors
+    /// As [`Sound::load`], without the file's name.
+    pub fn of_wav(bytes: &[u8]) -> Result<Self, String> {
         let refused = |error: hound::Error| format!("is no WAV file that can be read: {error}");
         let mut reader = hound::WavReader::new(bytes).map_err(refused)?;
         let spec = reader.spec();
