@@ -2,3 +2,6 @@
 
 pub mod arm_stand;
 pub mod flight_level;
+pub mod phone;
+pub mod scale;
+pub mod thrust_stand;

@@ -5,7 +5,6 @@ use sophie_control::gripper::tendon::Reel;
 use sophie_control::params::Params;
 
 use super::{ROOM, Scenario};
-use crate::plant::rotor::STANDARD_DENSITY;
 use crate::plant::tendon::{ServoSpec, TendonSpec};
 use crate::sensors::fsr::FsrErrors;
 
@@ -157,8 +156,9 @@ pub const QUANTITIES: &[Quantity] = &[
         key: "vehicle.thrust_max_n",
         all: Some(Spread::Times(0.9, 1.12)),
         calibration: Some(Calibration {
-            by: "throttle in hover ([tuning](tuning.md), 1), with the day's air and the four rotors' mean",
-            error: Spread::Times(0.95, 1.05),
+            by: "`bringup`'s step `thrust` ([static thrust](calibration.md#static-thrust)), with the day's air and the four \
+                 rotors' mean; by the throttle in hover alone ([tuning](tuning.md), 1) 5 %",
+            error: Spread::Times(0.98, 1.02),
             apart: false,
             demanded: false,
         }),
@@ -178,9 +178,35 @@ pub const QUANTITIES: &[Quantity] = &[
     Quantity {
         key: "vehicle.rotor_thrust",
         each: Some(Spread::Times(0.95, 1.05)),
+        calibration: Some(Calibration {
+            by: "`bringup`'s step `thrust`",
+            error: Spread::Times(0.985, 1.015),
+            apart: true,
+            demanded: false,
+        }),
+        exact: true,
         source: "propellers and motors of one kind (assumed)",
         truth: |s| s.vehicle.rotor_thrust.to_vec(),
-        assumed: |s| vec![mean(&s.vehicle.rotor_thrust); 4],
+        assumed: |s| {
+            // What is common to the four is part of `thrust_max`.
+            let (p, mean) = (&s.params, mean(&s.vehicle.rotor_thrust));
+            [p.thrust_trim_1, p.thrust_trim_2, p.thrust_trim_3, p.thrust_trim_4]
+                .map(|trim| f64::from(trim) * mean)
+                .to_vec()
+        },
+        learn: |s, n| {
+            let mean = mean(n);
+            let (p, shares) = (&mut s.params, n.iter().map(|n| n / mean).collect::<Vec<_>>());
+            set(
+                [
+                    &mut p.thrust_trim_1,
+                    &mut p.thrust_trim_2,
+                    &mut p.thrust_trim_3,
+                    &mut p.thrust_trim_4,
+                ],
+                &shares,
+            );
+        },
         ..FIXED
     },
     Quantity {
@@ -193,9 +219,17 @@ pub const QUANTITIES: &[Quantity] = &[
     Quantity {
         key: "vehicle.thrust_voltage_power",
         all: Some(Spread::Within(1.5, 2.0)),
+        calibration: Some(Calibration {
+            by: "`bringup`'s step `thrust`, with a fresh battery and a used one",
+            error: Spread::Plus(-0.11, 0.11),
+            apart: false,
+            demanded: false,
+        }),
+        exact: true,
         source: "1.7 in recordings of others' flights; the stack takes 2",
         truth: |s| s.vehicle.rotor.voltage_power.into_iter().collect(),
-        assumed: |_| vec![2.0],
+        assumed: |s| vec![s.params.thrust_volt_exp.into()],
+        learn: |s, n| set([&mut s.params.thrust_volt_exp], n),
         ..FIXED
     },
     Quantity {
@@ -223,8 +257,8 @@ pub const QUANTITIES: &[Quantity] = &[
         key: "vehicle.motor_tau_s",
         all: Some(Spread::Within(0.04, 0.10)),
         calibration: Some(Calibration {
-            by: "step of thrust on a scale ([tuning](tuning.md), 4)",
-            error: Spread::Times(0.85, 1.15),
+            by: "`bringup`'s step `lag`, by sound ([lag](calibration.md#lag-of-the-motors)), the mean of rise and fall",
+            error: Spread::Times(0.9, 1.1),
             apart: false,
             demanded: false,
         }),
@@ -232,8 +266,14 @@ pub const QUANTITIES: &[Quantity] = &[
         source: "0.0125 up and 0.025 s down (RotorS, a small one) to 0.17 s (2212-920, 9450, 30 A on PWM: \
                  CrissCCL/DIY_UAV_Motor_System_Identification)",
         truth: |s| vec![s.vehicle.rotor.spin.up],
-        assumed: |s| vec![s.params.motor_tau.into()],
-        learn: |s, n| set([&mut s.params.motor_tau], n),
+        assumed: |s| vec![f64::from(s.params.motor_tau) / mean_over_rise(s)],
+        learn: |s, n| {
+            let mean = mean_over_rise(s);
+            set(
+                [&mut s.params.motor_tau],
+                &n.iter().map(|n| n * mean).collect::<Vec<_>>(),
+            );
+        },
         ..FIXED
     },
     Quantity {
@@ -976,10 +1016,16 @@ fn mean(numbers: &[f64]) -> f64 {
     numbers.iter().sum::<f64>() / numbers.len().max(1) as f64
 }
 
-/// Thrust that the arms receive on the scenario's day over that of the nominal rotor in the standard's air.
+/// Mean of a motor's lags up and down over the one up; at least 1, as `sophie_fit::motor_lag` takes it.
+fn mean_over_rise(s: &Scenario) -> f64 {
+    let spin = s.vehicle.rotor.spin;
+    0.5 * (1.0 + spin.down.map_or(1.0, |down| (down / spin.up).max(1.0)))
+}
+
+/// Thrust at full drive that the arms receive on the scenario's day over that of the nominal rotor in the standard's air.
 fn received(s: &Scenario) -> f64 {
     let v = &s.vehicle;
-    s.world.air.density / STANDARD_DENSITY * mean(&v.rotor_thrust) * (1.0 - v.air.wash.loss)
+    v.rotor.air_ratio(s.world.air.density) * mean(&v.rotor_thrust) * (1.0 - v.air.wash.loss)
 }
 
 /// Elastic slope of the stack's arm without thrust over that of the nominal one.

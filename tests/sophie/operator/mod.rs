@@ -3,9 +3,11 @@
 mod board;
 mod bringup;
 mod interruption;
+mod lag;
 mod params;
 #[cfg(target_os = "linux")]
 mod serial;
+mod thrust;
 mod wire;
 
 use std::process::{Child, Command};

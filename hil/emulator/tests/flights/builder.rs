@@ -8,6 +8,8 @@ use sophie_control::calibration::Face;
 use sophie_control::params::Params;
 use sophie_control::pilot::rc::{ArmChoice, StickMode, Sticks};
 use sophie_emulator::bench_operator::{BenchOperator, Handling};
+use sophie_sim::streams::Streams;
+use sophie_sim::test_stands::scale::Scale;
 
 /// Time of the board until a change of handling has passed turn and filters, ms.
 const SETTLED: u64 = 800;
@@ -19,6 +21,12 @@ const WEIGHT: f64 = 1.3;
 const BENT: f64 = 0.3;
 /// On a pad under a thumb, Pa.
 const THUMB: f64 = 900.0;
+
+/// Charge of the used battery, share.
+const USED: f64 = 0.35;
+/// RMS of what a person reads at a scale under rotors, share, and looks at it that count.
+const FLUCTUATION: f64 = 0.01;
+const SHOWN: usize = 5;
 
 /// A change of handling and its duration, ms of the board's time.
 struct Move {
@@ -41,6 +49,11 @@ pub(super) struct Builder {
     marks: VecDeque<&'static str>,
     servo_marks: Vec<f64>,
     turned: Vec<Option<usize>>,
+    /// Skips every other step.
+    only: Option<&'static str>,
+    /// The kitchen scale, and what it has shown while rotors ran, N.
+    scale: Scale,
+    lifts: Vec<f64>,
 }
 
 impl Builder {
@@ -56,6 +69,17 @@ impl Builder {
             marks: VecDeque::new(),
             servo_marks: Vec::new(),
             turned: Vec::new(),
+            only: None,
+            scale: Scale::new(Streams::new(1)),
+            lifts: Vec::new(),
+        }
+    }
+
+    /// Skips every other step than `only`.
+    pub(super) fn at(operator: BenchOperator, only: &'static str) -> Self {
+        Self {
+            only: Some(only),
+            ..Self::new(operator, None)
         }
     }
 
@@ -140,6 +164,9 @@ impl Builder {
         if self.until == Some(&*self.step) {
             return "q";
         }
+        if self.only.is_some_and(|only| only != self.step) {
+            return "s";
+        }
         self.moves = None;
         self.marks = ["-92", "", "+185", ""].into();
         let on = matches!(&*self.step, "radio" | "final");
@@ -147,6 +174,7 @@ impl Builder {
             held.below = Face::Belly;
             held.bent = [0.0; 4];
             held.sticks = on.then(Sticks::default);
+            held.tied = false;
         });
         ""
     }
@@ -171,6 +199,16 @@ impl Builder {
                 return pulse;
             }
         }
+    }
+
+    /// What the scale showed at the end of a run, g.
+    fn weighs(&mut self) -> String {
+        // The last half second before the rotors stop.
+        let from = self.lifts.len().saturating_sub(SHOWN);
+        let last = self.lifts.split_off(from);
+        self.lifts.clear();
+        let lift = last.iter().sum::<f64>() / last.len().max(1) as f64;
+        format!("{:.0}", self.scale.read(lift, FLUCTUATION))
     }
 
     fn which_turned(&mut self) -> String {
@@ -201,6 +239,15 @@ impl Builder {
         } else if begins("And down again") {
             self.does(|held| held.height = 0.0);
             String::new()
+        } else if begins("Type tied") {
+            self.operator.change(|held| held.tied = true);
+            "tied".to_owned()
+        } else if begins("A used battery") {
+            self.operator.change(|held| held.battery = Some(USED));
+            self.settles();
+            "u".to_owned()
+        } else if begins("What the scale showed") {
+            self.weighs()
         } else if begins("Type off") {
             "off".to_owned()
         } else if begins("Volts") {
@@ -284,6 +331,10 @@ impl User for Builder {
     }
 
     fn live(&mut self, line: &str) {
+        if self.step == "thrust" {
+            self.lifts.push(self.operator.observe().lift);
+            return;
+        }
         self.notes(&format!("{line}\n"));
     }
 
@@ -295,6 +346,9 @@ impl User for Builder {
     }
 
     fn answered(&mut self) -> Option<Reply> {
+        if self.step == "thrust" {
+            return None;
+        }
         let now = self.operator.observe().ms;
         let id = self.step.clone();
         let moves = self.moves.get_or_insert_with(|| live(&id));
