@@ -127,6 +127,7 @@ fn charged(scenario: &Scenario, charge: f64) -> Battery {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plant::{Actuators, Plant};
 
     #[test]
     fn the_nominal_vehicle_shows_its_rotors_thrust_at_the_voltage_under_load() {
@@ -148,5 +149,34 @@ mod tests {
         assert!(all.voltage < before - 0.2, "{} {before}", all.voltage);
         stand.rest(10.0);
         assert!(stand.thrust().iter().all(|thrust| *thrust < 1e-3));
+    }
+
+    #[test]
+    fn the_whole_plant_tied_down_shows_its_rotors_static_thrust_and_takes_a_used_battery() {
+        let scenario = Scenario::default_mission();
+        let mut plant = scenario.plant();
+        let actuators = Actuators {
+            motors: [0.8; 4],
+            ..Actuators::default()
+        };
+        let run = |plant: &mut Plant| {
+            for _ in 0..4000 {
+                plant.step(&actuators);
+                plant.tie(1.0);
+            }
+            let expected = scenario.vehicle.rotor.steady_thrust(0.8, plant.battery_voltage());
+            let lift: f64 = plant.tilt().map(|tilt| expected * libm::cos(tilt)).iter().sum();
+            assert!(
+                (plant.lift() / lift - 1.0).abs() < 0.005,
+                "{} {lift}",
+                plant.lift()
+            );
+            assert!((plant.pose().position.z + 1.0).abs() < 1e-9);
+            plant.battery_voltage()
+        };
+        let fresh = run(&mut plant);
+        plant.change_battery(0.35);
+        let used = run(&mut plant);
+        assert!(used < fresh - 0.5, "{used} {fresh}");
     }
 }

@@ -90,7 +90,7 @@ impl Builder {
     }
 
     /// His computer goes away.
-    pub(super) fn is_killed(mut self) {
+    pub(super) fn loses_the_computer(mut self) {
         self.child.kill().unwrap();
         self.child.wait().unwrap();
     }

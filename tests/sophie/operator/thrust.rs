@@ -181,7 +181,7 @@ fn the_arm_switch_enter_and_a_lost_station_stop_the_rotors() {
     builder.at("Enter runs all rotors at 45 %", "");
     board.pass(2.0);
     assert!(turns(&board));
-    builder.is_killed();
+    builder.loses_the_computer();
     board.pass(2.0);
     assert!(!turns(&board));
 }
