@@ -166,6 +166,18 @@ pub enum MavCmd {
     #[doc = "| --------- | ----------- | ------ |"]
     #[doc = "| 1 (Confirm)| 1.          | 1 .. 1 |"]
     MAV_CMD_SOPHIE_SET_BROWN_OUT = 53002,
+    #[doc = "Runs rotors with propellers on, the vehicle tied down. Sent again with the same run at least once a second, or the run ends; a run that has ended does not begin again."]
+    #[doc = ""]
+    #[doc = "# Parameters"]
+    #[doc = ""]
+    #[doc = "| Parameter | Description | Values | Units |"]
+    #[doc = "| --------- | ----------- | ------ | ----- |"]
+    #[doc = "| 1 (Rotor) | 1 to 4; 0 for all.| 0 .. 4 |  |"]
+    #[doc = "| 2 (Drive) | Share of full drive, 5 at least; 0 ends the run.| 0 .. 100 | % |"]
+    #[doc = "| 3 (Other drive)| Five steps to this drive and back, 50 away at most; 0: steady.| 0 .. 100 | % |"]
+    #[doc = "| 4 (Time)  | Time at each drive, 0.5 to 10, of steps 2 at most; 0: 5, of steps 1.| 0 .. 10 | s |"]
+    #[doc = "| 5 (Run)   | Number of the run, another one for each.| &ge; 1 |  |"]
+    MAV_CMD_SOPHIE_STATIC_THRUST = 53003,
 }
 impl MavCmd {
     pub const DEFAULT: Self = Self::MAV_CMD_DO_SET_SERVO;
