@@ -5,6 +5,7 @@
 use embassy_time::{Duration, Instant};
 use sophie_control::attitude::motion::Motion;
 use sophie_control::gripper::tendon::ForceLimit;
+use sophie_control::maths::scalar::GRAVITY;
 use sophie_control::mode::{Inputs, Mode, ModeLogic, Outputs};
 use sophie_control::navigation::flow_range::FlowRangeLimit;
 use sophie_control::vibration::{VibrationMeter, VibrationWatch};
@@ -127,6 +128,9 @@ fn collect(links: &Links, late: bool) -> Inputs {
     }
 }
 
+/// Lift of rotors that carry the vehicle, share of its weight: they idle at less.
+const FLIES: f32 = 0.5;
+
 /// Vibration at the inertial sensor.
 struct Shaking {
     meter: VibrationMeter,
@@ -151,8 +155,9 @@ impl Shaking {
         links.raw_forces.take(&mut self.seen, |force| {
             second = meter.take(force).or(second);
         });
-        let turning = links.mix.fresh_to(now, |mix| mix.running).unwrap_or(false);
-        self.watch.step(turning, second.as_ref());
+        let least = FLIES * links.params.mass * GRAVITY;
+        let flies = links.mix.fresh_to(now, |mix| mix.lift() > least);
+        self.watch.step(flies.unwrap_or(false), second.as_ref());
         if let Some(second) = second {
             links.vibration.send(now, second);
         }
