@@ -3,7 +3,9 @@
 
 pub mod arm;
 pub mod arm_data;
+pub mod arm_table;
 pub mod csv;
 pub mod least_squares;
 pub mod tendon;
 pub mod tendon_data;
+pub mod twist;
