@@ -2,3 +2,5 @@
 
 pub mod arm_stand;
 pub mod flight_level;
+pub mod scale;
+pub mod thrust_stand;

@@ -146,6 +146,7 @@ impl Scenario {
             vehicle: Vehicle::default(),
             known: Known::default(),
             params: Params::default(),
+            measured: Measured::default(),
             mixer: Variant::Flexible,
             arms: ArmChoice::All,
             judge: Rule::default(),

@@ -5,7 +5,6 @@ use sophie_control::gripper::tendon::Reel;
 use sophie_control::params::Params;
 
 use super::{ROOM, Scenario};
-use crate::plant::rotor::STANDARD_DENSITY;
 use crate::plant::tendon::{ServoSpec, TendonSpec};
 use crate::sensors::fsr::FsrErrors;
 
@@ -157,8 +156,9 @@ pub const QUANTITIES: &[Quantity] = &[
         key: "vehicle.thrust_max_n",
         all: Some(Spread::Times(0.9, 1.12)),
         calibration: Some(Calibration {
-            by: "throttle in hover ([tuning](tuning.md), 1), with the day's air and the four rotors' mean",
-            error: Spread::Times(0.95, 1.05),
+            by: "`bringup`'s step `thrust` ([static thrust](calibration.md#static-thrust)), with the day's air and the four \
+                 rotors' mean; by the throttle in hover alone ([tuning](tuning.md), 1) 5 %",
+            error: Spread::Times(0.98, 1.02),
             apart: false,
             demanded: false,
         }),
@@ -178,9 +178,35 @@ pub const QUANTITIES: &[Quantity] = &[
     Quantity {
         key: "vehicle.rotor_thrust",
         each: Some(Spread::Times(0.95, 1.05)),
+        calibration: Some(Calibration {
+            by: "`bringup`'s step `thrust`",
+            error: Spread::Times(0.985, 1.015),
+            apart: true,
+            demanded: false,
+        }),
+        exact: true,
         source: "propellers and motors of one kind (assumed)",
         truth: |s| s.vehicle.rotor_thrust.to_vec(),
-        assumed: |s| vec![mean(&s.vehicle.rotor_thrust); 4],
+        assumed: |s| {
+            // What is common to the four is part of `thrust_max`.
+            let (p, mean) = (&s.params, mean(&s.vehicle.rotor_thrust));
+            [p.thrust_trim_1, p.thrust_trim_2, p.thrust_trim_3, p.thrust_trim_4]
+                .map(|trim| f64::from(trim) * mean)
+                .to_vec()
+        },
+        learn: |s, n| {
+            let mean = mean(n);
+            let (p, shares) = (&mut s.params, n.iter().map(|n| n / mean).collect::<Vec<_>>());
+            set(
+                [
+                    &mut p.thrust_trim_1,
+                    &mut p.thrust_trim_2,
+                    &mut p.thrust_trim_3,
+                    &mut p.thrust_trim_4,
+                ],
+                &shares,
+            );
+        },
         ..FIXED
     },
     Quantity {
@@ -193,9 +219,17 @@ pub const QUANTITIES: &[Quantity] = &[
     Quantity {
         key: "vehicle.thrust_voltage_power",
         all: Some(Spread::Within(1.5, 2.0)),
+        calibration: Some(Calibration {
+            by: "`bringup`'s step `thrust`, with a fresh battery and a used one",
+            error: Spread::Plus(-0.11, 0.11),
+            apart: false,
+            demanded: false,
+        }),
+        exact: true,
         source: "1.7 in recordings of others' flights; the stack takes 2",
         truth: |s| s.vehicle.rotor.voltage_power.into_iter().collect(),
-        assumed: |_| vec![2.0],
+        assumed: |s| vec![s.params.thrust_volt_exp.into()],
+        learn: |s, n| set([&mut s.params.thrust_volt_exp], n),
         ..FIXED
     },
     Quantity {
@@ -370,8 +404,21 @@ pub const QUANTITIES: &[Quantity] = &[
     Quantity {
         key: "vehicle.arm_torsion",
         all: Some(Spread::Within(0.5, 2.0)),
+        calibration: Some(Calibration {
+            by: "`sophie bringup`, step `twist` ([arms](calibration.md#arms)), for `sophie check`; no parameter has it",
+            error: Spread::Times(0.93, 1.07),
+            apart: false,
+            demanded: false,
+        }),
+        exact: true,
         source: "derived of a square section; infill and skin share it differently (assumed)",
         truth: |s| vec![s.vehicle.arm_torsion],
+        assumed: |s| vec![s.measured.arm_torsion],
+        learn: |s, n| {
+            if let [torsion] = n {
+                s.measured.arm_torsion = *torsion;
+            }
+        },
         ..FIXED
     },
     Quantity {
@@ -976,10 +1023,10 @@ fn mean(numbers: &[f64]) -> f64 {
     numbers.iter().sum::<f64>() / numbers.len().max(1) as f64
 }
 
-/// Thrust that the arms receive on the scenario's day over that of the nominal rotor in the standard's air.
+/// Thrust at full drive that the arms receive on the scenario's day over that of the nominal rotor in the standard's air.
 fn received(s: &Scenario) -> f64 {
     let v = &s.vehicle;
-    s.world.air.density / STANDARD_DENSITY * mean(&v.rotor_thrust) * (1.0 - v.air.wash.loss)
+    v.rotor.air_ratio(s.world.air.density) * mean(&v.rotor_thrust) * (1.0 - v.air.wash.loss)
 }
 
 /// Elastic slope of the stack's arm without thrust over that of the nominal one.

@@ -8,4 +8,6 @@ pub mod csv;
 pub mod least_squares;
 pub mod tendon;
 pub mod tendon_data;
+pub mod thrust;
+pub mod thrust_data;
 pub mod twist;

@@ -23,7 +23,8 @@ pub struct ArmReading {
 /// Inputs besides the demand.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Surroundings {
-    /// Last battery voltage over nominal, of any age; `None` means nominal.
+    /// [`voltage_ratio`](crate::allocation::thrust_curve::voltage_ratio) of the last battery voltage, of any age; `None`
+    /// means nominal.
     pub battery_ratio: Option<f32>,
     /// Last reading of the arms' sensors, `None` where too old; taken readings may be omitted.
     pub arms: Option<ArmReading>,

@@ -100,8 +100,19 @@ params! {
     torque_ratio = 0.016, "m", 0.005 ..= 0.05;
     /// Time constant of motor and propeller (assumed).
     motor_tau = 0.05, "s", 0.005 ..= 0.3;
-    /// Share of the thrust that grows with the square of the command; the rest is linear (assumed).
+    /// Share of the thrust that grows with the square of the command; the rest is linear (assumed; of your own rotors from
+    /// `bringup --again thrust`).
     thrust_curve = 0.75, "1", 0.0 ..= 1.0;
+    /// Power of the battery's voltage with which the thrust at a command goes (assumed, that of a motor without losses).
+    thrust_volt_exp = 2.0, "1", 1.0 ..= 2.5;
+    /// Thrust of rotor 1 at a command over the mean of the four.
+    thrust_trim_1 = 1.0, "1", 0.7 ..= 1.3;
+    /// Thrust of rotor 2 at a command over the mean of the four.
+    thrust_trim_2 = 1.0, "1", 0.7 ..= 1.3;
+    /// Thrust of rotor 3 at a command over the mean of the four.
+    thrust_trim_3 = 1.0, "1", 0.7 ..= 1.3;
+    /// Thrust of rotor 4 at a command over the mean of the four.
+    thrust_trim_4 = 1.0, "1", 0.7 ..= 1.3;
 
     /// Motor protocol: 150, 300 or 600 for DShot, 400 for pulses, at most 400 a second, 125 for OneShot125.
     /// Read by the board at start-up; the paper's controllers take 400.
