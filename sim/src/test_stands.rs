@@ -4,3 +4,4 @@ pub mod arm_stand;
 pub mod flight_level;
 pub mod scale;
 pub mod thrust_stand;
+pub mod twist_stand;

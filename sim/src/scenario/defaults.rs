@@ -6,8 +6,8 @@ use sophie_control::pilot::rc::ArmChoice;
 use sophie_mixers::Variant;
 
 use super::{
-    Assist, Assumed, Expect, Faults, Known, Overrides, Pilot, ROOM, Rule, Scenario, Sensors, Servos, Tendons,
-    Vehicle, World,
+    Assist, Assumed, Expect, Faults, Known, Measured, Overrides, Pilot, ROOM, Rule, Scenario, Sensors,
+    Servos, Tendons, Vehicle, World,
 };
 use crate::plant::air::wind::WindSpec;
 use crate::plant::air::{AirSpec, AirframeSpec};

@@ -406,7 +406,7 @@ pub const QUANTITIES: &[Quantity] = &[
         all: Some(Spread::Within(0.5, 2.0)),
         calibration: Some(Calibration {
             by: "`sophie bringup`, step `twist` ([arms](calibration.md#arms)), for `sophie check`; no parameter has it",
-            error: Spread::Times(0.93, 1.07),
+            error: Spread::Times(0.96, 1.04),
             apart: false,
             demanded: false,
         }),

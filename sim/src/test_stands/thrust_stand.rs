@@ -8,7 +8,6 @@ use sophie_control::pilot::static_thrust_test::{Rotors, StaticThrustTest};
 
 use super::scale::Scale;
 use crate::normal::StandardNormal;
-use crate::plant::arm_spec;
 use crate::plant::battery::Battery;
 use crate::plant::hinged::link::ArmSpec;
 use crate::plant::rotor::Rotor;
@@ -56,7 +55,7 @@ impl ThrustStand {
         let rotor = |i: usize| Rotor::new(i, 1.0, v.rotor).in_air(v.rotor_thrust[i], density);
         Self {
             rotors: core::array::from_fn(rotor),
-            arms: core::array::from_fn(|arm| arm_spec(scenario, arm)),
+            arms: core::array::from_fn(|arm| scenario.arm_spec(arm)),
             battery: charged(scenario, v.battery_charge),
             loss: v.air.wash.loss,
             scale: Scale::new(streams),
@@ -95,6 +94,12 @@ impl ThrustStand {
         }
     }
 
+    /// The same, and the thrust of each rotor that its arm carried then, N.
+    pub fn run_of_arms(&mut self, rotors: Rotors, drive: f64) -> (PerArm<f64>, Reading) {
+        let read = self.run(rotors, drive);
+        (self.thrust(), read)
+    }
+
     fn step(&mut self, commands: PerArm<f64>) {
         let voltage = self.battery.voltage();
         for (rotor, command) in self.rotors.iter_mut().zip(commands) {
@@ -116,7 +121,7 @@ impl ThrustStand {
     /// Force on the scale, N.
     fn lift(&self) -> f64 {
         let arms = self.thrust().into_iter().zip(self.tilt());
-        arms.map(|(thrust, tilt)| thrust * tilt.cos()).sum()
+        arms.map(|(thrust, tilt)| thrust * libm::cos(tilt)).sum()
     }
 }
 
@@ -135,7 +140,7 @@ mod tests {
         let mut stand = ThrustStand::new(&scenario, Streams::new(1));
         let one = stand.run(Rotors::One(2), 0.6);
         let expected = scenario.vehicle.rotor.steady_thrust(0.6, one.voltage);
-        let tilt = arm_spec(&scenario, 2).static_tilt(expected);
+        let tilt = scenario.arm_spec(2).static_tilt(expected);
         let share = one.grams * 9.806_65e-3 / (expected * tilt.cos());
         assert!((share - 1.0).abs() < 0.04, "{share}");
         let before = stand.battery.voltage();

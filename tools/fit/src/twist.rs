@@ -16,9 +16,9 @@ use super::least_squares::{quantile, solve};
 
 /// Standard gravity, m/s².
 const GRAVITY: f64 = 9.806_65;
-/// Half of the 95 % interval of the moment, share: a lever of 0.1 m by a ruler 2 %, weights by a kitchen scale 2 %, the
-/// tip's slope 2 %.
-pub const MOMENT_ERROR: f64 = 0.035;
+/// Half of the 95 % interval of the moment, share: a lever of 0.1 m by a ruler to 2 mm, weights by a kitchen scale, the
+/// tip's slope.
+pub const MOMENT_ERROR: f64 = 0.02;
 /// Largest scatter of sound readings about the line, degrees: a phone reads to 0.1°, laid on again to 0.3°.
 pub const SCATTER_MAX: f64 = 1.0;
 /// Length of an arm, m, and its torsional over its bending stiffness, G J / E I of a square section with ν = 0.5: those
@@ -152,7 +152,11 @@ mod tests {
 
     #[test]
     fn what_shows_no_stiffness_is_refused() {
-        assert!(fit(&bench(0.3, 0.0)[..3], 0.0).unwrap_err().contains("at least 4"));
+        assert!(
+            fit(&bench(0.3, 0.0)[..3], 0.0)
+                .unwrap_err()
+                .contains("at least 4")
+        );
         let same = [Reading {
             mass: 0.03,
             lever: 0.1,
