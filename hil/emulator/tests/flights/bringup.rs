@@ -123,7 +123,7 @@ fn a_new_board_is_brought_up_through_all_steps() {
     let said = builder.said();
     assert_eq!(all_passed, Ok(true), "{said}\n{log}");
     let protocol = folder.read();
-    assert_eq!(protocol["state"].as_str(), Some("all 28 steps passed"));
+    assert_eq!(protocol["state"].as_str(), Some("all 29 steps passed"));
     assert!(protocol["firmware"].as_str().unwrap().ends_with(" on matek-h743"));
     assert!(
         protocol["build"].as_str().unwrap().starts_with("build "),
@@ -147,6 +147,13 @@ fn a_new_board_is_brought_up_through_all_steps() {
             "fsr_trim_{sensor} {trim}"
         );
     }
+    let twist = figures(step("twist"));
+    let torsion = twist
+        .split("vehicle.arm_torsion = ")
+        .nth(1)
+        .and_then(|rest| rest.split(' ').next());
+    let torsion: f64 = torsion.unwrap_or_default().parse().unwrap();
+    assert!((torsion - 1.0).abs() < 0.05, "{twist}");
     assert!(
         figures(step("final")).contains("\nnothing forbids arming\n")
             && !figures(step("final")).contains("FAIL"),

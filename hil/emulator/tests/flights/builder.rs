@@ -8,6 +8,10 @@ use sophie_control::calibration::Face;
 use sophie_control::params::Params;
 use sophie_control::pilot::rc::{ArmChoice, StickMode, Sticks};
 use sophie_emulator::bench_operator::{BenchOperator, Handling};
+use sophie_sim::streams::Streams;
+use sophie_sim::test_stands::twist_stand::TwistStand;
+
+use super::scenario;
 
 /// Time of the board until a change of handling has passed turn and filters, ms.
 const SETTLED: u64 = 800;
@@ -41,6 +45,8 @@ pub(super) struct Builder {
     marks: VecDeque<&'static str>,
     servo_marks: Vec<f64>,
     turned: Vec<Option<usize>>,
+    /// Arm 1 with a rod across its tip.
+    torsion: TwistStand,
 }
 
 impl Builder {
@@ -56,6 +62,7 @@ impl Builder {
             marks: VecDeque::new(),
             servo_marks: Vec::new(),
             turned: Vec::new(),
+            torsion: TwistStand::new(&scenario("hover.toml"), 0, Streams::new(1)),
         }
     }
 
@@ -173,6 +180,18 @@ impl Builder {
         }
     }
 
+    /// Twist by the phone, deg, with the weight that `question` names.
+    fn twist(&mut self, question: &str) -> String {
+        let grams = question
+            .trim()
+            .split(' ')
+            .next()
+            .and_then(|grams| grams.parse().ok());
+        let side = if question.contains("left") { -1e-3 } else { 1e-3 };
+        let (_, twist) = self.torsion.read(side * grams.unwrap_or(0.0), 0.1);
+        format!("{:.1}", twist.to_degrees())
+    }
+
     fn which_turned(&mut self) -> String {
         // The order is acknowledged before the motor has speed.
         self.settles();
@@ -219,6 +238,8 @@ impl Builder {
             // 1 and 4 turn anticlockwise.
             let rotor = self.turned.last().copied().flatten();
             if matches!(rotor, Some(0 | 3)) { "a" } else { "c" }.to_owned()
+        } else if question.contains("Twist, deg") {
+            self.twist(question)
         } else if begins("Now switch the transmitter off") {
             self.does(|held| held.sticks = None);
             String::new()
