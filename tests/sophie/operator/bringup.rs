@@ -459,9 +459,10 @@ fn brought_up(temp: &Temp, board: &Board, more: &[&str]) {
     sensors_and_actuators(&mut builder, board);
     builder.at("(radio)", "s");
     builder.hears("skipped");
+    builder.hears("(arm-table)");
     let (status, said, _) = builder.ends();
     assert!(
-        status == Some(1) && said.contains("\nStopped. skipped: radio; not done: final"),
+        status == Some(1) && said.contains("\nStopped. skipped: radio; not done: arm-table, vibration, final"),
         "{said}"
     );
 
@@ -477,14 +478,18 @@ fn brought_up(temp: &Temp, board: &Board, more: &[&str]) {
     board.pass(1.0);
     builder.types("");
     radio(&mut builder, board);
+    for id in ["arm-table", "vibration"] {
+        builder.at(&format!("({id})"), "s");
+        builder.hears("left out");
+    }
     builder.step("final");
     let (status, said, complaint) = builder.ends();
     assert_eq!((status, &*complaint), (Some(0), ""), "{said}");
-    assert!(said.contains("\nall 29 steps passed"), "{said}");
-    assert!(file().contains("state = \"all 29 steps passed\""), "{}", file());
+    assert!(said.contains("\nall steps passed, left out: arm-table, vibration"), "{said}");
+    assert!(file().contains("state = \"all steps passed, left out: arm-table, vibration\""), "{}", file());
     assert_eq!(board.stored().motor_map.number(), 1324.0);
     let build = "build 1234abcd, ";
-    assert_eq!(file().matches(build).count(), 1 + 29, "{}", file());
+    assert_eq!(file().matches(build).count(), 1 + 31, "{}", file());
     let name = board.name();
     // Another image: said in one line, and nothing is asked again.
     board.hands(|hands| (hands.build, hands.power_cycle) = (0xC0DE, true));
