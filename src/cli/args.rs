@@ -16,7 +16,7 @@ use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand};
 
 pub use console::{BringupArgs, ParamsArgs, ParamsVerb};
-pub use data::{FitArgs, Kind, RecordingArgs, TimingArgs};
+pub use data::{FitArgs, FitThrustArgs, Kind, RecordingArgs, TimingArgs};
 pub use fly::{FlyArgs, LiveArgs};
 pub use message::Message;
 pub use mission::MissionArgs;
@@ -86,6 +86,14 @@ pub enum Task {
     ///
     /// Exit status: 0 done, 2 bad input or unwritable output.
     FitArm(FitArgs),
+    /// Fit static thrust to readings of a scale and print lines for the console.
+    ///
+    /// READINGS.csv has a header line with the columns command_percent (% of full drive), voltage_v (V, by the board,
+    /// rotors running), reading_g (g at the scale) or thrust_n (N) and, if wanted, rotor (1 to 4, 0 for all four) and
+    /// tilt_deg (degrees, of the arms of the rotors that run, tip up positive).
+    ///
+    /// Exit status: 0 done, 2 bad input.
+    FitThrust(FitThrustArgs),
     /// Print the timing of a board's log.
     ///
     /// Exit status: 0 read, also when parts were cut off (said on stderr), 2 bad input or unwritable output.

@@ -77,6 +77,16 @@ impl Battery {
         self
     }
 
+    /// Another pack of the same make and age with `charge` (0..1), at rest.
+    #[must_use]
+    pub fn exchanged(self, charge: f64) -> Self {
+        Self {
+            charge: charge.clamp(0.0, 1.0),
+            sag: 0.0,
+            ..self
+        }
+    }
+
     /// Draws `current` A, of motors or servos, for `dt` s.
     pub fn step(&mut self, dt: f64, current: f64) {
         self.current = current + self.pack.always;

@@ -121,6 +121,21 @@ pub struct FitArgs {
     pub json: bool,
 }
 
+/// Options of `fit-thrust`.
+#[derive(Args, Debug)]
+pub struct FitThrustArgs {
+    /// Readings of the scale.
+    #[arg(value_name = "READINGS.csv")]
+    pub readings: PathBuf,
+    /// Voltage of thrust_max, 6 to 52 V: the parameter battery_nominal.
+    #[arg(long, value_name = "V", value_parser = nominal, default_value = "14.8", allow_negative_numbers = true)]
+    pub nominal: f64,
+}
+
+fn nominal(text: &str) -> Result<f64, String> {
+    within(text, &(6.0..=52.0), " V")
+}
+
 fn lever(text: &str) -> Result<f64, String> {
     within(text, &(5.0..=100.0), " mm")
 }

@@ -26,7 +26,7 @@ fn begins(temp: &Temp, board: &Board, id: &str) -> Builder {
         builder.at(&format!("({})", step.id), "s");
     }
     // Who renews an order needs time on the wall.
-    board.hands(|hands| hands.real_time = true);
+    board.hands(|hands| hands.unhurried = true);
     builder.step(id);
     builder.at("Type tied", "tied");
     builder
@@ -97,8 +97,16 @@ fn arms_that_their_rotors_bend_give_their_equation() {
         rise(thrust) - rise(level)
     };
     for newton in [2.0, 4.4, 6.0] {
-        let truth = specs.iter().map(|spec| spec.static_tilt(newton).to_degrees()).sum::<f64>() / 4.0;
-        assert!((found(newton) - truth).abs() < 0.5, "{newton} N: {} {truth}", found(newton));
+        let truth = specs
+            .iter()
+            .map(|spec| spec.static_tilt(newton).to_degrees())
+            .sum::<f64>()
+            / 4.0;
+        assert!(
+            (found(newton) - truth).abs() < 0.5,
+            "{newton} N: {} {truth}",
+            found(newton)
+        );
     }
     let fitted = run(&temp, &["fit-arm", "arm-bench.csv", "--out", "fitted"]);
     assert_eq!(fitted.status, Some(0), "{fitted:?}");
@@ -112,7 +120,11 @@ fn a_vehicle_that_vibrates_fails_until_it_is_balanced() {
     for (size, judged) in [(14.0, "balance each propeller"), (3.0, "passed")] {
         let up = AtomicBool::new(false);
         let shakes = || {
-            let sign = if up.fetch_xor(true, Ordering::Relaxed) { 1.0 } else { -1.0 };
+            let sign = if up.fetch_xor(true, Ordering::Relaxed) {
+                1.0
+            } else {
+                -1.0
+            };
             let turn = board.outputs().motors.iter().all(|drive| *drive > 0.1);
             let size = if turn { sign * size } else { 0.0 };
             board.hands(|hands| hands.force = Vec3::new(0.0, 0.0, size - GRAVITY));

@@ -22,7 +22,7 @@ pub(super) fn arm_table(walk: &mut Walk<'_>, _: &Step) -> Judged {
     walk.ready()?;
     let params = walk.vehicle.values()?.params();
     tied::warn(walk);
-    walk.say("  | level, tied by the body alone: nothing may touch the arms");
+    walk.say("  | Level, held by the body alone: nothing may touch the arms.");
     if let Some(refused) = tied::tied_down(walk)? {
         return Ok(Verdict::of(false, vec![refused]));
     }
@@ -30,7 +30,7 @@ pub(super) fn arm_table(walk: &mut Walk<'_>, _: &Step) -> Judged {
     for percent in DRIVES {
         loop {
             walk.ask(&format!("Enter runs all rotors at {percent:.0} %:"))?;
-            match tied::all_rotors(walk, percent, HOLD, tied::run_number())? {
+            match tied::run(walk, None, percent, HOLD, tied::number())? {
                 Ok(measured) => match bent(&params, percent, &measured) {
                     Ok(found) => {
                         points.extend(found);
@@ -88,7 +88,7 @@ fn bent(params: &Params, percent: f64, measured: &tied::Measured) -> Result<Vec<
                 .ok_or_else(|| format!("sensor of arm {} is silent", arm + 1))?;
             let point = Point {
                 infill: f64::from(params.infill),
-                thrust: tied::thrust(params, arm, 0.01 * percent, measured.voltage()),
+                thrust: tied::thrust(params, Some(arm), 0.01 * percent, measured.voltage()),
                 tilt: tilt.to_degrees(),
                 power: 1.0,
             };

@@ -17,6 +17,8 @@ const RENEWAL: Duration = Duration::from_millis(500);
 const COUNTED: f32 = 0.5;
 /// Time before the end at which the run is left to itself, ms.
 const MARGIN_MS: u32 = 300;
+/// The vehicle's reply to the renewal of a run that has ended.
+const OVER: &str = "refused: this run has ended";
 
 /// What came within the counted end of a run.
 #[derive(Clone, Debug, Default)]
@@ -51,9 +53,9 @@ impl Measured {
 
 /// What the builder has to know before a rotor turns.
 pub(super) fn warn(walk: &mut Walk<'_>) {
-    walk.say("  | body screwed to a board with 5 kg on it, discs free by 0.5 m, also above the table");
-    walk.say("  | stand 3 m away, out of the discs' planes; goggles; transmitter in reach:");
-    walk.say("  | its arm switch, Enter or Ctrl-C stop the rotors, and so does a turn by 15 deg");
+    walk.say("  | Upright, the body screwed to a stand with 5 kg of ballast, discs 0.5 m above it.");
+    walk.say("  | Nothing within 0.5 m of a disc. Stand 3 m away, out of their planes; goggles.");
+    walk.say("  | The arm switch, Enter and Ctrl-C stop the rotors, and so does a turn by 15 deg.");
 }
 
 /// The builder's word that the vehicle is tied down; the vehicle's reason if it refuses.
@@ -63,25 +65,29 @@ pub(super) fn tied_down(walk: &mut Walk<'_>) -> Result<Option<String>, Stop> {
 }
 
 /// A number that no earlier run has had: ten a second since 1970, within what a float counts.
-pub(super) fn run_number() -> u32 {
+pub(super) fn number() -> u32 {
     let since = std::time::SystemTime::now()
         .duration_since(std::time::UNIX_EPOCH)
         .unwrap_or_default();
     (since.as_millis() / 100 % 8_000_000) as u32 + 1
 }
 
-/// Runs all rotors at `percent` of full drive for `hold` s as run `number`; why it ended early, or what was measured.
-pub(super) fn all_rotors(
+/// Runs `rotor` (0 to 3), or all, at `percent` of full drive for `hold` s as run `number`; why it ended early, or what was
+/// measured.
+pub(super) fn run(
     walk: &mut Walk<'_>,
+    rotor: Option<usize>,
     percent: f64,
     hold: f32,
     number: u32,
 ) -> Result<Result<Measured, String>, Stop> {
+    let rotors = rotor.map_or(Rotors::All, Rotors::One);
     let test = StaticThrustTest {
         hold,
-        ..StaticThrustTest::steady(Rotors::All, (0.01 * percent) as f32)
+        ..StaticThrustTest::steady(rotors, (0.01 * percent) as f32)
     };
-    let order = [0.0, percent as f32, 0.0, test.hold, number as f32];
+    let turning = rotor.map_or(0.0, |rotor| (rotor + 1) as f32);
+    let order = [turning, percent as f32, 0.0, test.hold, number as f32];
     let streams = [SYS_STATUS_DATA::ID, SOPHIE_ARMS_DATA::ID];
     walk.vehicle.stream(&streams, PERIOD_US)?;
     let ended = renewed(walk, &order, &test);
@@ -153,34 +159,39 @@ fn renewed(
             return Ok(Err("stopped".to_owned()));
         }
         let [passed, length] = [passed, length].map(|ms| f64::from(ms) * 1e-3);
-        walk.user.live(&format!("  | {passed:.1} s of {length:.1} s"));
+        let volts = measured.volts.last();
+        let volts = volts.map_or("-".to_owned(), |volts| format!("{volts:.2}"));
+        walk.user
+            .live(&format!("  | {passed:.1} s of {length:.1} s, {volts} V"));
     }
 }
 
-/// Why the vehicle has ended a run: its first text since, as the last one answers the renewal.
+/// Why the vehicle has ended a run: it said so before it refused the renewal.
 fn ended(walk: &mut Walk<'_>) -> Result<String, Stop> {
-    let newest = walk.vehicle.reason()?;
     let mut texts = walk.vehicle.texts().into_iter();
-    Ok(texts.find(|text| text.starts_with("refused: ")).unwrap_or(newest))
+    match texts.find(|text| text.starts_with("refused: ") && text != OVER) {
+        Some(why) => Ok(why),
+        None => Ok(walk.vehicle.reason()?),
+    }
 }
 
-/// Thrust of rotor `rotor` (0 to 3) at `command` by the parameters in force, N, at `voltage`, V.
-pub(super) fn thrust(params: &Params, rotor: usize, command: f64, voltage: f64) -> f64 {
+/// Thrust of rotor `rotor` (0 to 3), or of a mean one, at `command` by the parameters in force, N, at `voltage`, V.
+pub(super) fn thrust(params: &Params, rotor: Option<usize>, command: f64, voltage: f64) -> f64 {
     let trims = [
         params.thrust_trim_1,
         params.thrust_trim_2,
         params.thrust_trim_3,
         params.thrust_trim_4,
     ];
-    let trim = trims.get(rotor).copied().map_or(1.0, f64::from);
+    let trim = rotor.and_then(|rotor| trims.get(rotor)).copied().unwrap_or(1.0);
     let q = f64::from(params.thrust_curve);
     let ratio = (voltage / f64::from(params.battery_nominal)).powf(f64::from(params.thrust_volt_exp));
-    trim * f64::from(params.thrust_max) * ratio * (q * command + 1.0 - q) * command
+    f64::from(trim) * f64::from(params.thrust_max) * ratio * (q * command + 1.0 - q) * command
 }
 
-/// Command at which a mean rotor gives `thrust` N at `voltage` V by the parameters, share of full drive; `None` beyond it.
-pub(super) fn command(params: &Params, thrust_n: f64, voltage: f64) -> Option<f64> {
-    let of = |command: f64| thrust(params, usize::MAX, command, voltage);
-    let commands = (1..=100).map(|percent| 0.01 * f64::from(percent));
-    commands.into_iter().find(|command| of(*command) >= thrust_n)
+/// Command at which a mean rotor gives `newton` N at `voltage` V by the parameters, share of full drive, to a percent;
+/// `None` beyond it.
+pub(super) fn command(params: &Params, newton: f64, voltage: f64) -> Option<f64> {
+    let mut commands = (1..=100).map(|percent| 0.01 * f64::from(percent));
+    commands.find(|command| thrust(params, None, *command, voltage) >= newton)
 }

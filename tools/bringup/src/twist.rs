@@ -32,8 +32,8 @@ pub(super) fn twist(walk: &mut Walk<'_>, _: &Step) -> Judged {
             _ => (),
         }
     };
-    walk.say("  | clamp the body, nose or tail up, so that this arm's tip is level; the other side does not matter");
-    walk.say("  | tie a light rod across the tip, a hook on each end; lay the phone's inclinometer on it");
+    walk.say("  | Clamp the body, nose or tail up, so that this arm's tip is level.");
+    walk.say("  | Tie a light rod across the tip, a hook on each end; the phone lies on it.");
     walk.ask("Enter when it is so, s leaves it out, q stops:")?;
     let Some(slope) = slope(walk, arm)? else {
         let silent = format!("sensor of arm {} is silent", arm + 1);
@@ -49,7 +49,7 @@ pub(super) fn twist(walk: &mut Walk<'_>, _: &Step) -> Judged {
         let question = format!("A weight with its thread on a kitchen scale, g; Enter for {usual}:");
         masses.push(0.001 * typed(walk, &question, Some(usual.to_owned()))?.1);
     }
-    walk.say("  | twist: positive with the right hook lower, seen from the body");
+    walk.say("  | Twist: positive with the right hook lower, seen from the body.");
     let mut readings = Vec::new();
     let sides = [("right", 1.0), ("left", -1.0)];
     let loads = sides

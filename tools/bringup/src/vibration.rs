@@ -17,9 +17,7 @@ pub(super) fn vibration(walk: &mut Walk<'_>, _: &Step) -> Judged {
     walk.ready()?;
     let params = walk.vehicle.values()?.params();
     tied::warn(walk);
-    walk.say(
-        "  | tied by soft foam or cords: a board of steel or stone under it would hold what a flight shakes",
-    );
+    walk.say("  | On foam or cords: a stiff stand holds still what shakes in flight.");
     let hover = 0.25 * f64::from(params.mass) * GRAVITY;
     let Some(command) = tied::command(&params, hover, f64::from(params.battery_nominal)) else {
         return Ok(Verdict::of(
@@ -34,7 +32,7 @@ pub(super) fn vibration(walk: &mut Walk<'_>, _: &Step) -> Judged {
     walk.ask(&format!(
         "Enter runs all rotors at {percent:.0} % for {HOLD:.0} s:"
     ))?;
-    let measured = match tied::all_rotors(walk, percent, HOLD, tied::run_number())? {
+    let measured = match tied::run(walk, None, percent, HOLD, tied::number())? {
         Ok(measured) => measured,
         Err(why) => return Ok(Verdict::of(false, vec![why])),
     };

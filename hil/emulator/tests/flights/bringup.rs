@@ -14,6 +14,7 @@ use sophie_emulator::closed_loop::Setup;
 use sophie_emulator::flight::Stood;
 use sophie_emulator::terminal::Sockets;
 use sophie_emulator::wires::BoardFault;
+use sophie_sim::plant::rotor::NOMINAL_VOLTAGE;
 use sophie_sim::sensors::fsr;
 use sophie_tasks::schedule::{Level, TaskId};
 
@@ -123,7 +124,7 @@ fn a_new_board_is_brought_up_through_all_steps() {
     let said = builder.said();
     assert_eq!(all_passed, Ok(true), "{said}\n{log}");
     let protocol = folder.read();
-    assert_eq!(protocol["state"].as_str(), Some("all 29 steps passed"));
+    assert_eq!(protocol["state"].as_str(), Some("all 32 steps passed"));
     assert!(protocol["firmware"].as_str().unwrap().ends_with(" on matek-h743"));
     assert!(
         protocol["build"].as_str().unwrap().starts_with("build "),
@@ -173,6 +174,45 @@ fn a_new_board_is_brought_up_through_all_steps() {
         let missed = stood.board.overruns.get(task.name()).copied().unwrap_or(0);
         assert_eq!(missed, 0, "{}: {:?}", task.name(), stood.board.overruns);
     }
+}
+
+/// Thrust of the simulated rotors at `command`, one of four alike, in the stack's law over what the plant gives.
+fn law(parameter: impl Fn(&str) -> f64, command: f64) -> f64 {
+    let (q, max) = (parameter("thrust_curve"), parameter("thrust_max"));
+    let told = max * (q * command + 1.0 - q) * command;
+    told / scenario("hover.toml")
+        .vehicle
+        .rotor
+        .steady_thrust(command, NOMINAL_VOLTAGE)
+}
+
+#[test]
+#[ignore = "minutes of an emulated board: .ci/campaign walks it"]
+fn a_tied_vehicle_s_thrust_is_that_of_the_simulated_rotors() {
+    let folder = Folder::new("bringup-thrust");
+    let Walked {
+        log, builder, stood, ..
+    } = walk(&folder, |operator| Builder::at(operator, "thrust"));
+    let said = builder.said();
+    let protocol = folder.read();
+    let steps = protocol["step"].as_array().unwrap();
+    let step = steps
+        .iter()
+        .find(|step| step["id"].as_str() == Some("thrust"))
+        .unwrap();
+    assert_eq!(step["result"].as_str(), Some("passed"), "{said}\n{log}");
+    let parameter = |name: &str| step["parameters"][name].as_float().unwrap();
+    for command in [0.55, 0.7, 0.85] {
+        let share = law(parameter, command);
+        assert!((share - 1.0).abs() < 0.035, "{command}: {share}\n{said}");
+    }
+    // The winding's drop makes 1.6 to 1.7 of the power.
+    assert!((parameter("thrust_volt_exp") - 1.66).abs() < 0.2, "{said}");
+    for rotor in 1..=4 {
+        let trim = parameter(&format!("thrust_trim_{rotor}"));
+        assert!((trim - 1.0).abs() < 0.03, "{rotor}: {trim}\n{said}");
+    }
+    assert_eq!(stood.gaps, []);
 }
 
 #[test]

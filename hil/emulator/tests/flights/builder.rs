@@ -9,6 +9,7 @@ use sophie_control::params::Params;
 use sophie_control::pilot::rc::{ArmChoice, StickMode, Sticks};
 use sophie_emulator::bench_operator::{BenchOperator, Handling};
 use sophie_sim::streams::Streams;
+use sophie_sim::test_stands::scale::Scale;
 use sophie_sim::test_stands::twist_stand::TwistStand;
 
 use super::scenario;
@@ -23,6 +24,12 @@ const WEIGHT: f64 = 1.3;
 const BENT: f64 = 0.3;
 /// On a pad under a thumb, Pa.
 const THUMB: f64 = 900.0;
+
+/// Charge of the used battery, share.
+const USED: f64 = 0.35;
+/// RMS of what a person reads at a scale under rotors, share, and looks at it that count.
+const FLUCTUATION: f64 = 0.01;
+const SHOWN: usize = 5;
 
 /// A change of handling and its duration, ms of the board's time.
 struct Move {
@@ -47,6 +54,11 @@ pub(super) struct Builder {
     turned: Vec<Option<usize>>,
     /// Arm 1 with a rod across its tip.
     torsion: TwistStand,
+    /// Skips every other step.
+    only: Option<&'static str>,
+    /// The kitchen scale, and what it has shown while rotors ran, N.
+    scale: Scale,
+    lifts: Vec<f64>,
 }
 
 impl Builder {
@@ -63,6 +75,17 @@ impl Builder {
             servo_marks: Vec::new(),
             turned: Vec::new(),
             torsion: TwistStand::new(&scenario("hover.toml"), 0, Streams::new(1)),
+            only: None,
+            scale: Scale::new(Streams::new(1)),
+            lifts: Vec::new(),
+        }
+    }
+
+    /// Skips every other step than `only`.
+    pub(super) fn at(operator: BenchOperator, only: &'static str) -> Self {
+        Self {
+            only: Some(only),
+            ..Self::new(operator, None)
         }
     }
 
@@ -147,6 +170,9 @@ impl Builder {
         if self.until == Some(&*self.step) {
             return "q";
         }
+        if self.only.is_some_and(|only| only != self.step) {
+            return "s";
+        }
         self.moves = None;
         self.marks = ["-92", "", "+185", ""].into();
         let on = matches!(&*self.step, "radio" | "final");
@@ -154,6 +180,7 @@ impl Builder {
             held.below = Face::Belly;
             held.bent = [0.0; 4];
             held.sticks = on.then(Sticks::default);
+            held.tied = false;
         });
         ""
     }
@@ -192,6 +219,16 @@ impl Builder {
         format!("{:.1}", twist.to_degrees())
     }
 
+    /// What the scale showed at the end of a run, g.
+    fn weighs(&mut self) -> String {
+        // The last half second before the rotors stop.
+        let from = self.lifts.len().saturating_sub(SHOWN);
+        let last = self.lifts.split_off(from);
+        self.lifts.clear();
+        let lift = last.iter().sum::<f64>() / last.len().max(1) as f64;
+        format!("{:.0}", self.scale.read(lift, FLUCTUATION))
+    }
+
     fn which_turned(&mut self) -> String {
         // The order is acknowledged before the motor has speed.
         self.settles();
@@ -220,6 +257,15 @@ impl Builder {
         } else if begins("And down again") {
             self.does(|held| held.height = 0.0);
             String::new()
+        } else if begins("Type tied") {
+            self.operator.change(|held| held.tied = true);
+            "tied".to_owned()
+        } else if begins("A used battery") {
+            self.operator.change(|held| held.battery = Some(USED));
+            self.settles();
+            "u".to_owned()
+        } else if begins("What the scale showed") {
+            self.weighs()
         } else if begins("Type off") {
             "off".to_owned()
         } else if begins("Volts") {
@@ -305,6 +351,10 @@ impl User for Builder {
     }
 
     fn live(&mut self, line: &str) {
+        if matches!(&*self.step, "thrust" | "arm-table" | "vibration") {
+            self.lifts.push(self.operator.observe().lift);
+            return;
+        }
         self.notes(&format!("{line}\n"));
     }
 
@@ -316,6 +366,9 @@ impl User for Builder {
     }
 
     fn answered(&mut self) -> Option<Reply> {
+        if matches!(&*self.step, "thrust" | "arm-table" | "vibration") {
+            return None;
+        }
         let now = self.operator.observe().ms;
         let id = self.step.clone();
         let moves = self.moves.get_or_insert_with(|| live(&id));
