@@ -33,7 +33,7 @@ fn begins(temp: &Temp, board: &Board, id: &str) -> Builder {
 }
 
 /// Runs `work` while `moves` acts on the board.
-fn meanwhile(moves: impl Fn() + Send, work: impl FnOnce()) {
+fn meanwhile(moves: impl Fn() + Send + Sync, work: impl FnOnce()) {
     let over = AtomicBool::new(false);
     std::thread::scope(|scope| {
         scope.spawn(|| {
