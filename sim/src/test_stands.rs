@@ -5,3 +5,4 @@ pub mod flight_level;
 pub mod phone;
 pub mod scale;
 pub mod thrust_stand;
+pub mod twist_stand;

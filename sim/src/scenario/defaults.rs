@@ -6,8 +6,8 @@ use sophie_control::pilot::rc::ArmChoice;
 use sophie_mixers::Variant;
 
 use super::{
-    Assist, Assumed, Expect, Faults, Known, Overrides, Pilot, ROOM, Rule, Scenario, Sensors, Servos, Tendons,
-    Vehicle, World,
+    Assist, Assumed, Expect, Faults, Known, Measured, Overrides, Pilot, ROOM, Rule, Scenario, Sensors,
+    Servos, Tendons, Vehicle, World,
 };
 use crate::plant::air::wind::WindSpec;
 use crate::plant::air::{AirSpec, AirframeSpec};
@@ -148,6 +148,7 @@ impl Scenario {
             vehicle: Vehicle::default(),
             known: Known::default(),
             params: Params::default(),
+            measured: Measured::default(),
             mixer: Variant::Flexible,
             arms: ArmChoice::All,
             judge: Rule::default(),

@@ -491,7 +491,7 @@ pub const KEYS: &[Key] = &[
     ),
     number!(
         "vehicle.vibration_m_s2",
-        Range::new(0.0, 15.0, "m/s2"),
+        Range::new(0.0, 60.0, "m/s2"),
         vehicle.vibration.once
     ),
     number!(

@@ -324,7 +324,7 @@ pub const QUANTITIES: &[Quantity] = &[
         key: "vehicle.arm_level_share",
         all: Some(Spread::Plus(-0.05, 0.05)),
         calibration: Some(Calibration {
-            by: "`sophie fit-arm` ([arms](calibration.md#arms))",
+            by: "`bringup`'s step `arm-table`, `sophie fit-arm` ([arms](calibration.md#arms))",
             error: Spread::Plus(-0.02, 0.02),
             apart: false,
             demanded: false,
@@ -346,7 +346,7 @@ pub const QUANTITIES: &[Quantity] = &[
         key: "vehicle.arm_level_n",
         all: Some(Spread::Within(3.7, 4.6)),
         calibration: Some(Calibration {
-            by: "`sophie fit-arm` ([arms](calibration.md#arms))",
+            by: "`bringup`'s step `arm-table`, `sophie fit-arm` ([arms](calibration.md#arms))",
             error: Spread::Plus(-0.17, 0.17),
             apart: false,
             demanded: false,
@@ -370,7 +370,7 @@ pub const QUANTITIES: &[Quantity] = &[
         all: Some(Spread::Times(0.7, 1.4)),
         each: Some(Spread::Times(0.93, 1.07)),
         calibration: Some(Calibration {
-            by: "`sophie fit-arm` ([arms](calibration.md#arms)): one equation for four arms",
+            by: "`bringup`'s step `arm-table`, `sophie fit-arm` ([arms](calibration.md#arms)): one equation for four arms",
             error: Spread::Times(0.95, 1.05),
             apart: false,
             demanded: false,
@@ -395,7 +395,8 @@ pub const QUANTITIES: &[Quantity] = &[
     Quantity {
         key: "vehicle.arm_offset_deg",
         each: Some(Spread::Plus(-3.0, 3.0)),
-        source: "print and glue (assumed); the arms' sensors see it in flight",
+        source: "print and glue (assumed); `arm-table` shows each arm's to 1.9°, the parameters are common to the four; the arms' \
+                 sensors see it in flight",
         truth: |s| s.vehicle.arm_offset.map(|offset| offset / DEGREE).to_vec(),
         assumed: |_| vec![0.0; 4],
         ..FIXED
@@ -410,8 +411,21 @@ pub const QUANTITIES: &[Quantity] = &[
     Quantity {
         key: "vehicle.arm_torsion",
         all: Some(Spread::Within(0.5, 2.0)),
+        calibration: Some(Calibration {
+            by: "`sophie bringup`, step `twist` ([arms](calibration.md#arms)), for `sophie check`; no parameter has it",
+            error: Spread::Times(0.96, 1.04),
+            apart: false,
+            demanded: false,
+        }),
+        exact: true,
         source: "derived of a square section; infill and skin share it differently (assumed)",
         truth: |s| vec![s.vehicle.arm_torsion],
+        assumed: |s| vec![s.measured.arm_torsion],
+        learn: |s, n| {
+            if let [torsion] = n {
+                s.measured.arm_torsion = *torsion;
+            }
+        },
         ..FIXED
     },
     Quantity {
@@ -655,7 +669,8 @@ pub const QUANTITIES: &[Quantity] = &[
     Quantity {
         key: "vehicle.vibration_m_s2",
         all: Some(Spread::Within(0.5, 4.0)),
-        source: "up to 15 m/s² of all rotors on three axes are normal (ArduPilot, measuring vibration; 3DR's Iris)",
+        source: "up to 15 m/s² of all rotors on three axes are normal (ArduPilot, measuring vibration; 3DR's Iris); `bringup`'s step \
+                 `vibration` passes all of these: its mark is at 6",
         truth: |s| vec![s.vehicle.vibration.once],
         ..FIXED
     },

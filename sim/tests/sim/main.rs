@@ -25,3 +25,4 @@ mod servo_battery;
 mod silence;
 mod strong_vehicles;
 mod vehicle;
+mod vibration;

@@ -8,6 +8,7 @@ mod params;
 #[cfg(target_os = "linux")]
 mod serial;
 mod thrust;
+mod tied;
 mod wire;
 
 use std::process::{Child, Command};

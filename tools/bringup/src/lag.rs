@@ -7,7 +7,7 @@ use sophie_fit::motor_lag::{self, MotorLag};
 use sophie_fit::rotor_sound::{self, Sound};
 
 use super::walk::{Verdict, Walk};
-use super::{Judged, Step, thrust};
+use super::{Judged, Step, tied};
 
 /// Drives of the train, share of full drive: about the hover, and far enough apart for the ear of a phone.
 const DRIVES: [f32; 2] = [0.3, 0.6];
@@ -18,19 +18,17 @@ pub(super) fn lag(walk: &mut Walk<'_>, step: &Step) -> Judged {
     walk.say(
         "  | A phone 0.3 m below rotor 1, out of its plane and its air, records sound as WAV, at most 60 s.",
     );
-    if let Some(refused) = thrust::tied_down(walk)? {
+    if let Some(refused) = tied::tied_down(walk)? {
         return Ok(Verdict::of(false, vec![refused]));
     }
     let test = StaticThrustTest::train(Rotors::One(0), DRIVES[0], DRIVES[1]);
-    let mut run = thrust::first_run();
     loop {
         walk.ask("Does the phone record? Enter steps rotor 1 five times between 30 and 60 %, 12 s:")?;
-        run += 1;
-        match thrust::one(walk, &test, run)? {
+        match tied::run_test(walk, &test, tied::number())? {
             Ok(_) => break,
             Err(why) => {
                 walk.say(&format!("  | {why}"));
-                if let Some(refused) = thrust::tied_down(walk)? {
+                if let Some(refused) = tied::tied_down(walk)? {
                     return Ok(Verdict::of(false, vec![refused]));
                 }
             }

@@ -6,6 +6,7 @@
 
 mod actuators;
 mod air;
+mod arm_table;
 mod calibrate;
 mod checks;
 mod date;
@@ -13,6 +14,9 @@ mod lag;
 mod live;
 pub mod protocol;
 mod thrust;
+mod tied;
+mod twist;
+mod vibration;
 mod walk;
 
 use std::path::Path;
@@ -152,6 +156,16 @@ pub const STEPS: &[Step] = &[
     numbered("arm-2", "Sensor of arm 2, rear-left", ARM, 2, calibrate::arm),
     numbered("arm-3", "Sensor of arm 3, front-right", ARM, 3, calibrate::arm),
     numbered("arm-4", "Sensor of arm 4, rear-right", ARM, 4, calibrate::arm),
+    step(
+        "twist",
+        "Torsion of an arm",
+        "A rod, three weights of 30 to 90 g, a kitchen scale, a phone with an inclinometer; 15 minutes. No propellers needed.",
+        twist::twist,
+    )
+    .optional(
+        "the design check takes the arms' torsion for the derived one. At half of it HOLD's pitch swings in wind, at 0.4 \
+         yaw oscillates.",
+    ),
     numbered("fsr-1", "Pressure sensor 1, front-left", FSR, 1, calibrate::fsr),
     numbered("fsr-2", "Pressure sensor 2, rear-left", FSR, 2, calibrate::fsr),
     numbered("fsr-3", "Pressure sensor 3, front-right", FSR, 3, calibrate::fsr),
@@ -211,6 +225,23 @@ pub const STEPS: &[Step] = &[
     )
     .optional("motors of 0.09 s that count as 0.05 leave 1 of 16 autonomous perches, and loops near their margin."),
     step(
+        "arm-table",
+        "How the arms bend",
+        "Propellers on, fresh flight battery, body tied down, arms free and level. 5 runs of 6 s; best after `thrust`.",
+        arm_table::arm_table,
+    )
+    .optional(
+        "arms bend 0.7 to 1.4 times as much as Table I of the paper says: lift and yaw are off by that, and a difference \
+         of more than 0.2 rad is a warning in flight.",
+    ),
+    step(
+        "vibration",
+        "Vibration",
+        "Propellers on, flight battery, body tied down as softly as it holds. One run of 11 s at about hover.",
+        vibration::vibration,
+    )
+    .optional("propellers out of balance show in the first flight only, and may lose a hold by flow."),
+    step(
         "final",
         "Everything once more",
         "Vehicle at rest, arms open, transmitter on, arm switch off, throttle low, flight battery connected.",
@@ -266,7 +297,8 @@ pub fn run(
     if !protocol.open_steps().is_empty() {
         user.say("Propellers off, flight battery disconnected, until a step asks for it.");
     }
-    let done = steps(&mut Walk::new(vehicle, user), &mut protocol);
+    let mut walk = Walk::new(vehicle, user).with_files_at(protocol.path());
+    let done = steps(&mut walk, &mut protocol);
     user.say("");
     match done {
         Ok(()) => user.say(&protocol.state()),

@@ -1,6 +1,7 @@
 //! The context of every step: the builder, the vehicle, and what both are asked.
 
 use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
 use sophie_board_link::Failure;
 use sophie_board_link::vehicle::Vehicle;
@@ -87,6 +88,8 @@ pub(super) struct Walk<'a> {
     pub weight: String,
     /// Parameters set and not stored yet, with their new values.
     changed: BTreeMap<String, f32>,
+    /// Folder of the protocol.
+    folder: PathBuf,
 }
 
 impl<'a> Walk<'a> {
@@ -97,7 +100,19 @@ impl<'a> Walk<'a> {
             off_since: None,
             weight: "1.3".to_owned(),
             changed: BTreeMap::new(),
+            folder: PathBuf::new(),
         }
+    }
+
+    /// With files beside `protocol`.
+    pub(super) fn with_files_at(mut self, protocol: &Path) -> Self {
+        self.folder = protocol.parent().map(Path::to_owned).unwrap_or_default();
+        self
+    }
+
+    /// A file beside the protocol.
+    pub(super) fn beside(&self, name: &str) -> PathBuf {
+        self.folder.join(name)
     }
 
     pub(super) fn say(&mut self, line: &str) {

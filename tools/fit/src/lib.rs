@@ -3,6 +3,7 @@
 
 pub mod arm;
 pub mod arm_data;
+pub mod arm_table;
 pub mod csv;
 pub mod least_squares;
 pub mod motor_lag;
@@ -11,3 +12,4 @@ pub mod tendon;
 pub mod tendon_data;
 pub mod thrust;
 pub mod thrust_data;
+pub mod twist;

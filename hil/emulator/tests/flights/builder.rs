@@ -10,6 +10,9 @@ use sophie_control::pilot::rc::{ArmChoice, StickMode, Sticks};
 use sophie_emulator::bench_operator::{BenchOperator, Handling};
 use sophie_sim::streams::Streams;
 use sophie_sim::test_stands::scale::Scale;
+use sophie_sim::test_stands::twist_stand::TwistStand;
+
+use super::scenario;
 
 /// Time of the board until a change of handling has passed turn and filters, ms.
 const SETTLED: u64 = 800;
@@ -49,6 +52,8 @@ pub(super) struct Builder {
     marks: VecDeque<&'static str>,
     servo_marks: Vec<f64>,
     turned: Vec<Option<usize>>,
+    /// Arm 1 with a rod across its tip.
+    torsion: TwistStand,
     /// Skips every other step.
     only: Option<&'static str>,
     /// The kitchen scale, and what it has shown while rotors ran, N.
@@ -69,6 +74,7 @@ impl Builder {
             marks: VecDeque::new(),
             servo_marks: Vec::new(),
             turned: Vec::new(),
+            torsion: TwistStand::new(&scenario("hover.toml"), 0, Streams::new(1)),
             only: None,
             scale: Scale::new(Streams::new(1)),
             lifts: Vec::new(),
@@ -201,6 +207,18 @@ impl Builder {
         }
     }
 
+    /// Twist by the phone, deg, with the weight that `question` names.
+    fn twist(&mut self, question: &str) -> String {
+        let grams = question
+            .trim()
+            .split(' ')
+            .next()
+            .and_then(|grams| grams.parse().ok());
+        let side = if question.contains("left") { -1e-3 } else { 1e-3 };
+        let (_, twist) = self.torsion.read(side * grams.unwrap_or(0.0), 0.1);
+        format!("{:.1}", twist.to_degrees())
+    }
+
     /// What the scale showed at the end of a run, g.
     fn weighs(&mut self) -> String {
         // The last half second before the rotors stop.
@@ -266,6 +284,8 @@ impl Builder {
             // 1 and 4 turn anticlockwise.
             let rotor = self.turned.last().copied().flatten();
             if matches!(rotor, Some(0 | 3)) { "a" } else { "c" }.to_owned()
+        } else if question.contains("Twist, deg") {
+            self.twist(question)
         } else if begins("Now switch the transmitter off") {
             self.does(|held| held.sticks = None);
             String::new()
@@ -331,7 +351,7 @@ impl User for Builder {
     }
 
     fn live(&mut self, line: &str) {
-        if self.step == "thrust" {
+        if matches!(&*self.step, "thrust" | "arm-table" | "vibration") {
             self.lifts.push(self.operator.observe().lift);
             return;
         }
@@ -346,7 +366,7 @@ impl User for Builder {
     }
 
     fn answered(&mut self) -> Option<Reply> {
-        if self.step == "thrust" {
+        if matches!(&*self.step, "thrust" | "arm-table" | "vibration") {
             return None;
         }
         let now = self.operator.observe().ms;
