@@ -94,7 +94,7 @@ impl<A: Aircraft> World<A> {
     /// A world before power-up. `make` as in [`fly_with`].
     pub(crate) fn new(scenario: &Scenario, make: impl FnOnce() -> A) -> Self {
         Self {
-            plant: Plant::new(scenario),
+            plant: scenario.plant(),
             stack: make(),
             pilot: Pilot::new(scenario),
             uplink: Uplink::new(scenario),

@@ -27,20 +27,21 @@ use sophie_control::allocation::wrench::PerArm;
 
 use self::air::Air;
 use self::battery::Battery;
+use self::beam::in_plane::InPlaneSpec;
+use self::beam::material::MaterialSpec;
 use self::beam::{BeamArm, BeamSpec, Masses};
-use self::body::{Body, BodyState};
+use self::body::{Body, BodySpec, BodyState};
 use self::contact::pipe::Vibration;
 use self::contact::{Belly, Pipe, Pose, Surface};
 use self::flexible::{Carrier, Drive, Flexible, Nearby};
 use self::gust::Gust;
 use self::hinged::HingedArm;
-use self::hinged::link::{ArmPrint, ArmSpec, TIP};
-use self::rotor::Rotor;
+use self::hinged::link::{ArmSpec, TIP};
+use self::rotor::{Rotor, RotorSpec};
 use self::servo_power::MG996R;
 use self::tendon::Tendon;
 use crate::plant::flexible::ArmBending;
 use crate::plant::load::{Acceleration, Load};
-use crate::scenario::Scenario;
 
 /// Integration step, s.
 pub const STEP: f64 = 0.5e-3;
@@ -123,53 +124,66 @@ struct Base {
     specific_force: DVec3,
 }
 
-/// Arm `arm` (0 to 3) of the scenario's vehicle as built, at the day's temperature.
-#[must_use]
-pub fn arm_spec(scenario: &Scenario, arm: usize) -> ArmSpec {
-    let v = &scenario.vehicle;
-    ArmSpec::of(&ArmPrint {
-        coefficients: v.arm_coefficients,
-        infill: v.infill,
-        gain_k: v.gain_k,
-        gain: scenario.arm_softness(arm),
-        offset: v.arm_offset[arm],
-        zeta: v.arm_damping,
-    })
-    .level_at(v.arm_level_thrust())
-}
-
-/// The beam of arm `arm` (0 to 3) of the scenario's vehicle as built.
-#[must_use]
-pub fn beam_spec(scenario: &Scenario, arm: usize) -> BeamSpec {
-    let vehicle = &scenario.vehicle;
-    let masses = Masses::of(&vehicle.body);
-    BeamSpec::tapered(
-        &arm_spec(scenario, arm),
-        masses,
-        vehicle.arm_damping,
-        vehicle.arm_taper,
-    )
-    .twisting(vehicle.arm_torsion)
+/// Parts of the vehicle and its world, as built.
+#[derive(Clone, Debug)]
+pub struct Parts {
+    /// 1, or -1 for rotors that turn the other way round.
+    pub chi: f64,
+    /// Model of the arms.
+    pub bending: ArmBending,
+    /// Hinge of each arm.
+    pub hinges: PerArm<ArmSpec>,
+    /// Beam of each arm, its material and its bending in the plane.
+    pub beams: PerArm<BeamSpec>,
+    /// Of the beams.
+    pub material: MaterialSpec,
+    /// Of the beams; `None`: they do not bend in the plane.
+    pub in_plane: Option<InPlaneSpec>,
+    /// Masses and inertia.
+    pub body: BodySpec,
+    /// The arms' motion acts on the body.
+    pub coupled: bool,
+    /// All rotors.
+    pub rotor: RotorSpec,
+    /// Thrust of each rotor over that of all.
+    pub rotor_thrust: PerArm<f64>,
+    /// Density of the air, kg/m³.
+    pub density: f64,
+    /// Each tendon with its servo.
+    pub tendons: PerArm<Tendon>,
+    /// Flight battery.
+    pub battery: Battery,
+    /// Servo battery.
+    pub servo_battery: Battery,
+    /// Wind, drag and what the rotors meet.
+    pub air: Air,
+    /// Gusts as forces.
+    pub gust: Gust,
+    /// The pipe and its vibration.
+    pub pipe: Pipe,
+    /// Of the pipe.
+    pub vibration: Vibration,
+    /// Coefficient of restitution of belly pads and skin.
+    pub restitution: f64,
 }
 
 impl Plant {
     /// At rest on the ground at the origin, nose north.
     #[must_use]
-    pub fn new(scenario: &Scenario) -> Self {
-        let v = &scenario.vehicle;
-        let arms = match v.arm_bending {
+    pub fn new(parts: Parts) -> Self {
+        let arms = match parts.bending {
             ArmBending::Hinge => Arms::Hinged(Box::new(std::array::from_fn(|i| {
-                HingedArm::new(i, arm_spec(scenario, i))
+                HingedArm::new(i, parts.hinges[i])
             }))),
             ArmBending::Beam => Arms::Beams(Box::new(std::array::from_fn(|i| {
-                BeamArm::new(i, beam_spec(scenario, i))
-                    .of_material(v.arm_material)
-                    .bending_in_plane(v.in_plane())
+                BeamArm::new(i, parts.beams[i])
+                    .of_material(parts.material)
+                    .bending_in_plane(parts.in_plane)
             }))),
         };
         Self {
             arms,
-            base: Base::new(scenario),
+            base: Base::new(parts),
             push: DVec3::ZERO,
             moment: DVec3::ZERO,
             actuators: Actuators::default(),
@@ -383,22 +397,18 @@ impl Plant {
 }
 
 impl Base {
-    fn new(scenario: &Scenario) -> Self {
-        let (v, w) = (&scenario.vehicle, &scenario.world);
-        let chi = f64::from(v.configuration.chi());
-        let radius = 0.5 * w.pipe_diameter;
-        let rebound = contact::rebound(v.pad_restitution);
-        let limb = |i: usize| Limb {
-            rotor: Rotor::new(i, chi, v.rotor).in_air(v.rotor_thrust[i], w.air.density),
-            thrust: 0.0,
-            tendon: Tendon::new(scenario.servo_on(i), scenario.tendon_on(i))
-                .breaking(scenario.faults.tendon[i], scenario.faults.at),
-            pressure: 0.0,
+    fn new(parts: Parts) -> Self {
+        let rebound = contact::rebound(parts.restitution);
+        let body = match parts.bending {
+            _ if !parts.coupled => Body::whole(&parts.body),
+            ArmBending::Hinge => Body::new(&parts.body, &TIP),
+            ArmBending::Beam => Body::new(&parts.body, &Masses::of(&parts.body).points()),
         };
-        let body = match v.arm_bending {
-            _ if !v.coupled_arms => Body::whole(&v.body),
-            ArmBending::Hinge => Body::new(&v.body, &TIP),
-            ArmBending::Beam => Body::new(&v.body, &Masses::of(&v.body).points()),
+        let limb = |i: usize| Limb {
+            rotor: Rotor::new(i, parts.chi, parts.rotor).in_air(parts.rotor_thrust[i], parts.density),
+            thrust: 0.0,
+            tendon: parts.tendons[i].clone(),
+            pressure: 0.0,
         };
         Self {
             body,
@@ -411,24 +421,15 @@ impl Base {
                 },
             },
             limbs: std::array::from_fn(limb),
-            battery: Battery::new(v.battery_charge).aged(v.battery_age, v.battery_sag),
-            servo_battery: Battery::of_servos(v.servo_charge),
+            battery: parts.battery,
+            servo_battery: parts.servo_battery,
             lapse: 1.0,
-            air: Air::new(v.air, scenario.air(), v.hover_speed(), scenario.streams()),
-            gust: Gust::new(w.gust_force, w.gust_moment, scenario.streams())
-                .in_wind(w.steady_wind, scenario.wind_from()),
+            air: parts.air,
+            gust: parts.gust,
             ground_belly: Belly::default().rebounding(rebound),
             pipe_belly: Belly::default().rebounding(rebound),
-            pipe: Pipe {
-                north: w.pipe_position[0],
-                half_length: 0.5 * w.pipe_length,
-                east: w.pipe_position[1],
-                down: -w.pipe_top + radius,
-                radius,
-                friction: w.pipe_friction,
-                shape: w.pipe_shape,
-            },
-            vibration: Vibration::new(w.pipe_vibration, w.pipe_vibration_rate),
+            pipe: parts.pipe,
+            vibration: parts.vibration,
             rebound,
             on_stand: false,
             pad_forces: [0.0; 4],

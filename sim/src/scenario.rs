@@ -14,6 +14,7 @@ mod load;
 mod nearest;
 mod overrides;
 mod parts;
+mod plant;
 mod read;
 mod read_steps;
 mod rule;
@@ -53,9 +54,9 @@ use crate::plant::rotor::{RotorSpec, THRUST_COEFFICIENT};
 use crate::plant::tendon::ServoProfile;
 use crate::sensors::arm_imu::TiltErrors;
 use crate::sensors::barometer::{Barometer, BarometerFault};
-use crate::sensors::flow::{FlowFault, Optics};
+use crate::sensors::flow::{FlowErrors, FlowFault, Optics};
 use crate::sensors::imu::VibrationSpec;
-use crate::sensors::pose::PoseFault;
+use crate::sensors::pose::{PoseFault, TagSpec};
 use crate::streams::Streams;
 
 /// A flight to fly.
@@ -377,6 +378,26 @@ impl Sensors {
     pub fn lens(&self) -> DVec3 {
         let [x, y, z] = self.flow_place;
         DVec3::new(x.unwrap_or(0.0), y.unwrap_or(0.0), z.unwrap_or(0.02))
+    }
+
+    /// Errors of flow and range.
+    #[must_use]
+    pub const fn flow_errors(&self) -> FlowErrors {
+        FlowErrors {
+            noise: self.flow_noise,
+            quality_varies: self.flow_quality_varies,
+            mixed_pixels: self.range_mixed_pixels,
+        }
+    }
+
+    /// Losses and outliers of the poses.
+    #[must_use]
+    pub const fn tag(&self) -> TagSpec {
+        TagSpec {
+            size: self.pose_tag_size,
+            outliers: self.pose_outlier_share,
+            dropout: self.pose_dropout_share,
+        }
     }
 }
 

@@ -34,28 +34,29 @@ pub struct Edges {
 
 impl Edges {
     /// Takes the next hit of the beam.
-    pub fn step(&mut self, foot: Vec3) -> Option<Edge> {
+    pub fn step(&mut self, surface_point: Vec3) -> Option<Edge> {
         let Some(surface_depth) = self.surface_depth else {
-            (self.surface_depth, self.top, self.last) = (Some(foot.z), foot.z, foot);
+            (self.surface_depth, self.top, self.last) =
+                (Some(surface_point.z), surface_point.z, surface_point);
             return None;
         };
-        let off = foot.z - surface_depth;
+        let off = surface_point.z - surface_depth;
         if off.abs() < STEP {
             let surface_depth = surface_depth + FOLLOW * off;
-            (self.surface_depth, self.last, self.other) = (Some(surface_depth), foot, None);
+            (self.surface_depth, self.last, self.other) = (Some(surface_depth), surface_point, None);
             self.top = self.top.min(surface_depth);
             return None;
         }
-        let other = self.other.replace(foot)?;
-        if (other.z - surface_depth) * off < 0.0 || (other.z - foot.z).abs() > STEP {
+        let other = self.other.replace(surface_point)?;
+        if (other.z - surface_depth) * off < 0.0 || (other.z - surface_point.z).abs() > STEP {
             return None;
         }
         // The edge is at the higher surface's hit: a tilted beam meets the ground a hand's breadth beside the edge.
         let last = self.last;
         self.height = off.abs();
-        (self.surface_depth, self.last, self.other) = (Some(foot.z), foot, None);
+        (self.surface_depth, self.last, self.other) = (Some(surface_point.z), surface_point, None);
         if off < 0.0 {
-            self.top = foot.z;
+            self.top = surface_point.z;
             Some(Edge::Onto(other))
         } else {
             Some(Edge::Off(last))
@@ -87,7 +88,7 @@ impl Edges {
 mod tests {
     use super::*;
 
-    /// The foot of a beam that leans by 0.1: beside the pipe it falls 15 cm farther off than on it.
+    /// The surface_point of a beam that leans by 0.1: beside the pipe it falls 15 cm farther off than on it.
     #[test]
     fn an_edge_is_where_the_beam_meets_the_pipe() {
         let mut edges = Edges::default();
@@ -95,8 +96,8 @@ mod tests {
         for step in 0..100u8 {
             let y = 0.01 * f32::from(step);
             let on = (0.3..0.6).contains(&(y + 0.04));
-            let (z, foot) = if on { (0.4, y + 0.04) } else { (1.9, y + 0.19) };
-            match edges.step(Vec3::new(0.0, foot, z)) {
+            let (z, surface_point) = if on { (0.4, y + 0.04) } else { (1.9, y + 0.19) };
+            match edges.step(Vec3::new(0.0, surface_point, z)) {
                 Some(Edge::Onto(at)) => found[0] = Some(at.y),
                 Some(Edge::Off(at)) => found[1] = Some(at.y),
                 None => (),

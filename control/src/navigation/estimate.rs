@@ -28,8 +28,8 @@ pub struct Estimate {
 impl Estimate {
     /// True if every number is finite.
     pub fn is_finite(&self) -> bool {
-        let foot = self.range_hit.surface_point.unwrap_or_default();
-        let sum = self.position + self.velocity + self.disturbance + foot;
+        let surface_point = self.range_hit.surface_point.unwrap_or_default();
+        let sum = self.position + self.velocity + self.disturbance + surface_point;
         sum.is_finite() && (self.yaw_offset + self.age).is_finite() && !self.range_hit.age.is_nan()
     }
 }

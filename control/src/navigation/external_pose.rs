@@ -52,7 +52,7 @@ const FLOOR: f32 = 0.006;
 /// Narrower share at which poses are used again, and the least inertial displacement for that verdict, m RMS over the
 /// window.
 const REGAINED: f32 = 0.1;
-const REGAINED_WAY: f32 = 0.006;
+const REGAINED_DISPLACEMENT: f32 = 0.006;
 
 /// Fault of the pose source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -100,8 +100,8 @@ impl Low {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Departure {
     /// Fading integrals of the squared residual and of the squared inertial displacement, m² s.
-    off: f32,
-    way: f32,
+    residual: f32,
+    displacement: f32,
     wrong: bool,
 }
 
@@ -118,20 +118,20 @@ impl Departure {
     /// after the last.
     fn step(&mut self, seen: Vec3, inertial: Vec3, variance: f32, dt: f32) {
         let keep = WINDOW / (WINDOW + dt);
-        self.off = self.off * keep + (seen - inertial).norm_squared() * dt;
-        self.way = self.way * keep + inertial.norm_squared() * dt;
+        self.residual = self.residual * keep + (seen - inertial).norm_squared() * dt;
+        self.displacement = self.displacement * keep + inertial.norm_squared() * dt;
         let floor = WINDOW * (FLOOR * FLOOR + variance);
         if !self.wrong {
-            if self.off > BORNE * self.way + floor {
+            if self.residual > BORNE * self.displacement + floor {
                 *self = Self::doubted();
             }
-        } else if self.off > BORNE * self.way + floor {
+        } else if self.residual > BORNE * self.displacement + floor {
             // Later samples are judged without these.
-            (self.off, self.way) = (0.0, 0.0);
-        } else if self.way > WINDOW * REGAINED_WAY * REGAINED_WAY {
-            self.wrong = self.off > REGAINED * self.way;
+            (self.residual, self.displacement) = (0.0, 0.0);
+        } else if self.displacement > WINDOW * REGAINED_DISPLACEMENT * REGAINED_DISPLACEMENT {
+            self.wrong = self.residual > REGAINED * self.displacement;
             if self.wrong {
-                (self.off, self.way) = (0.0, 0.0);
+                (self.residual, self.displacement) = (0.0, 0.0);
             }
         }
     }
@@ -220,12 +220,17 @@ impl ExternalPoseMonitor {
         let mut speed = None;
         if let Some(before) = before {
             let dt = dt as f32 * 1e-6;
-            let way = fix.position - before.position;
-            let still = [way.x, way.y, way.z, fix.heading - before.heading];
+            let displacement = fix.position - before.position;
+            let still = [
+                displacement.x,
+                displacement.y,
+                displacement.z,
+                fix.heading - before.heading,
+            ];
             let same = still.iter().all(|change| change.abs() < EQUAL);
             let held = self.same >= FROZEN_FIXES;
             self.same = if same { self.same.saturating_add(1) } else { 0 };
-            let off = before.speed.map_or(Vec3::ZERO, |speed| way - speed * dt);
+            let off = before.speed.map_or(Vec3::ZERO, |speed| displacement - speed * dt);
             let v = fix.variance();
             let stepped = off.norm_squared() > (NOISE * (v.x + v.y + v.z)).max(STEP * STEP);
             if stepped {
@@ -238,7 +243,7 @@ impl ExternalPoseMonitor {
             speed = if self.stepped {
                 before.speed
             } else {
-                Some(way * (1.0 / dt)).filter(|_| !again)
+                Some(displacement * (1.0 / dt)).filter(|_| !again)
             };
             if again || (held && !same) {
                 self.begin(fix);

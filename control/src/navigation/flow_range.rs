@@ -174,7 +174,7 @@ pub struct FlowRangeFusion {
     stepped_us: u64,
     distrusted_us: u64,
     /// Last hit on the present surface, and place of the edge of a step.
-    foot: Vec3,
+    surface_point: Vec3,
     stepped_at: Vec3,
     /// Ranges left for which the height of a narrow object is learnt: its flank was seen alone.
     flank: u32,
@@ -289,7 +289,7 @@ impl FlowRangeFusion {
         self.band = None;
         let height = distance * cos + q.rotate(self.lens).z;
         let below = Vec3::new(0.0, 0.0, -height) + q.rotate(self.lens) + beam(q, distance, 0.0);
-        self.foot = below;
+        self.surface_point = below;
         self.unproven = self.unproven.map(|_| below);
         self.agreements = self.agreements.map(Agreement::anew);
         (fresh && sound).then_some(height)
@@ -322,29 +322,29 @@ impl FlowRangeFusion {
             self.band = None;
             return None;
         }
-        let foot = then.position + beam(then.q, distance, yaw_offset);
+        let surface_point = then.position + beam(then.q, distance, yaw_offset);
         // Innovation of a hit on the present surface.
         let off = self.surface_z - surface;
         let raised = self.raised();
         let heading = then.yaw() + yaw_offset;
-        let below = PipeFootprint::below(foot, heading, self.radius, self.surface_z);
+        let below = PipeFootprint::below(surface_point, heading, self.radius, self.surface_z);
         if !self.scale.begun() {
-            self.unproven = Some(foot);
+            self.unproven = Some(surface_point);
         }
         let wide = WIDE * 2.0 * self.radius;
         self.unproven = self.unproven.filter(|first| below.aside(*first).abs() <= wide);
         if raised {
-            self.met = (then.at_us, foot);
+            self.met = (then.at_us, surface_point);
         } else {
             let (met_us, met) = self.met;
-            let (way, time) = (foot - met, then.at_us.saturating_sub(met_us));
-            let moved = Vec3::new(way.x, way.y, 0.0).norm();
+            let (displacement, time) = (surface_point - met, then.at_us.saturating_sub(met_us));
+            let moved = Vec3::new(displacement.x, displacement.y, 0.0).norm();
             let behind = moved > LEFT_BEHIND.0 || time > LEFT_BEHIND.1;
             self.band = self.band.filter(|_| !behind);
         }
         let flank = raised && off < 0.0 && below.is_flank(-off);
         if off.abs() <= STEP || flank {
-            (self.agreed, self.foot) = (0, foot);
+            (self.agreed, self.surface_point) = (0, surface_point);
             // Point at which the beam passes the band's height: the ground is met farther off.
             let at = |top: f32| then.position + beam(then.q, (top - then.position.z) / cos, yaw_offset);
             self.band = self.band.map(|band| band.bounded(at(band.top), raised));
@@ -360,7 +360,7 @@ impl FlowRangeFusion {
             }
             let band = self.band.get_or_insert(below);
             band.top = self.surface_z;
-            let (drop, doubt) = band.drop(foot);
+            let (drop, doubt) = band.drop(surface_point);
             let back = surface - drop;
             let below = if self.flank > 0 {
                 Below::Known
@@ -381,7 +381,11 @@ impl FlowRangeFusion {
         } else {
             // The edge is at the higher surface's hit: a tilted beam meets the ground a hand's breadth beside the
             // edge.
-            self.stepped_at = if off > 0.0 { foot } else { self.foot };
+            self.stepped_at = if off > 0.0 {
+                surface_point
+            } else {
+                self.surface_point
+            };
             1
         };
         self.step = off;
@@ -396,9 +400,15 @@ impl FlowRangeFusion {
             band.top = self.surface_z.min(before);
             let reach = band.top - then.position.z;
             let at = |m: &StateSnapshot| m.position + beam(m.q, reach, yaw_offset);
-            let way = at(then) - at(earlier);
-            self.band = Some(PipeFootprint::at_edge(band, self.stepped_at, onto, way, heading));
-            self.foot = foot;
+            let displacement = at(then) - at(earlier);
+            self.band = Some(PipeFootprint::at_edge(
+                band,
+                self.stepped_at,
+                onto,
+                displacement,
+                heading,
+            ));
+            self.surface_point = surface_point;
             self.flank = if onto && !known { FLANK_RANGES } else { 0 };
         }
         None
@@ -441,9 +451,9 @@ impl FlowRangeFusion {
             scalar::clamp((surface_z - to.position.z) / cos, least, 2.0 * most)
         };
         let near = far(self.surface_z);
-        let foot = to.position + beam(to.q, near, yaw_offset);
+        let surface_point = to.position + beam(to.q, near, yaw_offset);
         let seen = match self.band {
-            Some(band) => band.depth(to.position, foot, far(self.base)),
+            Some(band) => band.depth(to.position, surface_point, far(self.base)),
             None => Depth {
                 distance: near,
                 doubt: 0.0,
@@ -482,14 +492,17 @@ impl FlowRangeFusion {
         let turned = from.q.conjugate() * to.q;
         let half = if turned.w < 0.0 { -2.0 } else { 2.0 };
         let turned = [half * turned.x, half * turned.y];
-        let way = about_down(to.position - from.position, -yaw_offset);
-        let way = to.q.rotate_inverse(way);
+        let displacement = about_down(to.position - from.position, -yaw_offset);
+        let displacement = to.q.rotate_inverse(displacement);
         // In a descent, near objects on one side of the view seem to move to that side.
-        let aside = to.q.rotate_inverse(about_down(lean, -yaw_offset)) * way.z;
+        let aside = to.q.rotate_inverse(about_down(lean, -yaw_offset)) * displacement.z;
         let [roll, pitch] = flow.angle;
         let angle = [roll - aside.y / depth, pitch + aside.x / depth];
         let [roll, pitch] = angle;
-        let predicted = [turned[0] - way.y / depth, turned[1] + way.x / depth];
+        let predicted = [
+            turned[0] - displacement.y / depth,
+            turned[1] + displacement.x / depth,
+        ];
         let per = 1.0 / flow.seconds;
         let pairs = self.agreements.iter_mut().zip(angle).zip(predicted);
         if self.agreed > 0 || self.flank > 0 || distance < JUDGED {
@@ -506,8 +519,12 @@ impl FlowRangeFusion {
             return None;
         }
         // Flow does not observe the body's down axis: the estimate is used there.
-        let seen = Vec3::new((pitch - turned[1]) * depth, (turned[0] - roll) * depth, way.z);
-        let off = about_down(to.q.rotate(seen - way), yaw_offset) * per;
+        let seen = Vec3::new(
+            (pitch - turned[1]) * depth,
+            (turned[0] - roll) * depth,
+            displacement.z,
+        );
+        let off = about_down(to.q.rotate(seen - displacement), yaw_offset) * per;
         let speed = FLOW_NOISE * depth * per;
         let scale = (SCALE_NOISE + doubt) * (seen.x.abs() + seen.y.abs()) * per;
         Some(Seen {
@@ -542,8 +559,8 @@ pub fn beam(q: Quat, distance: f32, yaw_offset: f32) -> Vec3 {
 mod tests {
     use super::*;
 
-    /// In other axes the places of the ones before are none, and a flank that was half seen no longer keeps the flow from being
-    /// judged.
+    /// In other axes the places of the ones before are none, and a flank that was half seen no longer keeps the flow
+    /// from being judged.
     #[test]
     fn a_new_estimate_drops_the_places_of_the_previous_axes() {
         let mut flow_range = FlowRangeFusion::new(0.3, Vec3::ZERO);
@@ -558,7 +575,7 @@ mod tests {
                 let _ = flow_range.height((&at(0, y - 0.02), &at(0, y)), distance, false, 0.0);
             }
         }
-        assert!(flow_range.flank > 0 && flow_range.unproven.is_some() && flow_range.foot.x > 6.9);
+        assert!(flow_range.flank > 0 && flow_range.unproven.is_some() && flow_range.surface_point.x > 6.9);
         flow_range.range = Some((20_000, 1.0));
         let flow = Flow {
             until_us: 20_000,
@@ -571,7 +588,11 @@ mod tests {
             (flow_range.flank, flow_range.agreed, flow_range.step),
             (0, 0, 0.0)
         );
-        assert!(flow_range.foot.norm() < 1e-6, "{:?}", flow_range.foot);
+        assert!(
+            flow_range.surface_point.norm() < 1e-6,
+            "{:?}",
+            flow_range.surface_point
+        );
         assert!(flow_range.unproven.is_some_and(|first| first.norm() < 1e-6));
     }
 }

@@ -37,13 +37,13 @@ const STILL: u64 = 8_500_000;
 
 /// Inertial displacement since a run of equal readings began.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Way {
+struct InertialClimb {
     began_us: u64,
     at_us: u64,
     /// Height by the range at the beginning, m, corrected for tilt and lever arm.
     height: f32,
     /// Displacement, m, and speed, m/s, up, and the climb estimate at the beginning.
-    way: f32,
+    displacement: f32,
     rate: f32,
     climb: Climb,
 }
@@ -61,7 +61,7 @@ pub struct Frozen {
     fine: bool,
     /// A run has begun whose displacement is not initialised yet.
     begun: bool,
-    way: Option<Way>,
+    climbed: Option<InertialClimb>,
     /// The vehicle has moved farther than the range shows: at present, and latched at an equal reading.
     exceeds: bool,
     moved: bool,
@@ -78,7 +78,7 @@ impl Default for Frozen {
             usual: 1.0,
             fine: false,
             begun: false,
-            way: None,
+            climbed: None,
             exceeds: false,
             moved: false,
         }
@@ -104,7 +104,7 @@ impl Frozen {
             self.fine |= step < FINE;
             (self.same, self.since_us) = (0, at_us);
             (self.still, self.moved, self.exceeds) = (false, false, false);
-            (self.begun, self.way) = (true, None);
+            (self.begun, self.climbed) = (true, None);
         } else if flies || distance > NEAR {
             self.same = self.same.saturating_add(1);
             if !flies {
@@ -122,7 +122,7 @@ impl Frozen {
     /// A run of equal readings has a displacement, or is to begin one.
     #[inline(always)]
     pub fn needs_motion(&self) -> bool {
-        self.begun || self.way.is_some()
+        self.begun || self.climbed.is_some()
     }
 
     /// Integrates the displacement to `at_us` µs with the measured acceleration `down`, m/s², gravity removed. `cos`
@@ -130,31 +130,34 @@ impl Frozen {
     /// Outside of flight the displacement is dropped, and without a `climb` estimate it does not begin.
     pub fn predict(&mut self, at_us: u64, down: Option<f32>, (cos, lever): (f32, f32), climb: Option<Climb>) {
         let (Some(down), Some(distance)) = (down.filter(|a| a.abs() < SHOCK), self.before) else {
-            (self.way, self.exceeds) = (None, false);
+            (self.climbed, self.exceeds) = (None, false);
             return;
         };
         let height = distance * cos + lever;
         if core::mem::take(&mut self.begun) {
-            self.way = climb.map(|climb| Way {
+            self.climbed = climb.map(|climb| InertialClimb {
                 began_us: at_us,
                 at_us,
                 height,
-                way: 0.0,
+                displacement: 0.0,
                 rate: climb.rate,
                 climb,
             });
             return;
         }
-        let Some(way) = &mut self.way else {
+        let Some(climbed) = &mut self.climbed else {
             return;
         };
-        let dt = seconds(way.at_us, at_us);
-        way.at_us = at_us;
-        way.rate += (way.climb.bias - down) * dt;
-        way.way += way.rate * dt;
+        let dt = seconds(climbed.at_us, at_us);
+        climbed.at_us = at_us;
+        climbed.rate += (climbed.climb.bias - down) * dt;
+        climbed.displacement += climbed.rate * dt;
         // An equal range changes the height by tilt and lever arm alone.
-        let off = (way.way - (height - way.height)).abs() - RESOLUTION;
-        let variance = way.climb.way_variance(seconds(way.began_us, at_us)) + NOISE * NOISE;
+        let off = (climbed.displacement - (height - climbed.height)).abs() - RESOLUTION;
+        let variance = climbed
+            .climb
+            .displacement_variance(seconds(climbed.began_us, at_us))
+            + NOISE * NOISE;
         self.exceeds = off > 0.0 && off * off > EXCEEDS * variance;
     }
 }

@@ -26,8 +26,8 @@ pub struct Depth {
     pub distance: f32,
     /// Relative uncertainty of it by the place of the footprint.
     pub doubt: f32,
-    /// Horizontal offset of the near part within the view, in the estimate's axes, 1: as that part comes nearer it seems to
-    /// move this way.
+    /// Horizontal offset of the near part within the view, in the estimate's axes, 1: as that part comes nearer it
+    /// seems to move this way.
     pub lean: Vec3,
 }
 
@@ -48,23 +48,24 @@ pub struct PipeFootprint {
 }
 
 impl PipeFootprint {
-    /// The band whose edge is at `foot`. The beam has come `onto` it or off it, moving by `way`, of a vehicle at
-    /// `heading`, rad; the main direction of motion, forward or sideways, leads across the band. If the place `known`
-    /// before identifies the edge, that decides which of the two it is, and a gust to the other side does not.
-    pub fn at_edge(known: Self, foot: Vec3, onto: bool, way: Vec3, heading: f32) -> Self {
+    /// The band whose edge is at `surface_point`. The beam has come `onto` it or off it, moving by `displacement`, of a
+    /// vehicle at `heading`, rad; the main direction of motion, forward or sideways, leads across the band. If the
+    /// place `known` before identifies the edge, that decides which of the two it is, and a gust to the other side does
+    /// not.
+    pub fn at_edge(known: Self, surface_point: Vec3, onto: bool, displacement: Vec3, heading: f32) -> Self {
         let (ahead, right) = ahead_and_right(heading);
-        let (forward, sideways) = (way.dot(ahead), way.dot(right));
+        let (forward, sideways) = (displacement.dot(ahead), displacement.dot(right));
         let (across, speed) = if forward.abs() > AHEAD * sideways.abs() {
             (ahead, forward)
         } else {
             (right, sideways)
         };
-        let side = known.side(foot);
+        let side = known.side(surface_point);
         let same = across.dot(known.across) > 0.9 && side.abs() > 0.5 * known.radius;
         let before = if same { side < 0.0 } else { (speed > 0.0) == onto };
         let half = if before { known.radius } else { -known.radius };
         Self {
-            middle: foot + across * half,
+            middle: surface_point + across * half,
             across,
             sure: true,
             pushed: 0.0,
@@ -72,11 +73,11 @@ impl PipeFootprint {
         }
     }
 
-    /// A band below without a known edge: its centre line passes `foot` along `heading`, rad, its width is `2 radius`
-    /// m, its height `top` m.
-    pub fn below(foot: Vec3, heading: f32, radius: f32, top: f32) -> Self {
+    /// A band below without a known edge: its centre line passes `surface_point` along `heading`, rad, its width is
+    /// twice `radius`, m, its height `top`, m.
+    pub fn below(surface_point: Vec3, heading: f32, radius: f32, top: f32) -> Self {
         Self {
-            middle: foot,
+            middle: surface_point,
             across: ahead_and_right(heading).1,
             radius,
             top,
@@ -85,10 +86,10 @@ impl PipeFootprint {
         }
     }
 
-    /// Shifts the band so that it agrees with a hit at `foot` on the raised surface (`raised`) or on the ground. A
-    /// raised hit outside shows that it may be wide.
-    pub fn bounded(self, foot: Vec3, raised: bool) -> Self {
-        let side = self.side(foot);
+    /// Shifts the band so that it agrees with a hit at `surface_point` on the raised surface (`raised`) or on the
+    /// ground. A raised hit outside shows that it may be wide.
+    pub fn bounded(self, surface_point: Vec3, raised: bool) -> Self {
+        let side = self.side(surface_point);
         let sign = if side < 0.0 { -1.0 } else { 1.0 };
         let over = if raised {
             (side.abs() - self.radius - SLACK).max(0.0)
@@ -108,13 +109,13 @@ impl PipeFootprint {
         self.pushed > 2.0 * self.radius
     }
 
-    /// Drop of its back at `foot` below its top, m, and the uncertainty of that by the place, m. A band that may be
-    /// wide is flat.
-    pub fn drop(&self, foot: Vec3) -> (f32, f32) {
+    /// Drop of its back at `surface_point` below its top, m, and the uncertainty of that by the place, m. A band that
+    /// may be wide is flat.
+    pub fn drop(&self, surface_point: Vec3) -> (f32, f32) {
         if !self.sure {
             return (0.0, PLACE);
         }
-        let side = self.side(foot).abs().min(EDGE * self.radius);
+        let side = self.side(surface_point).abs().min(EDGE * self.radius);
         let drop = self.fallen(side);
         (drop, self.fallen(side + PLACE) - drop)
     }
@@ -144,11 +145,12 @@ impl PipeFootprint {
         (place - self.middle).dot(self.across)
     }
 
-    /// Scene of the view from `place` with its centre at `foot`: rays across the round band, and the ground beside it,
-    /// `far` m away.
-    pub fn depth(&self, place: Vec3, foot: Vec3, far: f32) -> Depth {
+    /// Scene of the view from `place` with its centre at `surface_point`: rays across the round band, and the ground
+    /// beside it, `far` m away.
+    pub fn depth(&self, place: Vec3, surface_point: Vec3, far: f32) -> Depth {
         let side = self.side(place);
-        let slope = (foot - place).dot(self.across) / scalar::clamp(foot.z - place.z, NEAREST, 100.0);
+        let slope = (surface_point - place).dot(self.across)
+            / scalar::clamp(surface_point.z - place.z, NEAREST, 100.0);
         let near = scalar::clamp(self.top - place.z, NEAREST, far);
         let of = |side: f32| self.seen_from(side, slope, near, far);
         let ((mean, moment), (left, _), (right, _)) = (of(side), of(side - PLACE), of(side + PLACE));
@@ -197,14 +199,15 @@ mod tests {
         PipeFootprint::below(Vec3::new(2.0, 1.0, 0.0), 0.0, 0.15, -1.5)
     }
 
-    fn foot(y: f32) -> Vec3 {
+    fn surface_point(y: f32) -> Vec3 {
         Vec3::new(0.0, y, 0.0)
     }
 
     #[test]
     fn the_view_is_as_near_as_what_fills_it() {
         // Its middle is at 1 m, the ground 1.9 m below the vehicle.
-        let seen = |y: f32, z: f32, slope: f32| band().depth(Vec3::new(0.0, y, z), foot(y - slope * z), -z);
+        let seen =
+            |y: f32, z: f32, slope: f32| band().depth(Vec3::new(0.0, y, z), surface_point(y - slope * z), -z);
         let depth = |y: f32, z: f32, slope: f32| seen(y, z, slope).distance;
         // From 0.4 m its tangents, 15.8° to each side, are 74 % of the view; from 0.7 m 47 %.
         let over = depth(1.0, -1.9, 0.0);
@@ -243,7 +246,7 @@ mod tests {
     fn either_edge_from_either_side_gives_the_same_band() {
         for radius in [0.1, 0.2] {
             // Only that something is below is known, somewhere else along the way.
-            let below = PipeFootprint::below(foot(1.0), 0.0, radius, -1.5);
+            let below = PipeFootprint::below(surface_point(1.0), 0.0, radius, -1.5);
             for (side, onto, speed) in [
                 (-1.0, true, 0.3),
                 (1.0, true, -0.3),
@@ -253,13 +256,13 @@ mod tests {
                 let edge = Vec3::new(5.0, 1.0 + side * radius, 0.0);
                 let band = PipeFootprint::at_edge(below, edge, onto, Vec3::new(0.1, speed, 0.0), 0.0);
                 for y in [0.7, 0.9, 1.0, 1.2] {
-                    let off = band.side(foot(y)) - (y - 1.0);
+                    let off = band.side(surface_point(y)) - (y - 1.0);
                     assert!(off.abs() < 1e-6, "{radius} {side} {onto} {speed}");
                 }
                 // On its crown, half way to its edge and at a fifth of its diameter beneath it.
-                let (drop, _) = band.drop(foot(1.0));
+                let (drop, _) = band.drop(surface_point(1.0));
                 assert!(drop < 1e-6, "{drop}");
-                let (drop, doubt) = band.drop(foot(1.0 + 0.6 * radius));
+                let (drop, doubt) = band.drop(surface_point(1.0 + 0.6 * radius));
                 assert!(
                     (drop - 0.2 * radius).abs() < 1e-4 && doubt > 0.015,
                     "{drop} {doubt}"
@@ -272,48 +275,54 @@ mod tests {
     #[test]
     fn a_gust_to_the_other_side_does_not_mistake_one_edge_for_the_other() {
         // Its right edge is crossed outwards while the vehicle is taken to drift to the left, or mostly ahead.
-        for way in [Vec3::new(0.0, -0.1, 0.0), Vec3::new(0.15, -0.1, 0.0)] {
-            let moved = PipeFootprint::at_edge(band(), foot(1.17), false, way, 0.0);
-            assert!(moved.side(foot(1.02)).abs() < 1e-6, "{moved:?}");
+        for displacement in [Vec3::new(0.0, -0.1, 0.0), Vec3::new(0.15, -0.1, 0.0)] {
+            let moved = PipeFootprint::at_edge(band(), surface_point(1.17), false, displacement, 0.0);
+            assert!(moved.side(surface_point(1.02)).abs() < 1e-6, "{moved:?}");
         }
         // Far ahead of sideways it is the pipe's end.
-        let end = PipeFootprint::at_edge(band(), foot(1.0), false, Vec3::new(0.3, 0.1, 0.0), 0.0);
+        let end = PipeFootprint::at_edge(band(), surface_point(1.0), false, Vec3::new(0.3, 0.1, 0.0), 0.0);
         assert!(end.side(Vec3::new(-0.15, 1.0, 0.0)).abs() < 1e-6, "{end:?}");
         // By its heading, not the axes'.
-        let turned = PipeFootprint::below(foot(1.0), core::f32::consts::FRAC_PI_2, 0.15, -1.5);
+        let turned = PipeFootprint::below(surface_point(1.0), core::f32::consts::FRAC_PI_2, 0.15, -1.5);
         assert!((turned.side(Vec3::new(-0.1, 1.0, 0.0)) - 0.1).abs() < 1e-6);
         assert!(RIGHT.dot(turned.across).abs() < 1e-6);
     }
 
-    /// In a throw off the pipe the beam leans against the way: the edge was taken for the other one, and the band, pushed ahead
-    /// of the vehicle, halved its speed for as long as it moved on.
+    /// In a throw off the pipe the beam leans against the way: the edge was taken for the other one, and the band,
+    /// pushed ahead of the vehicle, halved its speed for as long as it moved on.
     #[test]
     fn a_band_that_the_ground_pushes_by_more_than_its_width_is_mistaken() {
-        let pushed = |way: f32| {
-            let steps = (way * 100.0) as u8;
+        let pushed = |displacement: f32| {
+            let steps = (displacement * 100.0) as u8;
             (0..=steps).fold(band(), |band, i| {
-                band.bounded(foot(0.9 + 0.01 * f32::from(i)), false)
+                band.bounded(surface_point(0.9 + 0.01 * f32::from(i)), false)
             })
         };
         assert!(!pushed(0.2).is_mistaken() && pushed(0.5).is_mistaken());
         // An edge that is seen says where it is.
-        assert!(!PipeFootprint::at_edge(pushed(0.5), foot(1.5), true, RIGHT, 0.0).is_mistaken());
+        assert!(!PipeFootprint::at_edge(pushed(0.5), surface_point(1.5), true, RIGHT, 0.0).is_mistaken());
     }
 
     #[test]
     fn where_the_beam_meets_it_or_the_ground_bounds_its_place() {
         for y in [0.6, 0.95, 1.1, 1.5] {
-            let on = band().bounded(foot(y), true).side(foot(y));
+            let on = band().bounded(surface_point(y), true).side(surface_point(y));
             assert!(on.abs() < 0.15 + SLACK + 1e-6, "{y}: {on}");
-            let beside = band().bounded(foot(y), false).side(foot(y));
+            let beside = band().bounded(surface_point(y), false).side(surface_point(y));
             assert!(beside.abs() > 0.15 - SLACK - 1e-6, "{y}: {beside}");
         }
         // What is met beside it is wide, or it is elsewhere: flat, as far as is known.
-        let table = PipeFootprint::at_edge(band(), foot(1.15), false, RIGHT, 0.0);
-        assert!(table.drop(foot(1.1)).0 > 0.02);
-        assert!(table.bounded(foot(1.3), true).drop(foot(1.25)).0 < 1e-6);
+        let table = PipeFootprint::at_edge(band(), surface_point(1.15), false, RIGHT, 0.0);
+        assert!(table.drop(surface_point(1.1)).0 > 0.02);
+        assert!(
+            table
+                .bounded(surface_point(1.3), true)
+                .drop(surface_point(1.25))
+                .0
+                < 1e-6
+        );
         // What agrees moves nothing.
-        assert_eq!(band().bounded(foot(1.1), true), band());
-        assert_eq!(band().bounded(foot(1.3), false), band());
+        assert_eq!(band().bounded(surface_point(1.1), true), band());
+        assert_eq!(band().bounded(surface_point(1.3), false), band());
     }
 }

@@ -264,7 +264,7 @@ struct Track {
     reset_count: u8,
     ready: bool,
     range_hit: RangeHit,
-    /// Measurement time of `foot`, µs; 0 before the first.
+    /// Measurement time of `surface_point`, µs; 0 before the first.
     range_hit_us: u64,
 }
 

@@ -81,7 +81,7 @@ pub struct Climb {
 
 impl Climb {
     /// Variance of the inertial displacement, m², after `t` s.
-    pub fn way_variance(&self, t: f32) -> f32 {
+    pub fn displacement_variance(&self, t: f32) -> f32 {
         let [rr, rb, bb] = self.variances;
         t * t * (rr + t * (rb + ACCEL_NOISE * ACCEL_NOISE * (1.0 / 3.0) + t * 0.25 * bb))
     }

@@ -170,7 +170,7 @@ impl Try {
         scenario.world.pipe_friction = touch.friction;
         scenario.world.gust_force = touch.gust;
         scenario.world.gust_moment = 0.04 * touch.gust;
-        let plant = Plant::new(&scenario);
+        let plant = scenario.plant();
         let stack = Stack::new(&scenario);
         Self {
             scenario,

@@ -9,7 +9,6 @@ use crate::plant::beam::rest::{DAMPING, SlowArm, pipe_under};
 use crate::plant::beam::{BeamSpec, Masses, TENDON_LEVER};
 use crate::plant::flexible::ArmBending;
 use crate::plant::tendon::TendonSpec;
-use crate::plant::{arm_spec, beam_spec};
 use crate::scenario::{Scenario, Step};
 use crate::test_stands::arm_stand::{StandArm, Tried, try_grip};
 
@@ -55,8 +54,8 @@ fn stand(scenario: &Scenario, arm: usize) -> StandArm {
     });
     StandArm {
         arm,
-        spec: arm_spec(scenario, arm),
-        beam: (v.arm_bending == ArmBending::Beam).then(|| beam_spec(scenario, arm)),
+        spec: scenario.arm_spec(arm),
+        beam: (v.arm_bending == ArmBending::Beam).then(|| scenario.beam_spec(arm)),
         servo: scenario.servo_on(arm),
         tendon: TendonSpec {
             slack_error: 0.0,
@@ -114,7 +113,7 @@ fn advice(tried: &Tried) -> String {
 /// plant's arm at rest.
 pub fn needed(scenario: &Scenario, arm: usize, thrust: f64, target: f64) -> Option<f64> {
     let (v, w) = (&scenario.vehicle, &scenario.world);
-    let print = arm_spec(scenario, arm);
+    let print = scenario.arm_spec(arm);
     let beam = BeamSpec::tapered(&print, Masses::of(&v.body), DAMPING, v.arm_taper);
     let pipe = pipe_under(0.5 * w.pipe_diameter, w.pipe_friction);
     SlowArm::new(arm, beam, TENDON_LEVER, thrust, Some(pipe)).pull_to(target)

@@ -3,10 +3,10 @@
 use sophie_control::allocation::effectiveness::{Effectiveness, Geometry};
 use sophie_control::allocation::wrench::PerArm;
 
+use crate::plant::GRAVITY;
 use crate::plant::beam::BeamSpec;
 use crate::plant::contact::{ARM_LENGTH, ARM_X};
 use crate::plant::hinged::link::ArmSpec;
-use crate::plant::{GRAVITY, arm_spec, beam_spec};
 use crate::scenario::{Scenario, Vehicle};
 
 /// Bisection steps for the hover thrust: to 1e-6 of the largest.
@@ -36,8 +36,8 @@ impl Built {
         let v: &Vehicle = &scenario.vehicle;
         let chi = f64::from(v.configuration.chi());
         let mut built = Self {
-            arms: std::array::from_fn(|arm| arm_spec(scenario, arm)),
-            beams: std::array::from_fn(|arm| beam_spec(scenario, arm)),
+            arms: std::array::from_fn(|arm| scenario.arm_spec(arm)),
+            beams: std::array::from_fn(|arm| scenario.beam_spec(arm)),
             geometry: Geometry::new(
                 ARM_LENGTH as f32,
                 ARM_X as f32,

@@ -46,7 +46,7 @@ impl Companion {
         Self {
             source: PoseSource::new(streams)
                 .seeing(DVec3::new(north, east, -pipe.top), streams)
-                .tagged(spot, sensors, streams)
+                .tagged(spot, &sensors.tag(), streams)
                 .failing(sensors.pose_fault, sensors.pose_fails_at, sensors.pose_fails_for),
             line: shared.unwrap_or_else(|| Box::leak(Box::new(Line::new()))),
             shared: shared.is_some(),

@@ -40,7 +40,9 @@ impl FlowSender {
         let s = self.sensors;
         let new = || {
             let module = FlowModule::new(self.streams, *plant.pipe(), s.lens());
-            let module = module.sending(s.flow_rate, s.range_step).looking(self.optics, &s);
+            let module = module
+                .sending(s.flow_rate, s.range_step)
+                .looking(self.optics, &s.flow_errors());
             module.failing(s.flow_fault, s.pose_fails_at, s.pose_fails_for)
         };
         self.module.get_or_insert_with(new).step(plant.pose());

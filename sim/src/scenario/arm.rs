@@ -9,7 +9,7 @@ use toml::de::DeTable;
 use super::Scenario;
 use super::error::{Place, ScenarioError};
 use super::source::{Result, Source, Value};
-use crate::plant::{GRAVITY, arm_spec};
+use crate::plant::GRAVITY;
 
 /// Slope without thrust, rad/N (0.1 deg/N): at 0.02 the lightest vehicle's bending mode is too fast for the plant's
 /// step of 0.5 ms.
@@ -84,7 +84,7 @@ fn unbuilt(scenario: &Scenario) -> Option<String> {
         if let Some(fault) = slope.fault(scenario.arm_softness(arm)) {
             return Some(fault);
         }
-        let spec = arm_spec(scenario, arm);
+        let spec = scenario.arm_spec(arm);
         let tilt = [0.0, thrust_max].map(|thrust| spec.static_tilt(thrust));
         let far = tilt.into_iter().find(|t| t.is_nan() || t.abs() > LARGEST_TILT)?;
         Some(format!(

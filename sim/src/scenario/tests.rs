@@ -12,7 +12,7 @@ use sophie_mixers::Variant;
 
 use super::keys::{KEYS, Kind};
 use super::*;
-use crate::plant::{Actuators, Plant};
+use crate::plant::Actuators;
 
 fn parse(text: &str) -> Result<Scenario, ScenarioError> {
     Scenario::parse(text, "perch.toml", &Overrides::default())
@@ -303,7 +303,7 @@ fn every_loaded_vehicle_can_be_stepped() {
             continue;
         };
         loaded += 1;
-        let mut plant = Plant::new(&scenario);
+        let mut plant = scenario.plant();
         let mut actuators = Actuators {
             servos: [550.0; 4],
             ..Default::default()

@@ -29,7 +29,6 @@ use self::fault::{Held, Reading};
 pub use self::optics::{Look, Optics};
 use self::picture::{COUNTS, Picture};
 use crate::plant::contact::{Pipe, Pose};
-use crate::scenario::Sensors;
 use crate::streams::Streams;
 
 /// Default time between two frames, ms: 50 a second.
@@ -55,6 +54,17 @@ const GAP: (f64, f64) = (0.3, 1.0);
 const BETWEEN: (f64, f64) = (10.0, 40.0);
 /// Quality of a picture with enough texture.
 const QUALITY: u8 = 120;
+
+/// Errors of flow and range that a module of its kind has.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FlowErrors {
+    /// White noise of the flow of a frame, rad; `None`: [`FLOW_NOISE`].
+    pub noise: Option<f64>,
+    /// The quality varies whatever the flow is worth.
+    pub quality_varies: bool,
+    /// The range is a mean of all that its beam meets.
+    pub mixed_pixels: bool,
+}
 
 /// The module.
 #[derive(Clone, Debug)]
@@ -158,13 +168,13 @@ impl FlowModule {
 
     /// The same over surfaces that look as `optics` says, with the imperfections of `sensors`.
     #[must_use]
-    pub fn looking(self, optics: Optics, sensors: &Sensors) -> Self {
+    pub fn looking(self, optics: Optics, errors: &FlowErrors) -> Self {
         Self {
             optics,
-            echoes: optics.light.is_some() || optics.pipe.gloss > 0.0 || sensors.range_mixed_pixels,
-            mixed_pixels: sensors.range_mixed_pixels,
-            flow_noise: sensors.flow_noise.unwrap_or(FLOW_NOISE),
-            quality_varies: sensors.flow_quality_varies,
+            echoes: optics.light.is_some() || optics.pipe.gloss > 0.0 || errors.mixed_pixels,
+            mixed_pixels: errors.mixed_pixels,
+            flow_noise: errors.noise.unwrap_or(FLOW_NOISE),
+            quality_varies: errors.quality_varies,
             ..self
         }
     }

@@ -16,7 +16,6 @@ use rand_pcg::Pcg64Mcg;
 use self::dropout::Dropout;
 use self::tag::Tag;
 use crate::plant::contact::Pose;
-use crate::scenario::Sensors;
 use crate::streams::Streams;
 
 /// Time between two measurements, ms: 50 a second.
@@ -44,6 +43,17 @@ const BETWEEN: (f64, f64) = (10.0, 40.0);
 const SCALED: f64 = 2.5;
 const JUMP: f64 = 0.6;
 const JUMP_MS: u64 = 300;
+
+/// Losses and outliers of a source that sees a tag.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TagSpec {
+    /// Edge of the tag, m; `None`: the noise is the same everywhere.
+    pub size: Option<f64>,
+    /// Share of the poses that are turned about the tag, 0..1.
+    pub outliers: f64,
+    /// Share of the poses that are lost in bursts, 0..1.
+    pub dropout: f64,
+}
 
 /// A measurement in the source's axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -143,13 +153,17 @@ impl PoseSource {
         }
     }
 
-    /// The same with the losses and outliers of `sensors`, by a tag at `place` (m, NED).
+    /// The same with the losses and outliers of `spec`, by a tag at `place` (m, NED).
     #[must_use]
-    pub fn tagged(self, place: DVec3, sensors: &Sensors, streams: Streams) -> Self {
-        let (size, outliers) = (sensors.pose_tag_size, sensors.pose_outlier_share);
+    pub fn tagged(self, place: DVec3, spec: &TagSpec, streams: Streams) -> Self {
+        let &TagSpec {
+            size,
+            outliers,
+            dropout,
+        } = spec;
         let tag = Tag::new(place, size, outliers, streams);
         Self {
-            dropout: Dropout::new(sensors.pose_dropout_share, streams),
+            dropout: Dropout::new(dropout, streams),
             tag: (size.is_some() || outliers > 0.0).then_some(tag),
             ..self
         }

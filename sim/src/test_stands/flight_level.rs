@@ -84,7 +84,7 @@ pub fn vehicle(configuration: Configuration, gain_k: f64, infill: f64, mixer: Va
 impl Rig {
     /// The vehicle of `scenario` at rest on the ground.
     pub fn new(scenario: &Scenario) -> Self {
-        let plant = Plant::new(scenario);
+        let plant = scenario.plant();
         let board = Board::of(scenario);
         let (variant, configuration) = (scenario.mixer, scenario.vehicle.configuration);
         Self::assembled(plant, board, scenario.params, move |p: &_| {
@@ -111,7 +111,7 @@ impl Rig {
         scenario: &Scenario,
         allocation: impl FnOnce(&Params) -> A + 'static,
     ) -> Self {
-        let plant = Plant::new(scenario);
+        let plant = scenario.plant();
         let board = Board::of(scenario);
         let [accel_bias_x, accel_bias_y, accel_bias_z] = board.accel_bias;
         let params = Params {

@@ -69,10 +69,10 @@ impl World {
 /// How a try ends: the planner, where the vehicle is then, and after how long.
 fn flown(world: World, planner: ApproachPlanner) -> (Result<(), ApproachAbort>, Vec3, ApproachPlanner, f32) {
     let (mut planner, mut held, mut speed) = (planner, planner.origin, Vec3::ZERO);
-    let mut foot = RangeHit::default();
+    let mut surface_point = RangeHit::default();
     for i in 0..12_000 {
         if i % 2 == 0 {
-            foot = RangeHit {
+            surface_point = RangeHit {
                 surface_point: world.below_lens(held, planner.lens).and_then(|point| {
                     let (from, until, scale) = world.scaled;
                     let wrong = (from..until).contains(&(i as f32 * DT));
@@ -81,7 +81,7 @@ fn flown(world: World, planner: ApproachPlanner) -> (Result<(), ApproachAbort>, 
                     let seen = Vec3::new(point.x, point.y, held.z + range);
                     (range < REACH).then_some(seen)
                 }),
-                count: foot.count.wrapping_add(1),
+                count: surface_point.count.wrapping_add(1),
                 age: 0.02,
             };
         }
@@ -91,7 +91,7 @@ fn flown(world: World, planner: ApproachPlanner) -> (Result<(), ApproachAbort>, 
             heading: world.heading,
             held,
             age: 0.0,
-            range_hit: foot,
+            range_hit: surface_point,
             target: None,
         };
         match planner.step(&view, DT) {

@@ -100,7 +100,7 @@ impl World {
         let flank = 0.15 - crate::maths::scalar::sqrt((0.0225 - y * y).max(0.0));
         let z = if on { flank - CROWN } else { 0.0 };
         self.count = self.count.wrapping_add(1);
-        let foot = RangeHit {
+        let surface_point = RangeHit {
             surface_point: Some(Vec3::new(self.at.x, self.at.y, z)),
             count: self.count,
             age: 0.02,
@@ -110,7 +110,11 @@ impl World {
             velocity: Vec3::new(0.0, 0.0, self.bent.map_or(0.0, |bent| self.r.falling + bent)),
             reset_count: self.jumps,
             age: 0.02,
-            range_hit: if self.ranged { foot } else { RangeHit::default() },
+            range_hit: if self.ranged {
+                surface_point
+            } else {
+                RangeHit::default()
+            },
             ..Estimate::default()
         });
     }

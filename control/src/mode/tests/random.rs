@@ -105,7 +105,7 @@ fn position() -> impl Strategy<Value = Option<Estimate>> {
     let vector = |size: f32| [-size..size, -size..size, -size..size].prop_map(Vec3::from);
     let reset_count = prop_oneof![9 => Just(0u8), 1 => any::<u8>()];
     let point = prop_oneof![3 => vector(20.0).prop_map(Some), 1 => Just(None)];
-    let foot = (point, any::<u8>(), prop_oneof![3 => Just(0.02f32), 1 => number()]).prop_map(
+    let surface_point = (point, any::<u8>(), prop_oneof![3 => Just(0.02f32), 1 => number()]).prop_map(
         |(point, count, age)| RangeHit {
             surface_point: point,
             count,
@@ -120,10 +120,18 @@ fn position() -> impl Strategy<Value = Option<Estimate>> {
         number(),
         age,
         reset_count,
-        foot,
+        surface_point,
     )
         .prop_map(
-            |(position, velocity, disturbance, yaw_offset, (age, by_pressure), reset_count, foot)| {
+            |(
+                position,
+                velocity,
+                disturbance,
+                yaw_offset,
+                (age, by_pressure),
+                reset_count,
+                surface_point,
+            )| {
                 Some(Estimate {
                     position,
                     velocity,
@@ -132,7 +140,7 @@ fn position() -> impl Strategy<Value = Option<Estimate>> {
                     age,
                     by_pressure,
                     reset_count,
-                    range_hit: foot,
+                    range_hit: surface_point,
                 })
             },
         );

@@ -180,7 +180,7 @@ fn what_was_flown_by_it_is_given_back_or_is_another_origin() {
         w.bent = 0.4;
         w.run(seconds);
         let before = w.out().position.z;
-        // The foot stays as far below the vehicle.
+        // The surface_point stays as far below the vehicle.
         let way = |e: &Estimate| e.range_hit.surface_point.unwrap().z - e.position.z;
         assert!((way(&w.out()) - way(&w.estimate.unwrap())).abs() < 1e-5);
         (w.bent, w.off) = (0.0, 0.4 * seconds);

@@ -87,7 +87,7 @@ impl Hovering {
             ..scenario.clone()
         };
         let v = &scenario.vehicle;
-        let mut plant = Plant::new(&calm);
+        let mut plant = calm.plant();
         plant.place(PLACE, DVec3::ZERO);
         let mixer = Mixer::new(scenario.mixer, v.configuration, &scenario.params);
         let thrust = (share * v.body.mass * GRAVITY).min(HOVER_SHARE * 4.0 * v.rotor.thrust_max);

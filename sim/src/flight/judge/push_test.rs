@@ -75,7 +75,7 @@ mod tests {
     /// On the ground, friction 0.7 of 17.7 N holds a push of 6 N from any side and not one of 16 N; up it takes the weight.
     #[test]
     fn a_vehicle_on_the_ground_holds_up_to_its_friction() {
-        let mut plant = Plant::new(&Scenario::default_mission());
+        let mut plant = Scenario::default_mission().plant();
         for _ in 0..4000 {
             plant.step(&Actuators::default());
         }
