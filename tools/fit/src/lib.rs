@@ -5,5 +5,6 @@ pub mod arm;
 pub mod arm_data;
 pub mod csv;
 pub mod least_squares;
+pub mod servo_steps;
 pub mod tendon;
 pub mod tendon_data;
