@@ -261,6 +261,9 @@ fn sensors_and_actuators(builder: &mut Builder, board: &Board) {
         builder.at("full mark", "+185");
         builder.at("2430 us", "");
     }
+    for tendon in 1..=4 {
+        builder.at(&format!("(tendon-{tendon})"), "s");
+    }
     builder.step("flow");
     builder.hears("no flow module: flow_port is none");
     builder.step("battery");

@@ -6,6 +6,7 @@ mod interruption;
 mod params;
 #[cfg(target_os = "linux")]
 mod serial;
+mod tendon;
 mod wire;
 
 use std::process::{Child, Command};

@@ -17,6 +17,9 @@ const STILL: Duration = Duration::from_secs(300);
 const WEIGHT: f64 = 1.3;
 /// A tip bent up, rad.
 const BENT: f64 = 0.3;
+/// Weight on a tip, N, as the walk proposes it, and the time to hang it on, ms.
+const TIP_WEIGHT: f64 = 3.0;
+const HANGS: u64 = 2000;
 /// On a pad under a thumb, Pa.
 const THUMB: f64 = 900.0;
 
@@ -37,6 +40,8 @@ pub(super) struct Builder {
     /// Remaining moves of a live step, and the board's time at which the present one ends.
     moves: Option<VecDeque<Move>>,
     over: u64,
+    /// Weight that is asked for on the tip, N.
+    asked_weight: Option<f64>,
     /// Moves of the servos.
     marks: VecDeque<&'static str>,
     servo_marks: Vec<f64>,
@@ -53,6 +58,7 @@ impl Builder {
             last: String::new(),
             moves: None,
             over: 0,
+            asked_weight: None,
             marks: VecDeque::new(),
             servo_marks: Vec::new(),
             turned: Vec::new(),
@@ -98,6 +104,7 @@ impl Builder {
             changed = before.below != held.below
                 || before.pressed != held.pressed
                 || before.bent != held.bent
+                || before.on_box != held.on_box
                 || before.height != held.height
                 || before.sticks != held.sticks;
         });
@@ -140,15 +147,31 @@ impl Builder {
         if self.until == Some(&*self.step) {
             return "q";
         }
+        // One tendon stands for four.
+        let tendon = self.step.starts_with("tendon-");
+        if tendon && self.step != "tendon-1" {
+            return "s";
+        }
         self.moves = None;
         self.marks = ["-92", "", "+185", ""].into();
         let on = matches!(&*self.step, "radio" | "final");
         self.does(|held| {
             held.below = Face::Belly;
             held.bent = [0.0; 4];
+            held.on_box = tendon;
             held.sticks = on.then(Sticks::default);
         });
         ""
+    }
+
+    /// Hangs the weight that is asked for, and replies once it hangs.
+    fn hangs(&mut self, now: u64) -> Option<Reply> {
+        if let Some(weight) = self.asked_weight.take() {
+            let arm = self.number();
+            self.operator.change(|held| held.hung[arm] = weight);
+            self.over = now + HANGS;
+        }
+        (now >= self.over).then(|| Reply::Line(String::new()))
     }
 
     /// The next move of a servo; a mark records its pulse.
@@ -280,6 +303,11 @@ impl User for Builder {
         {
             self.step = id.trim_end_matches(')').to_owned();
         }
+        if line.contains("Hang the weight on the tip") {
+            self.asked_weight = Some(TIP_WEIGHT);
+        } else if line.contains("Take the weight off, slowly") {
+            self.asked_weight = Some(0.0);
+        }
         self.last = line.to_owned();
     }
 
@@ -297,6 +325,9 @@ impl User for Builder {
     fn answered(&mut self) -> Option<Reply> {
         let now = self.operator.observe().ms;
         let id = self.step.clone();
+        if id.starts_with("tendon-") {
+            return self.hangs(now);
+        }
         let moves = self.moves.get_or_insert_with(|| live(&id));
         if now < self.over {
             return None;

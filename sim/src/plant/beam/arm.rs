@@ -234,8 +234,8 @@ impl BeamArm {
             let [_, tip] = &self.places;
             let (r, force) = (self.position(tip), gravity * (self.hung / GRAVITY));
             held.add(force, r.cross(force));
-            for k in 0..TERMS {
-                rest[k] -= tip.out_by[k] * self.side * force.y + tip.up_by[k] * force.z;
+            for ((rest, out_by), up_by) in rest.iter_mut().zip(tip.out_by).zip(tip.up_by) {
+                *rest -= out_by * self.side * force.y + up_by * force.z;
             }
         }
         let scale = 1.0 / (aa * bb - ab * ab);
