@@ -56,6 +56,7 @@ pub fn main() -> ExitCode {
         Task::Study(Study::Unknown(args)) => unknown::run(&args),
         Task::Paper(args) => study::paper(&args),
         Task::FitArm(args) => study::fit_arm(&args),
+        Task::FitTendon(args) => study::fit_tendon_steps(&args),
         Task::Timing(args) => timing::run(&args).map(|()| true),
         Task::Recording(args) => recording::run(&args).map(|()| true),
     };

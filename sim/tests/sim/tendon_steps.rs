@@ -220,7 +220,16 @@ fn steps_with_and_without_a_weight_find_stiffness_slack_and_friction() {
         let Calibrated { found, top } = calibrate(&scenario);
         let (tendons, p) = (&scenario.vehicle.tendons, &scenario.params);
         let common = found.iter().map(|found| found.stiffness.value).sum::<f64>() / 4.0;
-        println!("{seed}: {:?} {:?} {:?} {:?} {:?} warm {} {:?}", found.map(|f| f.stiffness.value.round()), tendons.stiffness.map(f64::round), found.map(|f| f.softness.value), found.map(|f| f.residual.to_degrees()), top, scenario.world.temperature, scenario.vehicle.arm_material);
+        println!(
+            "{seed}: {:?} {:?} {:?} {:?} {:?} warm {} {:?}",
+            found.map(|f| f.stiffness.value.round()),
+            tendons.stiffness.map(f64::round),
+            found.map(|f| f.softness.value),
+            found.map(|f| f.residual.to_degrees()),
+            top,
+            scenario.world.temperature,
+            scenario.vehicle.arm_material
+        );
         mean.push(4.0 * common / tendons.stiffness.iter().sum::<f64>() - 1.0);
         for (arm, found) in found.iter().enumerate() {
             let truth = (

@@ -345,7 +345,10 @@ impl Stand {
     fn of(scenario: &Scenario) -> Self {
         let mut plant = scenario.plant();
         plant.stand(true);
-        Self { plant, hung: [0.0; 4] }
+        Self {
+            plant,
+            hung: [0.0; 4],
+        }
     }
 
     /// A round under the servos' `pulses`, us, while hands bring the weights to `hung` N; the arms' tilts.
@@ -395,7 +398,10 @@ impl Run {
             arms: Arms::default(),
             motors: FakeMotors::default(),
             servos: FakeServos::default(),
-            stand: now.vehicle.as_deref().map(|scenario| RefCell::new(Stand::of(scenario))),
+            stand: now
+                .vehicle
+                .as_deref()
+                .map(|scenario| RefCell::new(Stand::of(scenario))),
             chip: ThisChip {
                 hands: hands.clone(),
                 stored: stored.clone(),
@@ -529,9 +535,9 @@ impl Run {
         self.analog.frame.set(hands.counts);
         let pulses = self.servos.pulses.borrow().last().copied().unwrap_or_default();
         let stand = self.stand.as_ref();
-        self.arms.0.set(stand.map_or(hands.tilt, |stand| {
-            stand.borrow_mut().round(pulses, hands.hung)
-        }));
+        self.arms
+            .0
+            .set(stand.map_or(hands.tilt, |stand| stand.borrow_mut().round(pulses, hands.hung)));
         // No number is no pressure.
         self.barometer.1.set(hands.air.unwrap_or(f32::NAN));
         if let (Some(sticks), 0) = (hands.sticks, ms % 20) {

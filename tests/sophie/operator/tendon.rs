@@ -18,10 +18,8 @@ const VEHICLE: &str = "vehicle.known = \"as-built\"\nvehicle.tendon_stiffness_n_
 /// A bottle, N.
 const WEIGHT: f64 = 3.2;
 
-/// At the box: the tendon of arm `number` is stepped through, with the weight on and off as asked.
-fn steps(builder: &mut Builder, board: &Board, number: usize) {
-    builder.step(&format!("tendon-{number}"));
-    builder.at("Weight in N", if number == 1 { "3.2" } else { "" });
+/// Hangs the weight on arm `number` and takes it off, as asked.
+fn weighed(builder: &mut Builder, board: &Board, number: usize) {
     for _ in 0..4 {
         for (asked, weight) in [("Hang the weight", WEIGHT), ("Take the weight off", 0.0)] {
             builder.hears(asked);
@@ -49,8 +47,10 @@ fn tendons_are_measured_by_their_servos_and_a_known_weight() {
     for step in STEPS.iter().take_while(|step| step.id != "tendon-1") {
         builder.at(&format!("({})", step.id), "s");
     }
+    builder.step("tendon-1");
     builder.hears("Left out: the force is up to four times");
-    steps(&mut builder, &board, 1);
+    builder.at("Weight in N", "3.2");
+    weighed(&mut builder, &board, 1);
     builder.hears("tendon_stiffness 8000 -> ");
     builder.hears("passed");
     let first = board.stored().tendon_stiffness;
@@ -66,26 +66,27 @@ fn tendons_are_measured_by_their_servos_and_a_known_weight() {
     builder.at("Enter tries it again", "");
     builder.at("Enter begins", "");
     builder.at("Weight in N", "3.2");
-    for _ in 0..4 {
-        for (asked, weight) in [("Hang the weight", WEIGHT), ("Take the weight off", 0.0)] {
-            builder.hears(asked);
-            board.hands(|hands| hands.hung[1] = weight);
-            board.pass(2.0);
-            builder.types("");
-        }
-    }
+    weighed(&mut builder, &board, 2);
     builder.hears("friction above 0.4: closings take 6 to 10 s");
     builder.hears("passed");
     let both = board.stored().tendon_stiffness;
-    assert!((both / 3000.0 - 1.0).abs() < 0.12 && both < first, "{first} {both}");
+    assert!(
+        (both / 3000.0 - 1.0).abs() < 0.12 && both < first,
+        "{first} {both}"
+    );
 
     // A thread that no trim takes up is to be knotted anew.
-    steps(&mut builder, &board, 3);
+    builder.step("tendon-3");
+    builder.at("Weight in N", "");
+    weighed(&mut builder, &board, 3);
     builder.hears("mm shorter, then once more");
     builder.at("Enter tries it again", "q");
     let (status, said, complaint) = builder.ends();
     assert_eq!((status, &*complaint), (Some(1), ""), "{said}");
     let file = fs::read_to_string(temp.0.join("bringup.toml")).unwrap();
-    assert!(file.contains("servo_trim_1 = ") && file.contains("[step.measured]"), "{file}");
+    assert!(
+        file.contains("servo_trim_1 = ") && file.contains("[step.measured]"),
+        "{file}"
+    );
     assert_eq!(board.stored().servo_trim_3, 0.0);
 }

@@ -9,7 +9,7 @@ use sophie_control::params::Params;
 use sophie_dialect::{MavCmd, MavMessage, SOPHIE_ARMS_DATA};
 use sophie_fit::servo_steps::bench::{Given, Rest};
 use sophie_fit::servo_steps::plan::{self, Next};
-use sophie_fit::servo_steps::{Found, Ranged, fit};
+use sophie_fit::servo_steps::{Found, fit};
 
 use super::actuators::{FIRST_SERVO, give_back};
 use super::calibrate::typed;
@@ -29,8 +29,6 @@ const THERE: f64 = 0.01;
 const RENEWED: usize = 100;
 /// Weights on a tip, N.
 const WEIGHTS: (f32, f32) = (1.5, 6.0);
-/// Friction above which closings take 6 to 10 s.
-const SLOW: f64 = 0.4;
 /// Name of the stiffness in the protocol, and of the parameter.
 const STIFFNESS: &str = "tendon_stiffness";
 
@@ -264,29 +262,9 @@ impl Bench<'_, '_> {
     }
 }
 
-/// `1.2 mm, 0.8 to 1.6`
-fn shown(range: Ranged, places: usize, unit: &str) -> String {
-    let Ranged { value, least, most } = range;
-    format!("{value:.places$}{unit}, {least:.places$} to {most:.places$}")
-}
-
 /// Sets and stores what was found.
 fn taken(walk: &mut Walk<'_>, step: &Step, params: &Params, found: &Found) -> Judged {
-    let mut figures = vec![
-        format!("stiffness {}", shown(found.stiffness, 0, " N/m")),
-        format!("slack {}", shown(found.slack.times(1e3), 1, " mm")),
-        format!("friction {}", shown(found.friction, 2, "")),
-        format!(
-            "lever over radius {}: no better than printed, calipers are",
-            shown(found.lever_share, 2, " times as assumed")
-        ),
-        format!("tilts {:.2} deg RMS from the law", found.residual.to_degrees()),
-    ];
-    if found.friction.value > SLOW {
-        figures.push(format!(
-            "friction above {SLOW}: closings take 6 to 10 s; a channel lined with PTFE has 0.1 to 0.3"
-        ));
-    }
+    let mut figures = found.lines();
     let name = format!("servo_trim_{}", step.number);
     let (trim, length) = (
         params.get(&name).unwrap_or_default(),

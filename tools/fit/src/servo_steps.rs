@@ -10,6 +10,7 @@
 //! more radius are 4 % less k), and their ratio comes out no better than a print has it ([`Found::lever_share`]).
 
 pub mod bench;
+pub mod data;
 pub mod plan;
 mod search;
 
@@ -39,6 +40,8 @@ const WOUND: f64 = 0.17;
 /// Largest RMS difference between tilts and law, rad: 1.5°.
 const RESIDUAL: f64 = 0.026;
 const NORMAL: f64 = 1.96;
+/// Friction above which closings take 6 to 10 s.
+const SLOW: f64 = 0.4;
 
 /// A number with the ends of its 95 % interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -92,6 +95,30 @@ pub struct Found {
     pub softness: Ranged,
     /// RMS difference between tilts and law, rad.
     pub residual: f64,
+}
+
+impl Found {
+    /// The numbers with their intervals, a line each.
+    #[must_use]
+    pub fn lines(&self) -> Vec<String> {
+        let shown = |what: &str, range: Ranged, places: usize, unit: &str| {
+            let Ranged { value, least, most } = range;
+            format!("{what} {value:.places$}{unit}, 95 % within {least:.places$} to {most:.places$}")
+        };
+        let mut lines = vec![
+            shown("stiffness", self.stiffness, 0, " N/m"),
+            shown("slack", self.slack.times(1e3), 1, " mm"),
+            shown("friction", self.friction, 2, ""),
+            shown("lever over radius", self.lever_share, 2, " of the assumed"),
+            format!("tilts {:.2} deg RMS from the law", self.residual.to_degrees()),
+        ];
+        if self.friction.value > SLOW {
+            lines.push(format!(
+                "friction above {SLOW}: closings take 6 to 10 s; a channel lined with PTFE has 0.1 to 0.3"
+            ));
+        }
+        lines
+    }
 }
 
 /// Fits the `rests` of one arm, in the order in which they were measured.
