@@ -540,7 +540,6 @@ pub const QUANTITIES: &[Quantity] = &[
         truth: |s| s.vehicle.tendons.stiffness.to_vec(),
         assumed: |s| vec![s.params.tendon_stiffness.into(); 4],
         learn: |s, n| set([&mut s.params.tendon_stiffness], &[mean(n)]),
-        ..FIXED
     },
     Quantity {
         key: "vehicle.tendon_friction",
