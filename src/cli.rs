@@ -60,6 +60,7 @@ pub fn main() -> ExitCode {
         Task::FitArm(args) => study::fit_arm(&args),
         Task::FitThrust(args) => fit_thrust::run(&args),
         Task::FitLag(args) => fit_lag::run(&args),
+        Task::FitTendon(args) => study::fit_tendon_steps(&args),
         Task::Timing(args) => timing::run(&args).map(|()| true),
         Task::Recording(args) => recording::run(&args).map(|()| true),
     };

@@ -582,11 +582,18 @@ pub const QUANTITIES: &[Quantity] = &[
         key: "vehicle.tendon_stiffness_n_m",
         all: Some(Spread::Within(2000.0, 8000.0)),
         each: Some(Spread::Times(0.9, 1.1)),
+        calibration: Some(Calibration {
+            by: "steps of the servo with and without a weight ([tendons](calibration.md#tendons)): one for four arms",
+            error: Spread::Times(0.95, 1.2),
+            apart: false,
+            demanded: false,
+        }),
+        exact: true,
         source: "1 mm of nylon, 0.25 m: 7,900 dry (E 2.5 GPa), 3,100 to 3,800 conditioned; knots, anchor in TPU and mount: \
                  2,000 to 4,000 (estimated)",
         truth: |s| s.vehicle.tendons.stiffness.to_vec(),
         assumed: |s| vec![s.params.tendon_stiffness.into(); 4],
-        ..FIXED
+        learn: |s, n| set([&mut s.params.tendon_stiffness], &[mean(n)]),
     },
     Quantity {
         key: "vehicle.tendon_friction",
@@ -630,9 +637,37 @@ pub const QUANTITIES: &[Quantity] = &[
     Quantity {
         key: "faults.tendon_slack_mm",
         each: Some(Spread::Plus(-0.5, 2.0)),
+        calibration: Some(Calibration {
+            by: "steps of the servo ([tendons](calibration.md#tendons)), its play and backlash included",
+            error: Spread::Plus(-0.4, 1.5),
+            apart: true,
+            demanded: false,
+        }),
         source: "a knot by hand; 1 to 2 mm a day by creep (assumed)",
         truth: |s| s.faults.tendon_slack.map(|slack| slack / 1e-3).to_vec(),
-        assumed: |_| vec![0.0; 4],
+        assumed: |s| {
+            let wound = trims(&s.params).into_iter().zip(thread_per_us(&s.params));
+            wound
+                .map(|(trim, thread)| f64::from(trim) * thread / 1e-3)
+                .collect()
+        },
+        learn: |s, n| {
+            let most = Params::row("servo_trim_1").map_or(0.0, |row| f64::from(row.max));
+            let wound = n.iter().zip(thread_per_us(&s.params));
+            let trims: Vec<f64> = wound
+                .map(|(slack, thread)| (1e-3 * slack / thread).clamp(-most, most))
+                .collect();
+            let p = &mut s.params;
+            set(
+                [
+                    &mut p.servo_trim_1,
+                    &mut p.servo_trim_2,
+                    &mut p.servo_trim_3,
+                    &mut p.servo_trim_4,
+                ],
+                &trims,
+            );
+        },
         ..FIXED
     },
     Quantity {
@@ -1051,10 +1086,30 @@ fn assumed_gain(s: &Scenario) -> f64 {
     assumed / built
 }
 
-/// Pulses at which the stack takes its servos to be at `angle`, rad from release.
+/// Pulses at which the stack takes its servos to be at `angle`, rad from the release mark, without their trims: these
+/// take up the thread's slack.
 fn servo_pulses(s: &Scenario, angle: f32) -> Vec<f64> {
-    let pulse = |arm| Reel::from_params(&s.params, arm).pulse(angle);
-    (0..4).map(pulse).map(f64::from).collect()
+    let pulse = |(arm, trim)| Reel::from_params(&s.params, arm).pulse(angle) - trim;
+    trims(&s.params)
+        .into_iter()
+        .enumerate()
+        .map(pulse)
+        .map(f64::from)
+        .collect()
+}
+
+/// Trims of the servos, µs.
+fn trims(p: &Params) -> [f32; 4] {
+    [p.servo_trim_1, p.servo_trim_2, p.servo_trim_3, p.servo_trim_4]
+}
+
+/// Thread that a microsecond of each servo's pulse winds, m.
+fn thread_per_us(p: &Params) -> [f64; 4] {
+    [0, 1, 2, 3].map(|arm| {
+        let reel = Reel::from_params(p, arm);
+        let span = f64::from(reel.pulse(p.servo_range) - reel.pulse(0.0));
+        f64::from(p.reel_radius * p.servo_range) / span
+    })
 }
 
 /// Marks within what their parameters take, µs.

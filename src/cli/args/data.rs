@@ -121,6 +121,20 @@ pub struct FitArgs {
     pub json: bool,
 }
 
+/// Options of `fit-tendon`.
+#[derive(Args, Debug)]
+pub struct FitTendonArgs {
+    /// Steps of one tendon's servo.
+    #[arg(value_name = "STEPS.csv")]
+    pub steps: PathBuf,
+    /// Distance of the tendon from the arm's neutral line, 5 to 100 mm.
+    #[arg(long, value_name = "MM", value_parser = lever, default_value = "15", allow_negative_numbers = true)]
+    pub lever: f64,
+    /// Radius of the reel, 5 to 100 mm.
+    #[arg(long, value_name = "MM", value_parser = lever, default_value = "15", allow_negative_numbers = true)]
+    pub reel: f64,
+}
+
 /// Options of `fit-thrust`.
 #[derive(Args, Debug)]
 pub struct FitThrustArgs {

@@ -8,7 +8,7 @@ use sophie_terminal::console;
 use crate::cli::refuse;
 
 /// The subcommands, as listed in messages.
-const VERBS: [&str; 12] = [
+const VERBS: &[&str] = &[
     "fly",
     "check",
     "bringup",
@@ -19,6 +19,7 @@ const VERBS: [&str; 12] = [
     "fit-arm",
     "fit-thrust",
     "fit-lag",
+    "fit-tendon",
     "timing",
     "recording",
 ];
@@ -65,7 +66,7 @@ impl Message {
             let allowed = match std::env::args().nth(1).as_deref() {
                 Some("paper" | "capture") => "no file",
                 Some("study") => "one study and no file",
-                Some("fit-arm" | "fit-thrust") => "one CSV file",
+                Some("fit-arm" | "fit-thrust" | "fit-tendon") => "one CSV file",
                 Some("fit-lag") => "one WAV file",
                 Some("recording") => "one recording",
                 Some("timing") => "one log file",

@@ -9,6 +9,7 @@ mod params;
 mod serial;
 mod thrust;
 mod tied;
+mod tendon;
 mod wire;
 
 use std::process::{Child, Command};

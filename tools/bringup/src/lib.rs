@@ -17,6 +17,7 @@ mod thrust;
 mod tied;
 mod twist;
 mod vibration;
+mod tendon;
 mod walk;
 
 use std::path::Path;
@@ -89,6 +90,10 @@ const ARM: &str =
     "Body level and still. First the arm straight, by a ruler along it, then its tip bent up and held.";
 const FSR: &str = "Nothing on the sensor first, then a known weight on its pad, all of it.";
 const SERVO: &str = "Tendons off, servos on their own battery, hands away: it goes to its middle at once. Find the reel's release mark, then its full mark.";
+
+const TENDON: &str = "Tendon on, servos on their own battery, body level on a box, its arms free to hang 25 cm down. The servo winds the arm; about 300 g hang on its tip by a string and are taken off, four times.";
+const UNKNOWN_TENDON: &str =
+    "the force is up to four times what the law takes it for; a millimetre of slack is 8 N.";
 
 /// All steps, in their order.
 pub const STEPS: &[Step] = &[
@@ -174,6 +179,10 @@ pub const STEPS: &[Step] = &[
     numbered("servo-2", "Servo 2, rear-left", SERVO, 2, actuators::servo),
     numbered("servo-3", "Servo 3, front-right", SERVO, 3, actuators::servo),
     numbered("servo-4", "Servo 4, rear-right", SERVO, 4, actuators::servo),
+    numbered("tendon-1", "Tendon 1, front-left", TENDON, 1, tendon::tendon).optional(UNKNOWN_TENDON),
+    numbered("tendon-2", "Tendon 2, rear-left", TENDON, 2, tendon::tendon).optional(UNKNOWN_TENDON),
+    numbered("tendon-3", "Tendon 3, front-right", TENDON, 3, tendon::tendon).optional(UNKNOWN_TENDON),
+    numbered("tendon-4", "Tendon 4, rear-right", TENDON, 4, tendon::tendon).optional(UNKNOWN_TENDON),
     step(
         "flow",
         "Flow and range module",
@@ -392,6 +401,7 @@ fn one(walk: &mut Walk<'_>, protocol: &mut Protocol, step: &Step) -> Result<bool
         "Enter begins, s skips, q stops:"
     });
     let judged = begun.and_then(|_| {
+        walk.passed = protocol.measured();
         let judged = (step.run)(walk, step);
         if matches!(judged, Err(Stop::Skip)) {
             walk.vehicle.calm()?;
@@ -421,6 +431,7 @@ fn one(walk: &mut Walk<'_>, protocol: &mut Protocol, step: &Step) -> Result<bool
         at: date::now(),
         figures: verdict.figures,
         parameters: verdict.parameters,
+        measured: verdict.measured,
         build: protocol.build().to_owned(),
     })?;
     if ended != Ended::Failed {
@@ -435,6 +446,8 @@ fn one(walk: &mut Walk<'_>, protocol: &mut Protocol, step: &Step) -> Result<bool
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeMap;
+
     use super::*;
 
     /// Passed steps with what they stored.
@@ -450,6 +463,7 @@ mod tests {
                 at: String::new(),
                 figures: Vec::new(),
                 build: String::new(),
+                measured: BTreeMap::new(),
                 parameters: [((*name).to_owned(), *value)].into(),
             });
         }
@@ -474,6 +488,7 @@ mod tests {
                 at: String::new(),
                 figures: Vec::new(),
                 build: String::new(),
+                measured: BTreeMap::new(),
                 parameters: [].into(),
             });
         }

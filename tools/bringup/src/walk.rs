@@ -58,6 +58,8 @@ pub(super) struct Verdict {
     pub figures: Vec<String>,
     /// Parameters that are stored and in force.
     pub parameters: BTreeMap<String, f64>,
+    /// Numbers of one part that a parameter of several parts is the mean of, by the parameter's name.
+    pub measured: BTreeMap<String, f64>,
 }
 
 impl Verdict {
@@ -86,6 +88,10 @@ pub(super) struct Walk<'a> {
     off_since: Option<u32>,
     /// Weight of the last pressure sensor, N.
     pub weight: String,
+    /// Weight on the last arm's tip, N.
+    pub tip_weight: String,
+    /// What passed steps have measured, by step.
+    pub passed: BTreeMap<String, BTreeMap<String, f64>>,
     /// Parameters set and not stored yet, with their new values.
     changed: BTreeMap<String, f32>,
     /// Folder of the protocol.
@@ -99,6 +105,8 @@ impl<'a> Walk<'a> {
             user,
             off_since: None,
             weight: "1.3".to_owned(),
+            tip_weight: "3".to_owned(),
+            passed: BTreeMap::new(),
             changed: BTreeMap::new(),
             folder: PathBuf::new(),
         }
@@ -117,6 +125,14 @@ impl<'a> Walk<'a> {
 
     pub(super) fn say(&mut self, line: &str) {
         self.user.say(line);
+    }
+
+    /// What the passed steps other than `step` have measured of `name`.
+    pub(super) fn measured(&self, name: &str, step: &str) -> Vec<f64> {
+        let others = self.passed.iter().filter(|(id, _)| *id != step);
+        others
+            .filter_map(|(_, measured)| measured.get(name).copied())
+            .collect()
     }
 
     /// Shows what the vehicle has said.

@@ -8,6 +8,7 @@ pub mod csv;
 pub mod least_squares;
 pub mod motor_lag;
 pub mod rotor_sound;
+pub mod servo_steps;
 pub mod tendon;
 pub mod tendon_data;
 pub mod thrust;

@@ -22,6 +22,9 @@ const STILL: Duration = Duration::from_secs(300);
 const WEIGHT: f64 = 1.3;
 /// A tip bent up, rad.
 const BENT: f64 = 0.3;
+/// Weight on a tip, N, as the walk proposes it, and the time to hang it on, ms.
+const TIP_WEIGHT: f64 = 3.0;
+const HANGS: u64 = 2000;
 /// On a pad under a thumb, Pa.
 const THUMB: f64 = 900.0;
 
@@ -48,6 +51,8 @@ pub(super) struct Builder {
     /// Remaining moves of a live step, and the board's time at which the present one ends.
     moves: Option<VecDeque<Move>>,
     over: u64,
+    /// Weight that is asked for on the tip, N.
+    asked_weight: Option<f64>,
     /// Moves of the servos.
     marks: VecDeque<&'static str>,
     servo_marks: Vec<f64>,
@@ -71,6 +76,7 @@ impl Builder {
             last: String::new(),
             moves: None,
             over: 0,
+            asked_weight: None,
             marks: VecDeque::new(),
             servo_marks: Vec::new(),
             turned: Vec::new(),
@@ -128,6 +134,7 @@ impl Builder {
             changed = before.below != held.below
                 || before.pressed != held.pressed
                 || before.bent != held.bent
+                || before.on_box != held.on_box
                 || before.height != held.height
                 || before.sticks != held.sticks;
         });
@@ -170,7 +177,10 @@ impl Builder {
         if self.until == Some(&*self.step) {
             return "q";
         }
-        if self.only.is_some_and(|only| only != self.step) {
+        // One tendon stands for four; nobody records the motors' sound.
+        let tendon = self.step.starts_with("tendon-");
+        let other = self.only.is_some_and(|only| only != self.step);
+        if other || self.step == "lag" || (tendon && self.step != "tendon-1") {
             return "s";
         }
         self.moves = None;
@@ -179,10 +189,21 @@ impl Builder {
         self.does(|held| {
             held.below = Face::Belly;
             held.bent = [0.0; 4];
+            held.on_box = tendon;
             held.sticks = on.then(Sticks::default);
             held.tied = false;
         });
         ""
+    }
+
+    /// Hangs the weight that is asked for, and replies once it hangs.
+    fn hangs(&mut self, now: u64) -> Option<Reply> {
+        if let Some(weight) = self.asked_weight.take() {
+            let arm = self.number();
+            self.operator.change(|held| held.hung[arm] = weight);
+            self.over = now + HANGS;
+        }
+        (now >= self.over).then(|| Reply::Line(String::new()))
     }
 
     /// The next move of a servo; a mark records its pulse.
@@ -347,6 +368,11 @@ impl User for Builder {
         {
             self.step = id.trim_end_matches(')').to_owned();
         }
+        if line.contains("Hang the weight on the tip") {
+            self.asked_weight = Some(TIP_WEIGHT);
+        } else if line.contains("Take the weight off, slowly") {
+            self.asked_weight = Some(0.0);
+        }
         self.last = line.to_owned();
     }
 
@@ -371,6 +397,9 @@ impl User for Builder {
         }
         let now = self.operator.observe().ms;
         let id = self.step.clone();
+        if id.starts_with("tendon-") {
+            return self.hangs(now);
+        }
         let moves = self.moves.get_or_insert_with(|| live(&id));
         if now < self.over {
             return None;
