@@ -15,6 +15,7 @@ mod misfit;
 mod motor_map;
 mod motor_pulses;
 mod parts;
+mod pressure_loads;
 mod radio;
 mod reasons;
 mod receiver;

@@ -17,6 +17,7 @@ use sophie_control::allocation::motor_map::at_rotors;
 use sophie_control::allocation::wrench::{Configuration, PerArm};
 use sophie_control::arming::ArmingInhibit;
 use sophie_control::chain::ImuReading;
+use sophie_control::gripper::contact_pressure::FsrScale;
 use sophie_control::maths::scalar::GRAVITY;
 use sophie_control::maths::vector::Vec3;
 use sophie_control::mode::Mode;
@@ -31,6 +32,8 @@ use sophie_ports::sensors::{AnalogFrame, ArmImus};
 use sophie_ports::serial::SerialOutput;
 use sophie_ports::signing::{Key, Record, Stored};
 use sophie_ports::storage::{Loaded, Storage, StorageError};
+use sophie_sim::sensors::fsr::{FsrErrors, FsrSensor};
+use sophie_sim::streams::Streams;
 use sophie_tasks::console;
 use sophie_tasks::flight::{control, estimator, imu, mixer, motors};
 use sophie_tasks::ground_station::console_pipe::ConsolePipe;
@@ -58,6 +61,8 @@ pub struct Hands {
     pub force: Vec3,
     /// Counts of the pressure sensors and of the battery's voltage, 0.01 V each.
     pub counts: AnalogFrame,
+    /// Pressure sensors in the cradle for their loads, beside the counts.
+    pub pads: Option<Pads>,
     /// Tilt of each arm's tip, rad.
     pub tilt: PerArm<f32>,
     /// What the barometer reads, Pa; `None`: nothing.
@@ -94,6 +99,42 @@ pub struct Hands {
     pub power_cycle: bool,
 }
 
+/// Sensors as their simulation has them, in arms bent as on the pipe.
+#[derive(Clone, Debug)]
+pub struct Pads {
+    /// Seed of their parts.
+    pub seed: u64,
+    /// Gain and errors of each.
+    pub of: PerArm<(f64, FsrErrors)>,
+    /// Loads, N.
+    pub load: PerArm<f64>,
+}
+
+impl Pads {
+    /// Bend of the skin, rad.
+    const BEND: f64 = 1.19;
+    /// Area of a pad, m².
+    pub const AREA: f64 = 0.038 * 0.038;
+
+    fn sensor(&self, arm: usize) -> FsrSensor {
+        let (gain, errors) = self.of[arm];
+        let sensor = FsrSensor::new(arm, Streams::new(self.seed));
+        let mut sensor = sensor.with_fault(gain, None).with_errors(errors);
+        sensor.bend(Self::BEND);
+        sensor
+    }
+
+    /// What the sensor of `arm` reads with `params` a second after an arm has closed with `pressure`, Pa.
+    pub fn reads(&self, arm: usize, params: &Params, pressure: f64) -> f64 {
+        let (mut sensor, scale) = (self.sensor(arm), FsrScale::from_params(params, arm));
+        let readings = (0..1000).map(|step| {
+            let counts = sensor.sample(pressure * (f64::from(step) / 400.0).min(1.0), 0.002);
+            f64::from(scale.pressure(counts))
+        });
+        readings.skip(750).sum::<f64>() / 250.0
+    }
+}
+
 /// What the board's pins do.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Outputs {
@@ -113,6 +154,7 @@ impl Default for Hands {
                 battery_current: 0,
                 servo_battery: 0,
             },
+            pads: None,
             tilt: [0.0; 4],
             air: None,
             sticks: None,
@@ -317,6 +359,7 @@ struct Run {
     frames: Option<Frames>,
     imu: FakeImu,
     analog: FakeAnalog,
+    pads: RefCell<Option<PerArm<FsrSensor>>>,
     barometer: FakeBarometer,
     arms: Arms,
     motors: FakeMotors,
@@ -351,6 +394,7 @@ impl Run {
             },
             imu: FakeImu::default(),
             analog: FakeAnalog::default(),
+            pads: RefCell::new(now.pads.map(|pads| std::array::from_fn(|arm| pads.sensor(arm)))),
             barometer: FakeBarometer::default(),
             arms: Arms::default(),
             motors: FakeMotors::default(),
@@ -485,7 +529,15 @@ impl Run {
             gyro: Vec3::ZERO,
             accel: hands.force + Vec3::new(0.0, 0.0, GRAVITY),
         });
-        self.analog.frame.set(hands.counts);
+        let mut counts = hands.counts;
+        let mut pads = self.pads.borrow_mut();
+        for (arm, (sensor, counts)) in pads.iter_mut().flatten().zip(&mut counts.fsr).enumerate() {
+            let load = hands.pads.as_ref().map_or(0.0, |pads| pads.load[arm]);
+            *counts = sensor
+                .sample(load / Pads::AREA, ROUND_MS as f64 * 1e-3)
+                .max(*counts);
+        }
+        self.analog.frame.set(counts);
         self.arms.0.set(hands.tilt);
         // No number is no pressure.
         self.barometer.1.set(hands.air.unwrap_or(f32::NAN));

@@ -67,7 +67,7 @@ const fn step(
 
 const ARM: &str =
     "Body level and still. First the arm straight, by a ruler along it, then its tip bent up and held.";
-const FSR: &str = "Nothing on the sensor first, then a known weight on its pad, all of it.";
+const FSR: &str = "The arm in a printed cradle, bent as on the pipe; three known loads on a pipe segment on its pad, up and down.";
 const SERVO: &str = "Tendons off, servos on their own battery, hands away: it goes to its middle at once. Find the reel's release mark, then its full mark.";
 
 /// All steps, in their order.

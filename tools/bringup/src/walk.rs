@@ -83,8 +83,8 @@ pub(super) struct Walk<'a> {
     pub user: &'a mut dyn User,
     /// Count of the board's starts when the builder last confirmed that the propellers are off.
     off_since: Option<u32>,
-    /// Weight of the last pressure sensor, N.
-    pub weight: String,
+    /// Loads of the last pressure sensor, g.
+    pub loads: String,
     /// Parameters set and not stored yet, with their new values.
     changed: BTreeMap<String, f32>,
 }
@@ -95,7 +95,7 @@ impl<'a> Walk<'a> {
             vehicle,
             user,
             off_since: None,
-            weight: "1.3".to_owned(),
+            loads: "100 140 200".to_owned(),
             changed: BTreeMap::new(),
         }
     }

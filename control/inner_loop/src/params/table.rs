@@ -361,14 +361,15 @@ params! {
     fsr_trim_3 = 1.0, "1", 0.2 ..= 5.0;
     /// Conductance of the FSR of arm 4 over `fsr_gain`.
     fsr_trim_4 = 1.0, "1", 0.2 ..= 5.0;
-    /// Pressure that the FSR of arm 1 shows while nothing presses it, taken off (`calibrate fsr`).
-    fsr_zero_1 = 0.0, "Pa", 0.0 ..= 300.0;
-    /// Pressure that the FSR of arm 2 shows while nothing presses it.
-    fsr_zero_2 = 0.0, "Pa", 0.0 ..= 300.0;
-    /// Pressure that the FSR of arm 3 shows while nothing presses it.
-    fsr_zero_3 = 0.0, "Pa", 0.0 ..= 300.0;
-    /// Pressure that the FSR of arm 4 shows while nothing presses it.
-    fsr_zero_4 = 0.0, "Pa", 0.0 ..= 300.0;
+    /// Pressure that the FSR of arm 1 shows while nothing presses it, taken off (`calibrate fsr`); negative: the pressure
+    /// from which it begins to show any, added beyond.
+    fsr_zero_1 = 0.0, "Pa", -650.0 ..= 300.0;
+    /// Pressure that the FSR of arm 2 shows while nothing presses it, taken off.
+    fsr_zero_2 = 0.0, "Pa", -650.0 ..= 300.0;
+    /// Pressure that the FSR of arm 3 shows while nothing presses it, taken off.
+    fsr_zero_3 = 0.0, "Pa", -650.0 ..= 300.0;
+    /// Pressure that the FSR of arm 4 shows while nothing presses it, taken off.
+    fsr_zero_4 = 0.0, "Pa", -650.0 ..= 300.0;
 
     /// Battery voltage over the voltage at its pin; the default is the board's own (docs/wiring.md).
     battery_divider = 11.0, "1", 1.0 ..= 60.0;

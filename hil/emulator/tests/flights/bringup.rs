@@ -8,7 +8,7 @@ use std::time::Duration;
 use sophie_board_link::port::PortName;
 use sophie_board_link::vehicle::Vehicle;
 use sophie_bringup::STEPS;
-use sophie_control::params::MotorMap;
+use sophie_control::params::{MotorMap, Params};
 use sophie_emulator::bench_operator::BenchOperator;
 use sophie_emulator::closed_loop::Setup;
 use sophie_emulator::flight::Stood;
@@ -21,6 +21,10 @@ use super::builder::Builder;
 use super::console::terminal;
 use super::*;
 
+/// Pressure sensors of the walk: conductance over the nominal one, turn-on force, N, and hysteresis.
+const GAIN: [f64; 4] = [1.1, 0.85, 0.95, 1.0];
+const TURN_ON: [f64; 4] = [0.3, 0.5, 0.15, 0.7];
+const HYSTERESIS: f64 = 0.07;
 /// Silence of an emulated board on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(600);
 
@@ -80,10 +84,14 @@ fn walk(folder: &Folder, builder: impl FnOnce(BenchOperator) -> Builder) -> Walk
             ..Sockets::default()
         },
     };
+    let mut vehicle = unmarked(scenario("hover.toml"));
+    vehicle.faults.pressure_gain = GAIN;
+    vehicle.sensors.pressure.turn_on = TURN_ON;
+    vehicle.sensors.pressure.hysteresis = HYSTERESIS;
     let mut log = String::new();
     let stood = flight::stand(
         &firmware,
-        &unmarked(scenario("hover.toml")),
+        &vehicle,
         setup,
         Some(operator),
         |line| {
@@ -140,11 +148,17 @@ fn a_new_board_is_brought_up_through_all_steps() {
     assert!(steps.iter().all(|step| step["result"].as_str() == Some("passed")));
     // The values found are those of the simulated parts.
     let parameter = |id: &str, name: &str| step(id)["parameters"][name].as_float().unwrap();
-    for sensor in 1..=4 {
-        let trim = parameter(&format!("fsr-{sensor}"), &format!("fsr_trim_{sensor}"));
+    for (arm, gain) in GAIN.into_iter().enumerate() {
+        let (id, number) = (format!("fsr-{}", arm + 1), arm + 1);
+        let trim = parameter(&id, &format!("fsr_trim_{number}"));
+        let zero = parameter(&id, &format!("fsr_zero_{number}"));
+        // What the sensor conducts at the grip pressure while an arm closes, as a pressure; what the board makes of it.
+        let area = f64::from(Params::DEFAULT.fsr_area);
+        let conducts = gain * ((1.0 - HYSTERESIS) * 950.0 - TURN_ON[arm] / area);
+        let reads = conducts / trim - zero;
         assert!(
-            (trim - 1.0).abs() < fsr::LARGEST_ERROR,
-            "fsr_trim_{sensor} {trim}"
+            (reads / 950.0 - 1.0).abs() < fsr::LARGEST_ERROR,
+            "{id}: {trim} {zero} {reads}"
         );
     }
     assert!(

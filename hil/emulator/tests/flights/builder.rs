@@ -13,8 +13,8 @@ use sophie_emulator::bench_operator::{BenchOperator, Handling};
 const SETTLED: u64 = 800;
 /// Wall time after which the board counts as stopped.
 const STILL: Duration = Duration::from_secs(300);
-/// Weight on a pressure sensor, N, as the walk proposes it.
-const WEIGHT: f64 = 1.3;
+/// Bend of an arm in its cradle, rad, as on the pipe.
+const CRADLE: f64 = 1.19;
 /// A tip bent up, rad.
 const BENT: f64 = 0.3;
 /// On a pad under a thumb, Pa.
@@ -114,6 +114,12 @@ impl Builder {
         }
     }
 
+    /// The load that the last line asks for, g.
+    fn load(&self) -> Option<f64> {
+        let (begin, _) = self.last.split_once(" g, the segment counted")?;
+        begin.rsplit(' ').next()?.parse().ok()
+    }
+
     /// Handling at one rest of the calibration.
     fn rest(&mut self) {
         let number = self.number();
@@ -124,9 +130,11 @@ impl Builder {
             self.does(|held| held.bent = [0.0; 4]);
         } else if self.last.contains("Bend its tip up") {
             self.does(|held| held.bent[number] = BENT);
-        } else if self.last.contains("Put the weight") {
-            let area = f64::from(Params::DEFAULT.fsr_area);
-            self.does(|held| held.pressed[number] = WEIGHT / area);
+        } else if self.last.contains("Arm in its cradle") {
+            self.does(|held| held.bent[number] = CRADLE);
+        } else if let Some(grams) = self.load() {
+            let pascal = 1e-3 * grams * 9.806_65 / f64::from(Params::DEFAULT.fsr_area);
+            self.does(|held| held.pressed[number] = pascal);
         } else {
             self.does(|held| {
                 held.below = Face::Belly;
@@ -192,8 +200,8 @@ impl Builder {
             String::new()
         } else if begins("+ or - moves it") {
             self.moves_servo().to_owned()
-        } else if begins("Take the weight off") {
-            self.does(|held| held.pressed = [0.0; 4]);
+        } else if begins("Take the arm out of its cradle") {
+            self.does(|held| held.bent = [0.0; 4]);
             String::new()
         } else if begins("Lift it by 1 m") {
             self.does(|held| held.height = 1.0);
