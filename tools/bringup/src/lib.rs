@@ -33,7 +33,20 @@ pub struct Step {
     hands: &'static str,
     /// Number of the arm, sensor or servo, for a step of one.
     number: usize,
+    /// What leaving it out costs; empty for a step that every vehicle needs.
+    cost: &'static str,
     run: fn(&mut Walk<'_>, &Step) -> Judged,
+}
+
+impl Step {
+    /// The same as a step that may be left out, at this `cost`.
+    const fn optional(self, cost: &'static str) -> Self {
+        Self { cost, ..self }
+    }
+
+    const fn is_optional(&self) -> bool {
+        !self.cost.is_empty()
+    }
 }
 
 type Judged = Result<Verdict, Stop>;
@@ -51,6 +64,7 @@ const fn numbered(
         title,
         hands,
         number,
+        cost: "",
         run,
     }
 }
@@ -71,7 +85,7 @@ const FSR: &str = "The arm in a printed cradle, bent as on the pipe; three known
 const SERVO: &str = "Tendons off, servos on their own battery, hands away: it goes to its middle at once. Find the reel's release mark, then its full mark.";
 
 /// All steps, in their order.
-pub const STEPS: [Step; 28] = [
+pub const STEPS: &[Step] = &[
     step(
         "chip",
         "Chip and image",
@@ -150,7 +164,8 @@ pub const STEPS: [Step; 28] = [
         "Turned by hand over a floor with a pattern, 0.5 m and 1.5 m high; where its lens is, a ruler shows \
          (flow_x, flow_y, flow_z); a vehicle without one has nothing to do.",
         calibrate::flow,
-    ),
+    )
+    .optional("with a module, it neither holds its place nor perches autonomously by it."),
     step(
         "battery",
         "Battery voltage",
@@ -189,7 +204,8 @@ const MARKS: &str = "servo_marks";
 /// The last step, which checks the results of the others.
 const LAST: &str = "final";
 
-/// Walks through the steps that have not passed, and those of `again`; true when all have passed.
+/// Walks through the steps that are open, and those of `again`; true when none is left: all have passed or, where that
+/// is allowed, are left out.
 ///
 /// # Errors
 /// One line: a file that cannot be written or belongs to another board, an unknown step, or a lost line.
@@ -294,7 +310,8 @@ fn marked(step: &Step, now: f64) -> bool {
 fn steps(walk: &mut Walk<'_>, protocol: &mut Protocol) -> Result<(), Stop> {
     let mut redone = false;
     for (index, step) in STEPS.iter().enumerate() {
-        if protocol.passed(step.id) && !(redone && step.id == LAST) {
+        let done = protocol.passed(step.id) || protocol.left_out(step.id);
+        if done && !(redone && step.id == LAST) {
             continue;
         }
         redone = true;
@@ -307,6 +324,9 @@ fn steps(walk: &mut Walk<'_>, protocol: &mut Protocol) -> Result<(), Stop> {
             step.id
         ));
         walk.say(&format!("  {}", step.hands));
+        if step.is_optional() {
+            walk.say(&format!("  Left out: {}", step.cost));
+        }
         while !one(walk, protocol, step)? {}
     }
     Ok(())
@@ -314,7 +334,11 @@ fn steps(walk: &mut Walk<'_>, protocol: &mut Protocol) -> Result<(), Stop> {
 
 /// One attempt at a step, written into the protocol; false if the builder wants to repeat it.
 fn one(walk: &mut Walk<'_>, protocol: &mut Protocol, step: &Step) -> Result<bool, Stop> {
-    let begun = walk.ask("Enter begins, s skips, q stops:");
+    let begun = walk.ask(if step.is_optional() {
+        "Enter begins, s leaves it out, q stops:"
+    } else {
+        "Enter begins, s skips, q stops:"
+    });
     let judged = begun.and_then(|_| {
         let judged = (step.run)(walk, step);
         if matches!(judged, Err(Stop::Skip)) {
@@ -325,6 +349,7 @@ fn one(walk: &mut Walk<'_>, protocol: &mut Protocol, step: &Step) -> Result<bool
     let (ended, verdict) = match judged {
         Ok(verdict) if verdict.passed => (Ended::Passed, verdict),
         Ok(verdict) => (Ended::Failed, verdict),
+        Err(Stop::Skip) if step.is_optional() => (Ended::LeftOut, Verdict::default()),
         Err(Stop::Skip) => (Ended::Skipped, Verdict::default()),
         Err(stop) => return Err(stop),
     };
@@ -335,6 +360,7 @@ fn one(walk: &mut Walk<'_>, protocol: &mut Protocol, step: &Step) -> Result<bool
         Ended::Passed => "  passed",
         Ended::Failed => "  FAILED",
         Ended::Skipped => "  skipped",
+        Ended::LeftOut => "  left out",
     });
     protocol.put(Entry {
         id: step.id.to_owned(),
@@ -383,6 +409,32 @@ mod tests {
         let rows = Values([(name.to_owned(), now.parse().unwrap())].into());
         let open = (0..STEPS.len()).filter(|index| lost(*index, protocol, &rows).is_some());
         open.map(|index| STEPS[index].id).collect()
+    }
+
+    #[test]
+    fn a_step_that_is_left_out_is_not_open_and_is_named() {
+        let mut protocol = Protocol::default();
+        for step in STEPS {
+            protocol.note(Entry {
+                id: step.id.to_owned(),
+                title: String::new(),
+                result: Ended::Passed,
+                at: String::new(),
+                figures: Vec::new(),
+                build: String::new(),
+                parameters: [].into(),
+            });
+        }
+        assert_eq!(protocol.state(), format!("all {} steps passed", STEPS.len()));
+        let mut entry = protocol.entry("flow").unwrap().clone();
+        entry.result = Ended::LeftOut;
+        protocol.note(entry.clone());
+        assert!(protocol.open_steps().is_empty());
+        assert_eq!(protocol.state(), "all steps passed, left out: flow");
+        entry.result = Ended::Skipped;
+        protocol.note(entry);
+        assert_eq!(protocol.open_steps(), ["flow"]);
+        assert_eq!(protocol.state(), "skipped: flow");
     }
 
     #[test]

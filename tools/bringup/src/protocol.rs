@@ -27,6 +27,9 @@ pub enum Result {
     Failed,
     /// Skipped by the builder.
     Skipped,
+    /// Left out by the builder, who has read what that costs.
+    #[serde(rename = "left out")]
+    LeftOut,
 }
 
 /// A step's entry.
@@ -83,7 +86,7 @@ struct Content {
 }
 
 /// A protocol with its file.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Protocol {
     path: PathBuf,
     content: Content,
@@ -193,9 +196,16 @@ impl Protocol {
         self.entry(id).is_some_and(|entry| entry.result == Result::Passed)
     }
 
-    /// Names of the steps that have not passed.
+    /// The step `id` is optional, and left out.
+    pub fn left_out(&self, id: &str) -> bool {
+        self.entry(id)
+            .is_some_and(|entry| entry.result == Result::LeftOut)
+    }
+
+    /// Names of the steps that have neither passed nor are left out.
     pub fn open_steps(&self) -> Vec<&'static str> {
-        let open = STEPS.iter().filter(|step| !self.passed(step.id));
+        let done = |id| self.passed(id) || self.left_out(id);
+        let open = STEPS.iter().filter(|step| !done(step.id));
         open.map(|step| step.id).collect()
     }
 
@@ -235,8 +245,10 @@ impl Protocol {
         ];
         let open = open.into_iter().filter(|(_, names)| !names.is_empty());
         let parts: Vec<String> = open.map(|(word, names)| format!("{word}: {names}")).collect();
+        let left_out = named(Some(Result::LeftOut));
         match parts.as_slice() {
-            [] => format!("all {} steps passed", STEPS.len()),
+            [] if left_out.is_empty() => format!("all {} steps passed", STEPS.len()),
+            [] => format!("all steps passed, left out: {left_out}"),
             parts => parts.join("; "),
         }
     }

@@ -93,7 +93,7 @@ fn points(rows: Vec<[f64; 4]>) -> Vec<Point> {
 
 #[cfg(test)]
 mod tests {
-    use crate::fit::arm_data::*;
+    use crate::arm_data::*;
 
     #[test]
     fn columns_may_come_in_any_order_and_comments_are_skipped() {

@@ -280,7 +280,7 @@ fn range(points: &[Point], of: impl Fn(&Point) -> f64) -> (f64, f64) {
 
 #[cfg(test)]
 mod tests {
-    use crate::fit::arm::*;
+    use crate::arm::*;
 
     const TABLE_1: [f64; 4] = [2.4387, -0.1997, -0.162, 0.0151];
 

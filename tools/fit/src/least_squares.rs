@@ -53,7 +53,7 @@ pub fn quantile(freedom: usize) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use crate::fit::least_squares::*;
+    use crate::least_squares::*;
 
     #[test]
     fn student_s_quantile() {

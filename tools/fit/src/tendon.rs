@@ -180,7 +180,7 @@ fn drop_empty(design: &[Vec<f64>]) -> Vec<Vec<f64>> {
 mod tests {
     use super::super::arm;
     use super::super::arm_data::Point;
-    use crate::fit::tendon::*;
+    use crate::tendon::*;
 
     const TABLE_1: [f64; 4] = [2.4387, -0.1997, -0.162, 0.0151];
 

@@ -1,12 +1,12 @@
-//! Page of a fitted arm, and its parameter file for simulator and stack.
+//! Results of `sophie fit-arm` as a section of a page and as parameters.
 
 use sophie_control::params::Params;
 use sophie_sim::scenario::Scenario;
 
-use super::arm::{Fit, Fitted};
-use super::arm_data::Point;
-use super::tendon::TendonFit;
 use crate::results::model::{Axis, Cell, Chart, Section, Series, SeriesStyle, Table, num};
+use sophie_fit::arm::{Fit, Fitted};
+use sophie_fit::arm_data::Point;
+use sophie_fit::tendon::TendonFit;
 
 /// Tilts within this span may be radians: a quarter turn. Table I's stiffest arm (10 %, K = 1) bends by 2.8°.
 const RADIANS: f64 = 1.58;
@@ -304,8 +304,8 @@ fn in_range(points: &[Point], fit: &Fit) -> Result<(), String> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::arm::fit;
-    use crate::fit::report::*;
+    use crate::fit_report::*;
+    use sophie_fit::arm::fit;
 
     #[test]
     fn the_file_is_an_arm_that_simulator_and_stack_agree_on() {
