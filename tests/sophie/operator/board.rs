@@ -99,7 +99,7 @@ pub struct Hands {
     pub power_cycle: bool,
 }
 
-/// Sensors as their simulation has them, in arms bent as on the pipe.
+/// Sensors as their simulation has them.
 #[derive(Clone, Debug)]
 pub struct Pads {
     /// Seed of their parts.
@@ -108,25 +108,26 @@ pub struct Pads {
     pub of: PerArm<(f64, FsrErrors)>,
     /// Loads, N.
     pub load: PerArm<f64>,
+    /// Bend of each arm's skin, rad.
+    pub bend: PerArm<f64>,
 }
 
 impl Pads {
-    /// Bend of the skin, rad.
-    const BEND: f64 = 1.19;
+    /// Bend of an arm on the pipe and in its cradle, rad.
+    pub const BEND: f64 = 1.19;
     /// Area of a pad, m².
     pub const AREA: f64 = 0.038 * 0.038;
 
     fn sensor(&self, arm: usize) -> FsrSensor {
         let (gain, errors) = self.of[arm];
         let sensor = FsrSensor::new(arm, Streams::new(self.seed));
-        let mut sensor = sensor.with_fault(gain, None).with_errors(errors);
-        sensor.bend(Self::BEND);
-        sensor
+        sensor.with_fault(gain, None).with_errors(errors)
     }
 
     /// What the sensor of `arm` reads with `params` a second after an arm has closed with `pressure`, Pa.
     pub fn reads(&self, arm: usize, params: &Params, pressure: f64) -> f64 {
         let (mut sensor, scale) = (self.sensor(arm), FsrScale::from_params(params, arm));
+        sensor.bend(Self::BEND);
         let readings = (0..1000).map(|step| {
             let counts = sensor.sample(pressure * (f64::from(step) / 400.0).min(1.0), 0.002);
             f64::from(scale.pressure(counts))
@@ -532,7 +533,9 @@ impl Run {
         let mut counts = hands.counts;
         let mut pads = self.pads.borrow_mut();
         for (arm, (sensor, counts)) in pads.iter_mut().flatten().zip(&mut counts.fsr).enumerate() {
-            let load = hands.pads.as_ref().map_or(0.0, |pads| pads.load[arm]);
+            let held = hands.pads.as_ref().map(|pads| (pads.load[arm], pads.bend[arm]));
+            let (load, bend) = held.unwrap_or_default();
+            sensor.bend(bend);
             *counts = sensor
                 .sample(load / Pads::AREA, ROUND_MS as f64 * 1e-3)
                 .max(*counts);

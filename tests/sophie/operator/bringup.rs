@@ -244,17 +244,24 @@ fn arms(builder: &mut Builder, board: &Board, first: usize) {
 
 /// The loads on one pad: what the builder's scale shows as 98, 141 and 199 g, to 1 g and 0.5 % more than there is.
 fn loads(builder: &mut Builder, board: &Board, sensor: usize) {
-    builder.rests("Nothing may touch the pad", || ());
+    builder.rests("Nothing may touch the pad", || bends(board, sensor, Pads::BEND));
     for grams in [97.8, 140.1, 198.3, 140.1, 97.8] {
         builder.rests("g, the segment counted", || {
             on_the_pad(board, sensor, grams);
         });
     }
     builder.rests("Take all of it off", || on_the_pad(board, sensor, 0.0));
-    builder.at("out of its cradle", "");
+    builder.hears("out of its cradle");
+    bends(board, sensor, 0.0);
+    builder.types("");
     builder.hears("hysteresis ");
     builder.hears("loads 98, 141, 199 g");
     builder.hears("passed");
+}
+
+fn bends(board: &Board, sensor: usize, bend: f64) {
+    board.hands(|hands| hands.pads.as_mut().unwrap().bend[sensor - 1] = bend);
+    board.pass(1.0);
 }
 
 fn on_the_pad(board: &Board, sensor: usize, grams: f64) {
@@ -286,6 +293,7 @@ fn pads() -> Pads {
             sensor(0.8, 0.4, 0.15, 0.1),
         ],
         load: [0.0; 4],
+        bend: [0.0; 4],
     }
 }
 
