@@ -587,16 +587,14 @@ pub const QUANTITIES: &[Quantity] = &[
         each: Some(Spread::Times(0.8, 1.2)),
         calibration: Some(Calibration {
             by: "`calibrate fsr` ([pressure sensors](calibration.md#pressure-sensors)): slope of the line",
-            error: Spread::Times(1.02, 1.1),
+            error: Spread::Times(1.04, 1.12),
             apart: true,
             demanded: false,
         }),
         source: "Interlink's guide: 15 to 25 % from part to part; repeatability 12 to 16 % (J. Sensors 6561901)",
         truth: |s| s.faults.pressure_gain.to_vec(),
-        assumed: |s| trims(s).iter().map(|trim| trim / rising(s)).collect(),
+        assumed: |s| trims(s).to_vec(),
         learn: |s, n| {
-            let rising = rising(s);
-            let found = n.iter().map(|gain| gain * rising).collect::<Vec<_>>();
             let p = &mut s.params;
             set(
                 [
@@ -605,7 +603,7 @@ pub const QUANTITIES: &[Quantity] = &[
                     &mut p.fsr_trim_3,
                     &mut p.fsr_trim_4,
                 ],
-                &found,
+                n,
             );
         },
         ..FIXED
@@ -645,7 +643,7 @@ pub const QUANTITIES: &[Quantity] = &[
         truth: |s| s.sensors.pressure.turn_on.to_vec(),
         assumed: |s| {
             let arms = zeros(s).into_iter().zip(s.sensors.pressure.preload);
-            arms.map(|(zero, preload)| ((preload * pipe_bend(s) - zero) * branch(s)).max(0.0))
+            arms.map(|(zero, preload)| (preload * pipe_bend(s) - zero).max(0.0))
                 .collect()
         },
         learn: |s, n| {
@@ -672,7 +670,7 @@ pub const QUANTITIES: &[Quantity] = &[
         // In the same parameter as the turn-on force.
         assumed: |s| {
             let arms = zeros(s).into_iter().zip(s.sensors.pressure.turn_on);
-            arms.map(|(zero, turn_on)| ((zero + turn_on / branch(s)) / pipe_bend(s)).max(0.0))
+            arms.map(|(zero, turn_on)| ((zero + turn_on) / pipe_bend(s)).max(0.0))
                 .collect()
         },
         ..FIXED
@@ -681,13 +679,14 @@ pub const QUANTITIES: &[Quantity] = &[
         key: "sensors.fsr_hysteresis_percent",
         all: Some(Spread::Within(5.0, 10.0)),
         calibration: Some(Calibration {
-            by: "`calibrate fsr`; the line is that of rising pressure, in the gain",
+            by: "`calibrate fsr` shows it; the line is between rising and falling pressure",
             error: Spread::Plus(0.6, 3.2),
             apart: false,
             demanded: false,
         }),
         source: "10 % on average (Interlink's data sheet), Preisach-like (Paredes-Madrid 2018)",
         truth: |s| vec![s.sensors.pressure.hysteresis / PERCENT],
+        assumed: |_| vec![FsrErrors::default().hysteresis / PERCENT],
         ..FIXED
     },
     Quantity {
@@ -1014,16 +1013,6 @@ fn received(s: &Scenario) -> f64 {
     s.world.air.density / STANDARD_DENSITY * mean(&v.rotor_thrust) * (1.0 - v.air.wash.loss)
 }
 
-/// What a pressure sensor follows of a rising pressure, of its hysteresis.
-fn branch(s: &Scenario) -> f64 {
-    1.0 - s.sensors.pressure.hysteresis
-}
-
-/// The same over that of the nominal sensor, for which the common gain stands.
-fn rising(s: &Scenario) -> f64 {
-    branch(s) / (1.0 - FsrErrors::default().hysteresis)
-}
-
 /// Tilt of an arm on the pipe, rad.
 fn pipe_bend(s: &Scenario) -> f64 {
     2.0 * ARM_LENGTH / s.world.pipe_diameter
@@ -1048,8 +1037,8 @@ fn lines_through_the_grip(s: &Scenario, turn_on: &[f64]) -> Vec<f64> {
     let lines = parts.zip(trims(s)).zip(turn_on);
     lines
         .map(|(((gain, preload), trim), turn_on)| {
-            let true_zero = (preload * pipe_bend(s) - turn_on / branch(s)) / area;
-            let zero = gain * rising(s) * (grip + true_zero) / trim - grip;
+            let true_zero = (preload * pipe_bend(s) - turn_on) / area;
+            let zero = gain * (grip + true_zero) / trim - grip;
             let range = Params::row("fsr_zero_1").map_or((-650.0, 300.0), |row| (row.min, row.max));
             zero.clamp(f64::from(range.0), f64::from(range.1))
         })

@@ -81,20 +81,24 @@ impl Pad {
         panic!("it wants more steps");
     }
 
-    /// Mean reading with `params` in the half second of a proof, after hours of rest.
-    fn closes(&mut self, params: &Params) -> f64 {
+    /// Mean readings with `params` at the grip pressure, after hours of rest: of rising pressure, in the half second of
+    /// a proof, and a second after a fall from 1,300 Pa.
+    fn closes(&mut self, params: &Params) -> [f64; 2] {
         self.sensor.bend(0.0);
         for _ in 0..3600 {
             self.sensor.sample(0.0, 1.0);
         }
         self.sensor.bend(BEND);
         self.scale = FsrScale::from_params(params, 0);
-        let mut sum = 0.0;
-        for step in 0..1000 {
-            let reads = self.reads(GRIP * (f64::from(step) / 400.0).min(1.0));
-            sum += if step >= 750 { reads } else { 0.0 };
-        }
-        sum / 250.0
+        [(0.0, GRIP), (1300.0, GRIP)].map(|(from, to)| {
+            let mut sum = 0.0;
+            for step in 0..1000 {
+                let way = (f64::from(step) / 400.0).min(1.0);
+                let reads = self.reads(from + way * (to - from));
+                sum += if step >= 750 { reads } else { 0.0 };
+            }
+            sum / 250.0
+        })
     }
 }
 
@@ -135,13 +139,14 @@ fn drawn_sensors_are_found_within_the_interval_that_is_stated() {
     for seed in 0..count {
         let (mut pad, truth, gain) = drawn(seed);
         let (params, [error, width, empty, _]) = pad.calibrated(weighed(seed)).unwrap();
-        let reads = pad.closes(&params);
+        let [rising, falling] = pad.closes(&params);
+        let reads = 0.5 * (rising + falling);
         off.push(reads - GRIP);
         within += i32::from((reads - GRIP).abs() <= f64::from(error));
         hysteresis.push(f64::from(width) - 100.0 * truth.hysteresis);
-        slope.push(f64::from(params.fsr_trim_1) / gain / (1.0 - truth.hysteresis));
+        slope.push(f64::from(params.fsr_trim_1) / gain);
         assert!(
-            (33.0..80.0).contains(&error) && empty < 120.0,
+            (47.0..90.0).contains(&error) && empty < 120.0,
             "{seed}: {error} {empty}"
         );
     }
@@ -186,7 +191,9 @@ fn a_sound_sensor_is_found_as_it_is() {
         params.fsr_zero_1.abs() < 40.0 && hysteresis.abs() < 2.0 && empty < 20.0,
         "{params:?}"
     );
-    assert!((pad.closes(&params) - GRIP).abs() < 0.03 * GRIP);
+    for reads in pad.closes(&params) {
+        assert!((reads - GRIP).abs() < 0.03 * GRIP, "{reads}");
+    }
 }
 
 #[test]
@@ -236,18 +243,17 @@ fn an_arm_with_a_late_sensor_closes_by_its_line() {
             hysteresis: 0.05,
             ..FsrErrors::default()
         };
-        let zero = -turn_on / 0.95 / AREA;
-        let by_line = stand(late, zero as f32, 0.95);
+        let by_line = stand(late, (-turn_on / AREA) as f32, 1.0);
         assert!(
             by_line.grip.state == ArmState::Holding && by_line.grip.fault.is_none(),
             "{turn_on}: {by_line:?}"
         );
-        // 2 % less torque than with a sound sensor and no more overshoot.
+        // As with a sound sensor but for its hysteresis of 5 %, which the proof reads too little.
         assert!(
-            (by_line.steady / sound.steady - 0.98).abs() < 0.02,
+            (by_line.steady / sound.steady - 0.99).abs() < 0.02,
             "{turn_on}: {by_line:?}"
         );
-        assert!(by_line.peak < sound.peak + 10.0, "{turn_on}: {by_line:?}");
+        assert!(by_line.peak < 1.05 * sound.peak, "{turn_on}: {by_line:?}");
         let without = stand(late, 0.0, 1.0);
         let more = without.peak - by_line.peak;
         assert!((more - turn_on / AREA).abs() < 120.0, "{turn_on}: {more}");

@@ -152,9 +152,9 @@ fn a_new_board_is_brought_up_through_all_steps() {
         let (id, number) = (format!("fsr-{}", arm + 1), arm + 1);
         let trim = parameter(&id, &format!("fsr_trim_{number}"));
         let zero = parameter(&id, &format!("fsr_zero_{number}"));
-        // What the sensor conducts at the grip pressure while an arm closes, as a pressure; what the board makes of it.
+        // What the sensor conducts at the grip pressure, as a pressure; what the board makes of it.
         let area = f64::from(Params::DEFAULT.fsr_area);
-        let conducts = gain * ((1.0 - HYSTERESIS) * 950.0 - TURN_ON[arm] / area);
+        let conducts = gain * (950.0 - TURN_ON[arm] / area);
         let reads = conducts / trim - zero;
         assert!(
             (reads / 950.0 - 1.0).abs() < fsr::LARGEST_ERROR,
