@@ -2,3 +2,4 @@
 
 pub mod arm_stand;
 pub mod flight_level;
+pub mod sled;

@@ -869,8 +869,9 @@ pub const QUANTITIES: &[Quantity] = &[
         key: "world.pipe_friction",
         all: Some(Spread::Within(0.2, 0.8)),
         calibration: Some(Calibration {
-            by: "skin on the pipe, by a luggage scale ([parameters](parameters.md), `pipe_friction`)",
-            error: Spread::Times(0.85, 1.15),
+            by: "`sophie bringup`, friction, or `sophie fit-arm --friction`: pads on the pipe, by a luggage scale \
+                 ([friction](calibration.md#friction-on-the-pipe))",
+            error: Spread::Times(0.935, 1.065),
             apart: false,
             demanded: false,
         }),

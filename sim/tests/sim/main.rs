@@ -5,6 +5,7 @@ mod console;
 mod flight_faults;
 mod flight_level;
 mod flight_step;
+mod friction_pulls;
 mod grip_faults;
 mod hardware_faults;
 mod imu_rates;

@@ -154,22 +154,13 @@ fn loads(walk: &mut Walk<'_>) -> Result<[f32; 3], Stop> {
             "Three loads in g by a kitchen scale, the segment counted; Enter for {}:",
             walk.loads
         );
-        let reply = walk.ask(&question)?;
-        let text = if reply.is_empty() {
-            walk.loads.clone()
-        } else {
-            reply
-        };
-        let numbers: Option<Vec<f32>> = text.split_whitespace().map(decimal::parse).collect();
-        if let Some(&[first, second, third]) = numbers.as_deref()
-            && 0.0 < first
-            && first < second
-            && second < third
-        {
-            walk.loads = text;
+        let usual = walk.loads.clone();
+        let [first, second, third] = walk.numbers::<3>(&question, Some(&usual))?;
+        if first < second && second < third {
+            walk.loads = format!("{first} {second} {third}");
             return Ok([first, second, third]);
         }
-        walk.say("  | three numbers that rise, such as 100 140 200");
+        walk.say("  | three that rise, such as 100 140 200");
     }
 }
 

@@ -6,6 +6,7 @@ use sophie_board_link::Failure;
 use sophie_board_link::vehicle::Vehicle;
 use sophie_control::calibration::step::Calibration;
 use sophie_control::calibration::{Unfit, procedure};
+use sophie_control::maths::decimal;
 use sophie_control::params::Params;
 use sophie_dialect::{
     MavCmd, MavMessage, MavResult, SOPHIE_CALIBRATION_RESULT_DATA, SophieCalibrationOutcome,
@@ -124,6 +125,27 @@ impl<'a> Walk<'a> {
             if reply.len() == 1 && keys.contains(&reply) {
                 return Ok(reply);
             }
+        }
+    }
+
+    /// `N` numbers above 0 that the builder types; Enter takes those of `usual`.
+    pub(super) fn numbers<const N: usize>(
+        &mut self,
+        question: &str,
+        usual: Option<&str>,
+    ) -> Result<[f32; N], Stop> {
+        loop {
+            let reply = self.ask(question)?;
+            let text = match usual {
+                Some(usual) if reply.is_empty() => usual,
+                _ => &reply,
+            };
+            let typed: Option<Vec<f32>> = text.split_whitespace().map(decimal::parse).collect();
+            let typed = typed.and_then(|numbers| <[f32; N]>::try_from(numbers).ok());
+            if let Some(numbers) = typed.filter(|numbers| numbers.iter().all(|number| *number > 0.0)) {
+                return Ok(numbers);
+            }
+            self.say(&format!("  | {N} numbers above 0"));
         }
     }
 

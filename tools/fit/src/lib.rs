@@ -4,6 +4,8 @@
 pub mod arm;
 pub mod arm_data;
 pub mod csv;
+pub mod friction;
+pub mod friction_data;
 pub mod least_squares;
 pub mod tendon;
 pub mod tendon_data;

@@ -17,7 +17,7 @@ use sophie_emulator::wires::BoardFault;
 use sophie_sim::sensors::fsr;
 use sophie_tasks::schedule::{Level, TaskId};
 
-use super::builder::Builder;
+use super::builder::{Builder, FRICTION};
 use super::console::terminal;
 use super::*;
 
@@ -131,7 +131,7 @@ fn a_new_board_is_brought_up_through_all_steps() {
     let said = builder.said();
     assert_eq!(all_passed, Ok(true), "{said}\n{log}");
     let protocol = folder.read();
-    assert_eq!(protocol["state"].as_str(), Some("all 28 steps passed"));
+    assert_eq!(protocol["state"].as_str(), Some("all 29 steps passed"));
     assert!(protocol["firmware"].as_str().unwrap().ends_with(" on matek-h743"));
     assert!(
         protocol["build"].as_str().unwrap().starts_with("build "),
@@ -161,6 +161,8 @@ fn a_new_board_is_brought_up_through_all_steps() {
             "{id}: {trim} {zero} {reads}"
         );
     }
+    let friction = parameter("friction", "pipe_friction");
+    assert!((friction / FRICTION - 1.0).abs() < 0.03, "{friction}");
     assert!(
         figures(step("final")).contains("\nnothing forbids arming\n")
             && !figures(step("final")).contains("FAIL"),

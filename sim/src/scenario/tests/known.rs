@@ -76,7 +76,7 @@ fn a_calibration_finds_what_it_measures_within_its_error() {
             (p.motor_tau, 0.08, 0.15),
             (p.fsr_trim_1, 1.2, 0.12),
             (p.fsr_trim_4, 1.15, 0.12),
-            (p.pipe_friction, 0.4, 0.15),
+            (p.pipe_friction, 0.4, 0.065),
         ] {
             let off = (found / truth - 1.0).abs();
             assert!(off <= share + 1e-5 && off > 0.0, "{seed}: {found} for {truth}");
