@@ -147,7 +147,7 @@ pub enum MavCmd {
     #[doc = "| 1 (Calibration)| Which.      | [`SophieCalibration`] |"]
     #[doc = "| 2 (Index) | Arm, pressure sensor or servo, 1 to 4; else 0.| 0 .. 4 |"]
     #[doc = "| 3 (Step)  | Step, from 1; a step wants those before it.| &ge; 1 |"]
-    #[doc = "| 4 (Value) | Battery: V by a meter. Servo: pulse at release, us. Pressure sensor, step 2: weight on its pad, N.|  |"]
+    #[doc = "| 4 (Value) | Battery: V by a meter. Servo: pulse at release, us. Pressure sensor, steps 2 to 6: load on its pad, N.|  |"]
     #[doc = "| 5 (Value 2)| Servo: pulse at the full mark, us.|  |"]
     MAV_CMD_SOPHIE_CALIBRATE = 53000,
     #[doc = "Sends a report as SOPHIE_CHECK, row by row, then the acknowledgement."]
@@ -514,7 +514,7 @@ pub enum SophieCalibration {
     SOPHIE_CALIBRATION_BATTERY = 5,
     #[doc = "Release and full mark of one tendon servo."]
     SOPHIE_CALIBRATION_SERVO = 6,
-    #[doc = "Zero and gain of one pressure sensor. Steps: without a weight, with a known one."]
+    #[doc = "Line and hysteresis of one pressure sensor. Steps: empty, three known loads up, two down, empty."]
     SOPHIE_CALIBRATION_FSR = 7,
     #[doc = "Zero and sign of one arm's tilt sensor. Steps: arm straight, its tip bent up."]
     SOPHIE_CALIBRATION_ARM = 8,
@@ -4132,7 +4132,7 @@ pub struct SOPHIE_CALIBRATION_RESULT_DATA {
     pub least: f32,
     #[doc = "Its largest allowed value, NaN if none is."]
     pub most: f32,
-    #[doc = "What was found beside the parameters: gyro: rates x, y, z and noise, deg/s; flow: height of the turning point over the lens, m. NaN: unused."]
+    #[doc = "What was found beside the parameters: gyro: rates x, y, z and noise, deg/s; pressure sensor: half of the 95 % interval at the grip pressure, Pa, half width of the hysteresis, %, reading without a load at the end, Pa; flow: height of the turning point over the lens, m. NaN: unused."]
     #[cfg_attr(feature = "serde", serde(with = "serde_arrays"))]
     #[cfg_attr(feature = "ts-rs", ts(type = "Array<number>"))]
     pub figures: [f32; 4],

@@ -15,7 +15,9 @@ fn main() {
     let first = args.next().unwrap_or(1);
     let count = args.next().unwrap_or(20);
     let seeds: Vec<u64> = (first..first + count).collect();
-    let flown = parallel::each(&seeds, |&seed| [Pace::Full, Pace::Lapse].map(|pace| fly(seed, pace)));
+    let flown = parallel::each(&seeds, |&seed| {
+        [Pace::Full, Pace::Lapse].map(|pace| fly(seed, pace))
+    });
     let mut largest: f64 = 0.0;
     for (seed, both) in seeds.iter().zip(&flown) {
         let [Some(full), Some(lapse)] = both else {

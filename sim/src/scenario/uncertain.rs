@@ -5,6 +5,7 @@ use sophie_control::gripper::tendon::Reel;
 use sophie_control::params::Params;
 
 use super::{ROOM, Scenario};
+use crate::plant::contact::ARM_LENGTH;
 use crate::plant::tendon::{ServoSpec, TendonSpec};
 use crate::sensors::fsr::FsrErrors;
 
@@ -674,19 +675,14 @@ pub const QUANTITIES: &[Quantity] = &[
         key: "faults.pressure_gain",
         each: Some(Spread::Times(0.8, 1.2)),
         calibration: Some(Calibration {
-            by: "`calibrate fsr` ([pressure sensors](calibration.md#pressure-sensors))",
-            error: Spread::Times(0.92, 1.08),
+            by: "`calibrate fsr` ([pressure sensors](calibration.md#pressure-sensors)): slope of the line",
+            error: Spread::Times(1.04, 1.12),
             apart: true,
             demanded: false,
         }),
         source: "Interlink's guide: 15 to 25 % from part to part; repeatability 12 to 16 % (J. Sensors 6561901)",
         truth: |s| s.faults.pressure_gain.to_vec(),
-        assumed: |s| {
-            let p = &s.params;
-            [p.fsr_trim_1, p.fsr_trim_2, p.fsr_trim_3, p.fsr_trim_4]
-                .map(f64::from)
-                .to_vec()
-        },
+        assumed: |s| fsr_trims(s).to_vec(),
         learn: |s, n| {
             let p = &mut s.params;
             set(
@@ -726,23 +722,58 @@ pub const QUANTITIES: &[Quantity] = &[
     Quantity {
         key: "sensors.fsr_turn_on_n",
         each: Some(Spread::Within(0.1, 0.8)),
+        calibration: Some(Calibration {
+            by: "`calibrate fsr` ([pressure sensors](calibration.md#pressure-sensors)): the line at the grip pressure, \
+                 which it reads 0.5 to 4.6 % low",
+            error: Spread::Plus(-0.063, -0.007),
+            apart: true,
+            demanded: false,
+        }),
         source: "0.2 N (Interlink's data sheet), break force 20 to 100 g (guide)",
         truth: |s| s.sensors.pressure.turn_on.to_vec(),
-        assumed: |_| vec![0.0; 4],
+        assumed: |s| {
+            let arms = zeros(s).into_iter().zip(s.sensors.pressure.preload);
+            arms.map(|(zero, preload)| (preload * pipe_bend(s) - zero).max(0.0))
+                .collect()
+        },
+        learn: |s, n| {
+            let found = lines_through_the_grip(s, n);
+            let p = &mut s.params;
+            set(
+                [
+                    &mut p.fsr_zero_1,
+                    &mut p.fsr_zero_2,
+                    &mut p.fsr_zero_3,
+                    &mut p.fsr_zero_4,
+                ],
+                &found,
+            );
+        },
         ..FIXED
     },
     Quantity {
         key: "sensors.fsr_preload_n",
         each: Some(Spread::Within(0.0, 0.3)),
         source: "curvature, compliance and shear shift the calibration (Schofield, PMC5903557; Swanson, PMC6808001); number \
-                 assumed",
+                 assumed. An arm bent as on the pipe has it in the turn-on force that `calibrate fsr` finds",
         truth: |s| s.sensors.pressure.preload.to_vec(),
-        assumed: |_| vec![0.0; 4],
+        // In the same parameter as the turn-on force.
+        assumed: |s| {
+            let arms = zeros(s).into_iter().zip(s.sensors.pressure.turn_on);
+            arms.map(|(zero, turn_on)| ((zero + turn_on) / pipe_bend(s)).max(0.0))
+                .collect()
+        },
         ..FIXED
     },
     Quantity {
         key: "sensors.fsr_hysteresis_percent",
         all: Some(Spread::Within(5.0, 10.0)),
+        calibration: Some(Calibration {
+            by: "`calibrate fsr` shows it; the line is between rising and falling pressure",
+            error: Spread::Plus(0.6, 3.2),
+            apart: false,
+            demanded: false,
+        }),
         source: "10 % on average (Interlink's data sheet), Preisach-like (Paredes-Madrid 2018)",
         truth: |s| vec![s.sensors.pressure.hysteresis / PERCENT],
         assumed: |_| vec![FsrErrors::default().hysteresis / PERCENT],
@@ -928,8 +959,9 @@ pub const QUANTITIES: &[Quantity] = &[
         key: "world.pipe_friction",
         all: Some(Spread::Within(0.2, 0.8)),
         calibration: Some(Calibration {
-            by: "skin on the pipe, by a luggage scale ([parameters](parameters.md), `pipe_friction`)",
-            error: Spread::Times(0.85, 1.15),
+            by: "`sophie bringup`, friction, or `sophie fit-arm --friction`: pads on the pipe, by a luggage scale \
+                 ([friction](calibration.md#friction-on-the-pipe))",
+            error: Spread::Times(0.935, 1.065),
             apart: false,
             demanded: false,
         }),
@@ -1076,6 +1108,38 @@ fn mean_over_rise(s: &Scenario) -> f64 {
 fn received(s: &Scenario) -> f64 {
     let v = &s.vehicle;
     v.rotor.air_ratio(s.world.air.density) * mean(&v.rotor_thrust) * (1.0 - v.air.wash.loss)
+}
+
+/// Tilt of an arm on the pipe, rad.
+fn pipe_bend(s: &Scenario) -> f64 {
+    2.0 * ARM_LENGTH / s.world.pipe_diameter
+}
+
+fn fsr_trims(s: &Scenario) -> [f64; 4] {
+    let p = &s.params;
+    [p.fsr_trim_1, p.fsr_trim_2, p.fsr_trim_3, p.fsr_trim_4].map(f64::from)
+}
+
+/// Zeros of the pressure sensors that the stack takes off, N.
+fn zeros(s: &Scenario) -> [f64; 4] {
+    let p = &s.params;
+    [p.fsr_zero_1, p.fsr_zero_2, p.fsr_zero_3, p.fsr_zero_4].map(|zero| f64::from(zero * p.fsr_area))
+}
+
+/// Zeros with which the trims in force read the grip pressure of sensors that begin at `turn_on`, N, as the parameter
+/// takes them, Pa.
+fn lines_through_the_grip(s: &Scenario, turn_on: &[f64]) -> Vec<f64> {
+    let (grip, area) = (f64::from(s.params.grip_pressure), f64::from(s.params.fsr_area));
+    let parts = s.faults.pressure_gain.into_iter().zip(s.sensors.pressure.preload);
+    let lines = parts.zip(fsr_trims(s)).zip(turn_on);
+    lines
+        .map(|(((gain, preload), trim), turn_on)| {
+            let true_zero = (preload * pipe_bend(s) - turn_on) / area;
+            let zero = gain * (grip + true_zero) / trim - grip;
+            let range = Params::row("fsr_zero_1").map_or((-650.0, 300.0), |row| (row.min, row.max));
+            zero.clamp(f64::from(range.0), f64::from(range.1))
+        })
+        .collect()
 }
 
 /// Elastic slope of the stack's arm without thrust over that of the nominal one.

@@ -113,6 +113,9 @@ pub struct FitArgs {
     /// Distance of that tendon from the arm's neutral line, 5 to 100 mm.
     #[arg(long, value_name = "MM", value_parser = lever, default_value = "15", allow_negative_numbers = true)]
     pub lever: f64,
+    /// Pulls of the skin along the pipe: a third table, for pipe_friction.
+    #[arg(long, value_name = "FRICTION.csv")]
+    pub friction: Option<PathBuf>,
     /// Directory for fit.html, fit.json, arm.toml and arm.console.
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,

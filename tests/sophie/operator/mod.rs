@@ -7,9 +7,9 @@ mod lag;
 mod params;
 #[cfg(target_os = "linux")]
 mod serial;
+mod tendon;
 mod thrust;
 mod tied;
-mod tendon;
 mod wire;
 
 use std::process::{Child, Command};

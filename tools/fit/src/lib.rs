@@ -5,6 +5,8 @@ pub mod arm;
 pub mod arm_data;
 pub mod arm_table;
 pub mod csv;
+pub mod friction;
+pub mod friction_data;
 pub mod least_squares;
 pub mod motor_lag;
 pub mod rotor_sound;

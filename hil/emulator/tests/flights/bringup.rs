@@ -18,10 +18,14 @@ use sophie_sim::plant::rotor::NOMINAL_VOLTAGE;
 use sophie_sim::sensors::fsr;
 use sophie_tasks::schedule::{Level, TaskId};
 
-use super::builder::Builder;
+use super::builder::{Builder, FRICTION};
 use super::console::terminal;
 use super::*;
 
+/// Pressure sensors of the walk: conductance over the nominal one, turn-on force, N, and hysteresis.
+const GAIN: [f64; 4] = [1.1, 0.85, 0.95, 1.0];
+const TURN_ON: [f64; 4] = [0.3, 0.5, 0.15, 0.7];
+const HYSTERESIS: f64 = 0.07;
 /// Silence of an emulated board on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(600);
 
@@ -88,6 +92,9 @@ fn walk(folder: &Folder, builder: impl FnOnce(BenchOperator) -> Builder) -> Walk
     // Not what the parameters have.
     vehicle.vehicle.tendons.stiffness = [STIFFNESS; 4];
     vehicle.vehicle.tendons.friction = [0.3; 4];
+    vehicle.faults.pressure_gain = GAIN;
+    vehicle.sensors.pressure.turn_on = TURN_ON;
+    vehicle.sensors.pressure.hysteresis = HYSTERESIS;
     let mut log = String::new();
     let stood = flight::stand(
         &firmware,
@@ -150,11 +157,17 @@ fn a_new_board_is_brought_up_through_all_steps() {
     assert_eq!(steps.iter().filter(passed).count(), STEPS.len() - 3, "{said}");
     // The values found are those of the simulated parts.
     let parameter = |id: &str, name: &str| step(id)["parameters"][name].as_float().unwrap();
-    for sensor in 1..=4 {
-        let trim = parameter(&format!("fsr-{sensor}"), &format!("fsr_trim_{sensor}"));
+    for (arm, gain) in GAIN.into_iter().enumerate() {
+        let (id, number) = (format!("fsr-{}", arm + 1), arm + 1);
+        let trim = parameter(&id, &format!("fsr_trim_{number}"));
+        let zero = parameter(&id, &format!("fsr_zero_{number}"));
+        // What the sensor conducts at the grip pressure, as a pressure; what the board makes of it.
+        let area = f64::from(Params::DEFAULT.fsr_area);
+        let conducts = gain * (950.0 - TURN_ON[arm] / area);
+        let reads = conducts / trim - zero;
         assert!(
-            (trim - 1.0).abs() < fsr::LARGEST_ERROR,
-            "fsr_trim_{sensor} {trim}"
+            (reads / 950.0 - 1.0).abs() < fsr::LARGEST_ERROR,
+            "{id}: {trim} {zero} {reads}"
         );
     }
     let twist = figures(step("twist"));
@@ -167,6 +180,8 @@ fn a_new_board_is_brought_up_through_all_steps() {
     assert!(figures(step("vibration")).starts_with("vibration 0."), "{said}");
     let stiffness = parameter("tendon-1", "tendon_stiffness");
     assert!((stiffness / STIFFNESS - 1.0).abs() < 0.15, "{stiffness}\n{said}");
+    let friction = parameter("friction", "pipe_friction");
+    assert!((friction / FRICTION - 1.0).abs() < 0.03, "{friction}");
     assert!(
         figures(step("final")).contains("\nnothing forbids arming\n")
             && !figures(step("final")).contains("FAIL"),

@@ -18,8 +18,10 @@ use super::scenario;
 const SETTLED: u64 = 800;
 /// Wall time after which the board counts as stopped.
 const STILL: Duration = Duration::from_secs(300);
-/// Weight on a pressure sensor, N, as the walk proposes it.
-const WEIGHT: f64 = 1.3;
+/// Bend of an arm in its cradle, rad, as on the pipe.
+const CRADLE: f64 = 1.19;
+/// Sliding friction of the builder's pipe.
+pub(super) const FRICTION: f64 = 0.42;
 /// A tip bent up, rad.
 const BENT: f64 = 0.3;
 /// Weight on a tip, N, as the walk proposes it, and the time to hang it on, ms.
@@ -151,6 +153,12 @@ impl Builder {
         }
     }
 
+    /// The load that the last line asks for, g.
+    fn load(&self) -> Option<f64> {
+        let (begin, _) = self.last.split_once(" g, the segment counted")?;
+        begin.rsplit(' ').next()?.parse().ok()
+    }
+
     /// Handling at one rest of the calibration.
     fn rest(&mut self) {
         let number = self.number();
@@ -161,9 +169,11 @@ impl Builder {
             self.does(|held| held.bent = [0.0; 4]);
         } else if self.last.contains("Bend its tip up") {
             self.does(|held| held.bent[number] = BENT);
-        } else if self.last.contains("Put the weight") {
-            let area = f64::from(Params::DEFAULT.fsr_area);
-            self.does(|held| held.pressed[number] = WEIGHT / area);
+        } else if self.last.contains("Arm in its cradle") {
+            self.does(|held| held.bent[number] = CRADLE);
+        } else if let Some(grams) = self.load() {
+            let pascal = 1e-3 * grams * 9.806_65 / f64::from(Params::DEFAULT.fsr_area);
+            self.does(|held| held.pressed[number] = pascal);
         } else {
             self.does(|held| {
                 held.below = Face::Belly;
@@ -269,9 +279,16 @@ impl Builder {
             String::new()
         } else if begins("+ or - moves it") {
             self.moves_servo().to_owned()
-        } else if begins("Take the weight off") {
-            self.does(|held| held.pressed = [0.0; 4]);
+        } else if begins("Take the arm out of its cradle") {
+            self.does(|held| held.bent = [0.0; 4]);
             String::new()
+        } else if let Some((grams, _)) = question.split_once(" g: kg that start it") {
+            // A luggage scale to 10 g that shows 1 % too much.
+            let kg = 1e-3 * grams.trim().parse::<f64>().unwrap();
+            let shown = 1.01 * FRICTION * kg;
+            format!("{:.2} {shown:.2}", 1.3 * shown)
+        } else if begins("The same on the wet pipe") {
+            "n".to_owned()
         } else if begins("Lift it by 1 m") {
             self.does(|held| held.height = 1.0);
             String::new()

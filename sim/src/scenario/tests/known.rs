@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use sophie_control::gripper::contact_pressure::SensorLine;
 use sophie_control::params::{Params, ServoMarks};
 
 use super::parse;
@@ -78,9 +79,9 @@ fn a_calibration_finds_what_it_measures_within_its_error() {
             (p.thrust_trim_2, 1.04, 0.03),
             (p.thrust_volt_exp, 1.7, 0.065),
             (p.motor_tau, 0.08, 0.15),
-            (p.fsr_trim_1, 1.2, 0.08),
-            (p.fsr_trim_4, 1.15, 0.08),
-            (p.pipe_friction, 0.4, 0.15),
+            (p.fsr_trim_1, 1.2, 0.12),
+            (p.fsr_trim_4, 1.15, 0.12),
+            (p.pipe_friction, 0.4, 0.065),
         ] {
             let off = (found / truth - 1.0).abs();
             assert!(off <= share + 1e-5 && off > 0.0, "{seed}: {found} for {truth}");
@@ -96,6 +97,29 @@ fn a_calibration_finds_what_it_measures_within_its_error() {
             .find(|d| d.key == "vehicle.arm_gain[2]")
             .unwrap();
         assert!((gain.assumed / 1.2 - 1.0).abs() < 0.0501, "{gain:?}");
+    }
+}
+
+/// Whatever the sensors are, the line in force reads the grip pressure 0.5 to 4.6 % low.
+#[test]
+fn a_calibrated_pressure_sensor_reads_the_grip_pressure_by_its_line() {
+    let file = "[vehicle]\nknown = 'calibrated'\n[faults]\npressure_gain = [1.2, 0.8, 0.85, 1.15]\n[sensors]\n\
+                fsr_turn_on_n = [0.1, 0.8, 0.3, 0.5]\nfsr_preload_n = [0.3, 0, 0.2, 0.1]\nfsr_hysteresis_percent = 8";
+    for seed in 0..100 {
+        let s = parse(&format!("seed = {seed}\n{file}")).unwrap();
+        let lines = [0, 1, 2, 3].map(|arm| SensorLine::from_params(&s.params, arm));
+        for (arm, line) in lines.into_iter().enumerate() {
+            let (p, bend) = (&s.sensors.pressure, 2.0 * 0.178 / 0.3);
+            let force = 950.0 * 0.001_444 + p.preload[arm] * bend - p.turn_on[arm];
+            let conducts = s.faults.pressure_gain[arm] * force / 0.001_444;
+            let reads = line.pressure(conducts as f32 / line.trim) / 950.0;
+            assert!((0.95..0.998).contains(&reads), "{seed} {arm}: {reads} {line:?}");
+        }
+        // What is left of turn-on force and preload.
+        let left = s.differences();
+        let of = |key: &str| left.iter().find(|d| d.key == key).unwrap();
+        let turn_on = of("sensors.fsr_turn_on_n[2]");
+        assert!((turn_on.assumed - 0.8).abs() < 0.16, "{turn_on:?}");
     }
 }
 
