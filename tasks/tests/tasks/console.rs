@@ -284,7 +284,7 @@ fn what_is_not_allowed_or_not_known_is_answered_with_what_is() {
             )
         ]
     );
-    assert_eq!(bench.says("help").len(), 23);
+    assert_eq!(bench.says("help").len(), 26);
 }
 
 #[test]
