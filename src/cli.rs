@@ -8,6 +8,7 @@ mod args;
 mod builder;
 mod capture;
 mod check;
+mod fit_lag;
 mod fit_thrust;
 mod interrupt;
 mod key;
@@ -58,6 +59,8 @@ pub fn main() -> ExitCode {
         Task::Paper(args) => study::paper(&args),
         Task::FitArm(args) => study::fit_arm(&args),
         Task::FitThrust(args) => fit_thrust::run(&args),
+        Task::FitLag(args) => fit_lag::run(&args),
+        Task::FitTendon(args) => study::fit_tendon_steps(&args),
         Task::Timing(args) => timing::run(&args).map(|()| true),
         Task::Recording(args) => recording::run(&args).map(|()| true),
     };

@@ -41,7 +41,7 @@ use self::rotor::{Rotor, RotorSpec};
 use self::servo_power::MG996R;
 use self::tendon::Tendon;
 use crate::plant::flexible::ArmBending;
-use crate::plant::load::Load;
+use crate::plant::load::{Acceleration, Load};
 
 /// Integration step, s.
 pub const STEP: f64 = 0.5e-3;
@@ -55,6 +55,8 @@ pub const DRAG: f64 = 0.3;
 const TURNING: f64 = 0.25;
 /// Distance of the origin from the pipe within which a disc may reach it, m: arm, disc and a margin.
 const STRIKING: f64 = 0.5;
+/// Height of the stand's top, m: arms on it touch nothing.
+const STAND: f64 = 1.0;
 /// Distance of the origin from a surface within which parts may touch it, m: arm, depth of its hinge and a margin.
 const NEAR: f64 = 0.25;
 
@@ -115,6 +117,8 @@ struct Base {
     vibration: Vibration,
     /// Of belly pads and skin, as [`contact::Pad::rebound`].
     rebound: f64,
+    /// Fixed on a stand, away from the pipe.
+    on_stand: bool,
     /// Normal force of the pipe on each belly pad, N.
     pad_forces: [f64; 4],
     specific_force: DVec3,
@@ -230,6 +234,32 @@ impl Plant {
         let turn = DQuat::from_rotation_z(yaw);
         pose.attitude = turn * pose.attitude;
         pose.velocity = turn * pose.velocity;
+    }
+
+    /// Fixes the body level on a stand, where its arms hang free; or puts it back on the ground, at rest.
+    pub fn stand(&mut self, on_stand: bool) {
+        let base = &mut self.base;
+        base.on_stand = on_stand;
+        base.state.pose = Pose {
+            position: DVec3::new(0.0, 0.0, if on_stand { -STAND } else { -contact::BELLY_Z }),
+            attitude: DQuat::IDENTITY,
+            velocity: DVec3::ZERO,
+            omega: DVec3::ZERO,
+        };
+    }
+
+    /// Whether it is fixed on a stand.
+    #[must_use]
+    pub fn stands(&self) -> bool {
+        self.base.on_stand
+    }
+
+    /// Hangs a weight of `newtons` N on the rotor mount of arm `arm`, 0 to 3; 0 takes it off.
+    pub fn hang(&mut self, arm: usize, newtons: f64) {
+        match &mut self.arms {
+            Arms::Hinged(arms) => arms[arm].hang(newtons),
+            Arms::Beams(arms) => arms[arm].hang(newtons),
+        }
     }
 
     /// Gives the pipe another coefficient of friction: it gets wet. For studies.
@@ -424,6 +454,7 @@ impl Base {
             pipe: parts.pipe,
             vibration: parts.vibration,
             rebound,
+            on_stand: false,
             pad_forces: [0.0; 4],
             specific_force: DVec3::new(0.0, 0.0, -GRAVITY),
         }
@@ -470,7 +501,11 @@ impl Base {
         self.battery.step(STEP, current);
         self.servo_battery.step(STEP, servo_current);
 
-        let acceleration = self.body.accelerate(&pose, load, gravity, arms.each_ref());
+        let acceleration = if self.on_stand {
+            Acceleration::ZERO
+        } else {
+            self.body.accelerate(&pose, load, gravity, arms.each_ref())
+        };
         self.specific_force = acceleration.linear - gravity;
         for arm in arms {
             arm.advance(STEP, &acceleration, &carrier);
@@ -500,7 +535,7 @@ impl Base {
         }
         self.vibration.step(STEP, &mut self.pipe.shape);
         let across = self.pipe.across(pose.position);
-        let near = across.length() < self.pipe.largest_radius() + NEAR;
+        let near = !self.on_stand && across.length() < self.pipe.largest_radius() + NEAR;
         self.pad_forces = [0.0; 4];
         if near {
             let belly = self.pipe_belly.step(STEP, &pose, &Surface::Pipe(self.pipe));

@@ -2,5 +2,7 @@
 
 pub mod arm_stand;
 pub mod flight_level;
+pub mod phone;
 pub mod scale;
 pub mod thrust_stand;
+pub mod twist_stand;

@@ -16,7 +16,7 @@ use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand};
 
 pub use console::{BringupArgs, ParamsArgs, ParamsVerb};
-pub use data::{FitArgs, FitThrustArgs, Kind, RecordingArgs, TimingArgs};
+pub use data::{FitArgs, FitLagArgs, FitTendonArgs, FitThrustArgs, Kind, RecordingArgs, TimingArgs};
 pub use fly::{FlyArgs, LiveArgs};
 pub use message::Message;
 pub use mission::MissionArgs;
@@ -94,6 +94,19 @@ pub enum Task {
     ///
     /// Exit status: 0 done, 2 bad input.
     FitThrust(FitThrustArgs),
+    /// Fit the lag of a motor to the sound of a train of steps and print lines for the console.
+    ///
+    /// SOUND.wav is a phone's recording beside the rotor, at most a minute, of `thrust 1 30 to 60`.
+    ///
+    /// Exit status: 0 done, 2 bad input.
+    FitLag(FitLagArgs),
+    /// Fit a tendon to steps of its servo with and without a weight on the arm's tip.
+    ///
+    /// STEPS.csv has a header line with the columns reel_deg (from the release mark), weight_n (on the tip) and tilt_deg
+    /// (tip up positive), a row a rest in the order of the measurement (docs/calibration.md, Tendons).
+    ///
+    /// Exit status: 0 done, 2 bad input.
+    FitTendon(FitTendonArgs),
     /// Print the timing of a board's log.
     ///
     /// Exit status: 0 read, also when parts were cut off (said on stderr), 2 bad input or unwritable output.

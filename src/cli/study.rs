@@ -1,13 +1,17 @@
-//! `sophie paper` and `sophie fit-arm`: results on terminal and disk.
+//! `sophie paper`, `sophie fit-arm` and `sophie fit-tendon`: results on terminal and disk.
 
 use sophie_terminal::complain;
 use sophie_terminal::console::{self, Console};
 use sophie_terminal::output::OutDir;
 
 use super::PROGRAM;
-use super::args::{FitArgs, PaperArgs};
+use super::args::{FitArgs, FitTendonArgs, PaperArgs};
 use super::publish::Publisher;
+use sophie_control::gripper::tendon::REFERENCE_TILT;
+use sophie_control::params::Params;
 use sophie_fit::arm::{self, Fit};
+use sophie_fit::servo_steps::bench::Given;
+use sophie_fit::servo_steps::{self, data};
 use sophie_fit::tendon::{self, TendonFit};
 use sophie_fit::{arm_data, tendon_data};
 use sophie_research::fit_report as report;
@@ -67,6 +71,35 @@ pub fn fit_arm(args: &FitArgs) -> Result<bool, String> {
     if args.json {
         console::print(results.trim_end())?;
     }
+    console.end()?;
+    Ok(true)
+}
+
+/// Fits a tendon to steps of its servo.
+pub fn fit_tendon_steps(args: &FitTendonArgs) -> Result<bool, String> {
+    let file = console::one_line(&args.steps.display().to_string());
+    let p = Params::DEFAULT;
+    let given = Given {
+        reel_radius: 1e-3 * args.reel,
+        lever: 1e-3 * args.lever,
+        length: p.arm_d.into(),
+        bend: p.tendon_bend.into(),
+        reference: REFERENCE_TILT.into(),
+        speed: p.servo_slew_1.into(),
+    };
+    let found =
+        servo_steps::fit(&data::load(&args.steps)?, &given).map_err(|why| format!("{file}: {why}"))?;
+    let console = Console::new(false);
+    for line in found.lines() {
+        console.say(&line);
+    }
+    console.say(&format!("set tendon_stiffness {:.0}", found.stiffness.value));
+    let turn = found.slack.value / given.reel_radius;
+    console.say(&format!(
+        "servo_trim of this servo: {:+.1} deg of the reel, {:+.0} us where 270 deg are 1,900 us",
+        turn.to_degrees(),
+        turn.to_degrees() * 1900.0 / 270.0
+    ));
     console.end()?;
     Ok(true)
 }

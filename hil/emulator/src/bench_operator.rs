@@ -19,6 +19,8 @@ const TURN: f64 = 3.0;
 /// Length of a step, s; interval of the transmitter's frames, ms.
 const STEP: f64 = 1e-3;
 const FRAME_MS: u64 = 20;
+/// Weight that the operator hangs on or takes off in a step, N: 3 N in a second.
+const HANG: f64 = 3e-3;
 /// Lowest rotor speed that the operator notices, rad/s.
 const TURNS: f64 = 20.0;
 
@@ -31,6 +33,10 @@ pub struct Handling {
     pub pressed: PerArm<f64>,
     /// Tilt of each arm, tip up, added to its tilt at rest, rad.
     pub bent: PerArm<f64>,
+    /// The body stands on a box: arms hang free, and the servos wind them.
+    pub on_box: bool,
+    /// Weight on each arm's tip, N; hung on and taken off slowly.
+    pub hung: PerArm<f64>,
     /// Height above the table, m.
     pub height: f64,
     /// Sticks of a CRSF transmitter; `None`: the transmitter is off.
@@ -70,6 +76,8 @@ struct Table {
 pub struct BenchOperator {
     table: Arc<Mutex<Table>>,
     attitude: DQuat,
+    /// Present weight on each tip, N.
+    hung: PerArm<f64>,
 }
 
 impl Default for BenchOperator {
@@ -78,6 +86,8 @@ impl Default for BenchOperator {
             below: Face::Belly,
             pressed: [0.0; 4],
             bent: [0.0; 4],
+            on_box: false,
+            hung: [0.0; 4],
             height: 0.0,
             sticks: None,
             wiring: MotorMap::STRAIGHT,
@@ -88,6 +98,7 @@ impl Default for BenchOperator {
         Self {
             table: Arc::new(Mutex::new(Table { held, seen })),
             attitude: DQuat::IDENTITY,
+            hung: [0.0; 4],
         }
     }
 }
@@ -115,7 +126,7 @@ impl BenchOperator {
     }
 
     /// Advances by a millisecond and records an observation.
-    pub(crate) fn step(&mut self, pins: &Pins, plant: &Plant) -> HandledVehicle {
+    pub(crate) fn step(&mut self, pins: &Pins, plant: &mut Plant) -> HandledVehicle {
         let mut table = self.table.lock().unwrap_or_else(PoisonError::into_inner);
         let rotors = plant.rotor_speed();
         let fastest = (0..4).max_by(|a, b| rotors[*a].total_cmp(&rotors[*b]));
@@ -132,6 +143,13 @@ impl BenchOperator {
         let held = table.held.clone();
         table.held.battery = None;
         drop(table);
+        if plant.stands() != held.on_box {
+            plant.stand(held.on_box);
+        }
+        for (arm, (now, to)) in self.hung.iter_mut().zip(held.hung).enumerate() {
+            *now += (to - *now).clamp(-HANG, HANG);
+            plant.hang(arm, *now);
+        }
         let wanted = lying(held.below);
         let before = self.attitude;
         self.attitude = before.rotate_towards(wanted, TURN * STEP).normalize();

@@ -71,6 +71,9 @@ pub trait Flexible: Carried {
     /// Points of the underside that may touch the pipe, m, body.
     fn underside(&self) -> [DVec3; 3];
 
+    /// Hangs a weight of `newtons` N on the rotor's mount, by a string.
+    fn hang(&mut self, newtons: f64);
+
     /// Finds the contact forces, adds them to `load` and stores their effect on the arm for [`Flexible::drive`].
     /// Returns the pressure at the sensor, Pa.
     fn touch(&mut self, dt: f64, pose: &Pose, nearby: &Nearby, load: &mut Load) -> f64;

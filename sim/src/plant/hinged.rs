@@ -5,7 +5,8 @@ pub mod link;
 use glam::DVec3;
 
 use self::link::{Arm, ArmSpec};
-use super::contact::{ArmSkin, ArmTip, Pose, STATIONS};
+use super::GRAVITY;
+use super::contact::{ARM_LENGTH, ArmSkin, ArmTip, Pose, STATIONS};
 use super::flexible::{Carried, Carrier, Drive, Flexible, Nearby};
 use super::mass_matrix::MassMatrix;
 use crate::plant::load::Acceleration;
@@ -19,6 +20,8 @@ pub struct HingedArm {
     tip: ArmTip,
     /// Contact moment of underside and tip on the tilt, N·m.
     contact: [f64; 2],
+    /// Weight on the tip, N.
+    hung: f64,
 }
 
 impl HingedArm {
@@ -30,6 +33,7 @@ impl HingedArm {
             skin: ArmSkin::new(index),
             tip: ArmTip::new(index),
             contact: [0.0; 2],
+            hung: 0.0,
         }
     }
 }
@@ -51,6 +55,10 @@ impl Flexible for HingedArm {
 
     fn underside(&self) -> [DVec3; 3] {
         STATIONS.map(|station| self.skin.point(self.arm.tilt, station).0)
+    }
+
+    fn hang(&mut self, newtons: f64) {
+        self.hung = newtons;
     }
 
     fn touch(&mut self, dt: f64, pose: &Pose, nearby: &Nearby, load: &mut Load) -> f64 {
@@ -75,7 +83,10 @@ impl Flexible for HingedArm {
     fn drive(&mut self, drive: &Drive, carrier: &Carrier, load: &mut Load) {
         let [skin, tip] = self.contact;
         load.moment += self.arm.normal() * drive.drag;
-        let moment = drive.tendon + skin + tip;
+        let mut moment = drive.tendon + skin + tip;
+        if self.hung != 0.0 {
+            moment += self.hung / GRAVITY * ARM_LENGTH * self.arm.normal().dot(carrier.gravity);
+        }
         self.arm
             .load(drive.thrust, moment, carrier.gravity, carrier.coupled);
     }

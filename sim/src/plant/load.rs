@@ -27,3 +27,11 @@ pub struct Acceleration {
     /// Angular acceleration, rad/s², body.
     pub angular: DVec3,
 }
+
+impl Acceleration {
+    /// Of a body that cannot move.
+    pub const ZERO: Self = Self {
+        linear: DVec3::ZERO,
+        angular: DVec3::ZERO,
+    };
+}

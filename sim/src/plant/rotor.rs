@@ -180,6 +180,12 @@ impl Rotor {
         self.coefficient * self.speed * self.speed * self.heat.factor()
     }
 
+    /// Speed at full command and nominal voltage, rad/s.
+    #[must_use]
+    pub fn full_speed(&self) -> f64 {
+        self.full_speed
+    }
+
     /// Speed, rad/s.
     #[must_use]
     pub fn speed(&self) -> f64 {

@@ -257,8 +257,8 @@ pub const QUANTITIES: &[Quantity] = &[
         key: "vehicle.motor_tau_s",
         all: Some(Spread::Within(0.04, 0.10)),
         calibration: Some(Calibration {
-            by: "step of thrust on a scale ([tuning](tuning.md), 4)",
-            error: Spread::Times(0.85, 1.15),
+            by: "`bringup`'s step `lag`, by sound ([lag](calibration.md#lag-of-the-motors)), the mean of rise and fall",
+            error: Spread::Times(0.9, 1.1),
             apart: false,
             demanded: false,
         }),
@@ -266,8 +266,14 @@ pub const QUANTITIES: &[Quantity] = &[
         source: "0.0125 up and 0.025 s down (RotorS, a small one) to 0.17 s (2212-920, 9450, 30 A on PWM: \
                  CrissCCL/DIY_UAV_Motor_System_Identification)",
         truth: |s| vec![s.vehicle.rotor.spin.up],
-        assumed: |s| vec![s.params.motor_tau.into()],
-        learn: |s, n| set([&mut s.params.motor_tau], n),
+        assumed: |s| vec![f64::from(s.params.motor_tau) / mean_over_rise(s)],
+        learn: |s, n| {
+            let mean = mean_over_rise(s);
+            set(
+                [&mut s.params.motor_tau],
+                &n.iter().map(|n| n * mean).collect::<Vec<_>>(),
+            );
+        },
         ..FIXED
     },
     Quantity {
@@ -318,7 +324,7 @@ pub const QUANTITIES: &[Quantity] = &[
         key: "vehicle.arm_level_share",
         all: Some(Spread::Plus(-0.05, 0.05)),
         calibration: Some(Calibration {
-            by: "`sophie fit-arm` ([arms](calibration.md#arms))",
+            by: "`bringup`'s step `arm-table`, `sophie fit-arm` ([arms](calibration.md#arms))",
             error: Spread::Plus(-0.02, 0.02),
             apart: false,
             demanded: false,
@@ -340,7 +346,7 @@ pub const QUANTITIES: &[Quantity] = &[
         key: "vehicle.arm_level_n",
         all: Some(Spread::Within(3.7, 4.6)),
         calibration: Some(Calibration {
-            by: "`sophie fit-arm` ([arms](calibration.md#arms))",
+            by: "`bringup`'s step `arm-table`, `sophie fit-arm` ([arms](calibration.md#arms))",
             error: Spread::Plus(-0.17, 0.17),
             apart: false,
             demanded: false,
@@ -364,7 +370,7 @@ pub const QUANTITIES: &[Quantity] = &[
         all: Some(Spread::Times(0.7, 1.4)),
         each: Some(Spread::Times(0.93, 1.07)),
         calibration: Some(Calibration {
-            by: "`sophie fit-arm` ([arms](calibration.md#arms)): one equation for four arms",
+            by: "`bringup`'s step `arm-table`, `sophie fit-arm` ([arms](calibration.md#arms)): one equation for four arms",
             error: Spread::Times(0.95, 1.05),
             apart: false,
             demanded: false,
@@ -389,7 +395,8 @@ pub const QUANTITIES: &[Quantity] = &[
     Quantity {
         key: "vehicle.arm_offset_deg",
         each: Some(Spread::Plus(-3.0, 3.0)),
-        source: "print and glue (assumed); the arms' sensors see it in flight",
+        source: "print and glue (assumed); `arm-table` shows each arm's to 1.9°, the parameters are common to the four; the arms' \
+                 sensors see it in flight",
         truth: |s| s.vehicle.arm_offset.map(|offset| offset / DEGREE).to_vec(),
         assumed: |_| vec![0.0; 4],
         ..FIXED
@@ -404,8 +411,21 @@ pub const QUANTITIES: &[Quantity] = &[
     Quantity {
         key: "vehicle.arm_torsion",
         all: Some(Spread::Within(0.5, 2.0)),
+        calibration: Some(Calibration {
+            by: "`sophie bringup`, step `twist` ([arms](calibration.md#arms)), for `sophie check`; no parameter has it",
+            error: Spread::Times(0.96, 1.04),
+            apart: false,
+            demanded: false,
+        }),
+        exact: true,
         source: "derived of a square section; infill and skin share it differently (assumed)",
         truth: |s| vec![s.vehicle.arm_torsion],
+        assumed: |s| vec![s.measured.arm_torsion],
+        learn: |s, n| {
+            if let [torsion] = n {
+                s.measured.arm_torsion = *torsion;
+            }
+        },
         ..FIXED
     },
     Quantity {
@@ -562,11 +582,18 @@ pub const QUANTITIES: &[Quantity] = &[
         key: "vehicle.tendon_stiffness_n_m",
         all: Some(Spread::Within(2000.0, 8000.0)),
         each: Some(Spread::Times(0.9, 1.1)),
+        calibration: Some(Calibration {
+            by: "steps of the servo with and without a weight ([tendons](calibration.md#tendons)): one for four arms",
+            error: Spread::Times(0.95, 1.2),
+            apart: false,
+            demanded: false,
+        }),
+        exact: true,
         source: "1 mm of nylon, 0.25 m: 7,900 dry (E 2.5 GPa), 3,100 to 3,800 conditioned; knots, anchor in TPU and mount: \
                  2,000 to 4,000 (estimated)",
         truth: |s| s.vehicle.tendons.stiffness.to_vec(),
         assumed: |s| vec![s.params.tendon_stiffness.into(); 4],
-        ..FIXED
+        learn: |s, n| set([&mut s.params.tendon_stiffness], &[mean(n)]),
     },
     Quantity {
         key: "vehicle.tendon_friction",
@@ -610,9 +637,37 @@ pub const QUANTITIES: &[Quantity] = &[
     Quantity {
         key: "faults.tendon_slack_mm",
         each: Some(Spread::Plus(-0.5, 2.0)),
+        calibration: Some(Calibration {
+            by: "steps of the servo ([tendons](calibration.md#tendons)), its play and backlash included",
+            error: Spread::Plus(-0.4, 1.5),
+            apart: true,
+            demanded: false,
+        }),
         source: "a knot by hand; 1 to 2 mm a day by creep (assumed)",
         truth: |s| s.faults.tendon_slack.map(|slack| slack / 1e-3).to_vec(),
-        assumed: |_| vec![0.0; 4],
+        assumed: |s| {
+            let wound = trims(&s.params).into_iter().zip(thread_per_us(&s.params));
+            wound
+                .map(|(trim, thread)| f64::from(trim) * thread / 1e-3)
+                .collect()
+        },
+        learn: |s, n| {
+            let most = Params::row("servo_trim_1").map_or(0.0, |row| f64::from(row.max));
+            let wound = n.iter().zip(thread_per_us(&s.params));
+            let trims: Vec<f64> = wound
+                .map(|(slack, thread)| (1e-3 * slack / thread).clamp(-most, most))
+                .collect();
+            let p = &mut s.params;
+            set(
+                [
+                    &mut p.servo_trim_1,
+                    &mut p.servo_trim_2,
+                    &mut p.servo_trim_3,
+                    &mut p.servo_trim_4,
+                ],
+                &trims,
+            );
+        },
         ..FIXED
     },
     Quantity {
@@ -649,7 +704,8 @@ pub const QUANTITIES: &[Quantity] = &[
     Quantity {
         key: "vehicle.vibration_m_s2",
         all: Some(Spread::Within(0.5, 4.0)),
-        source: "up to 15 m/s² of all rotors on three axes are normal (ArduPilot, measuring vibration; 3DR's Iris)",
+        source: "up to 15 m/s² of all rotors on three axes are normal (ArduPilot, measuring vibration; 3DR's Iris); `bringup`'s step \
+                 `vibration` passes all of these: its mark is at 6",
         truth: |s| vec![s.vehicle.vibration.once],
         ..FIXED
     },
@@ -1010,6 +1066,12 @@ fn mean(numbers: &[f64]) -> f64 {
     numbers.iter().sum::<f64>() / numbers.len().max(1) as f64
 }
 
+/// Mean of a motor's lags up and down over the one up; at least 1, as `sophie_fit::motor_lag` takes it.
+fn mean_over_rise(s: &Scenario) -> f64 {
+    let spin = s.vehicle.rotor.spin;
+    0.5 * (1.0 + spin.down.map_or(1.0, |down| (down / spin.up).max(1.0)))
+}
+
 /// Thrust at full drive that the arms receive on the scenario's day over that of the nominal rotor in the standard's air.
 fn received(s: &Scenario) -> f64 {
     let v = &s.vehicle;
@@ -1024,10 +1086,30 @@ fn assumed_gain(s: &Scenario) -> f64 {
     assumed / built
 }
 
-/// Pulses at which the stack takes its servos to be at `angle`, rad from release.
+/// Pulses at which the stack takes its servos to be at `angle`, rad from the release mark, without their trims: these
+/// take up the thread's slack.
 fn servo_pulses(s: &Scenario, angle: f32) -> Vec<f64> {
-    let pulse = |arm| Reel::from_params(&s.params, arm).pulse(angle);
-    (0..4).map(pulse).map(f64::from).collect()
+    let pulse = |(arm, trim)| Reel::from_params(&s.params, arm).pulse(angle) - trim;
+    trims(&s.params)
+        .into_iter()
+        .enumerate()
+        .map(pulse)
+        .map(f64::from)
+        .collect()
+}
+
+/// Trims of the servos, µs.
+fn trims(p: &Params) -> [f32; 4] {
+    [p.servo_trim_1, p.servo_trim_2, p.servo_trim_3, p.servo_trim_4]
+}
+
+/// Thread that a microsecond of each servo's pulse winds, m.
+fn thread_per_us(p: &Params) -> [f64; 4] {
+    [0, 1, 2, 3].map(|arm| {
+        let reel = Reel::from_params(p, arm);
+        let span = f64::from(reel.pulse(p.servo_range) - reel.pulse(0.0));
+        f64::from(p.reel_radius * p.servo_range) / span
+    })
 }
 
 /// Marks within what their parameters take, µs.

@@ -94,6 +94,12 @@ impl ThrustStand {
         }
     }
 
+    /// The same, and the thrust of each rotor that its arm carried then, N.
+    pub fn run_of_arms(&mut self, rotors: Rotors, drive: f64) -> (PerArm<f64>, Reading) {
+        let read = self.run(rotors, drive);
+        (self.thrust(), read)
+    }
+
     fn step(&mut self, commands: PerArm<f64>) {
         let voltage = self.battery.voltage();
         for (rotor, command) in self.rotors.iter_mut().zip(commands) {

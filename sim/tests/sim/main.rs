@@ -24,4 +24,6 @@ mod sbus;
 mod servo_battery;
 mod silence;
 mod strong_vehicles;
+mod tendon_steps;
 mod vehicle;
+mod vibration;

@@ -121,6 +121,20 @@ pub struct FitArgs {
     pub json: bool,
 }
 
+/// Options of `fit-tendon`.
+#[derive(Args, Debug)]
+pub struct FitTendonArgs {
+    /// Steps of one tendon's servo.
+    #[arg(value_name = "STEPS.csv")]
+    pub steps: PathBuf,
+    /// Distance of the tendon from the arm's neutral line, 5 to 100 mm.
+    #[arg(long, value_name = "MM", value_parser = lever, default_value = "15", allow_negative_numbers = true)]
+    pub lever: f64,
+    /// Radius of the reel, 5 to 100 mm.
+    #[arg(long, value_name = "MM", value_parser = lever, default_value = "15", allow_negative_numbers = true)]
+    pub reel: f64,
+}
+
 /// Options of `fit-thrust`.
 #[derive(Args, Debug)]
 pub struct FitThrustArgs {
@@ -130,6 +144,14 @@ pub struct FitThrustArgs {
     /// Voltage of thrust_max, 6 to 52 V: the parameter battery_nominal.
     #[arg(long, value_name = "V", value_parser = nominal, default_value = "14.8", allow_negative_numbers = true)]
     pub nominal: f64,
+}
+
+/// Options of `fit-lag`.
+#[derive(Args, Debug)]
+pub struct FitLagArgs {
+    /// Recording of the steps.
+    #[arg(value_name = "SOUND.wav")]
+    pub sound: PathBuf,
 }
 
 fn nominal(text: &str) -> Result<f64, String> {

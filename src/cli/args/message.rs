@@ -8,7 +8,7 @@ use sophie_terminal::console;
 use crate::cli::refuse;
 
 /// The subcommands, as listed in messages.
-const VERBS: [&str; 11] = [
+const VERBS: &[&str] = &[
     "fly",
     "check",
     "bringup",
@@ -18,6 +18,8 @@ const VERBS: [&str; 11] = [
     "paper",
     "fit-arm",
     "fit-thrust",
+    "fit-lag",
+    "fit-tendon",
     "timing",
     "recording",
 ];
@@ -64,7 +66,8 @@ impl Message {
             let allowed = match std::env::args().nth(1).as_deref() {
                 Some("paper" | "capture") => "no file",
                 Some("study") => "one study and no file",
-                Some("fit-arm" | "fit-thrust") => "one CSV file",
+                Some("fit-arm" | "fit-thrust" | "fit-tendon") => "one CSV file",
+                Some("fit-lag") => "one WAV file",
                 Some("recording") => "one recording",
                 Some("timing") => "one log file",
                 Some("params") => "one parameter file",

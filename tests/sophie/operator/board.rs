@@ -31,6 +31,8 @@ use sophie_ports::sensors::{AnalogFrame, ArmImus};
 use sophie_ports::serial::SerialOutput;
 use sophie_ports::signing::{Key, Record, Stored};
 use sophie_ports::storage::{Loaded, Storage, StorageError};
+use sophie_sim::plant::{Actuators, Plant, STEP};
+use sophie_sim::scenario::Scenario;
 use sophie_tasks::console;
 use sophie_tasks::flight::{control, estimator, imu, mixer, motors};
 use sophie_tasks::ground_station::console_pipe::ConsolePipe;
@@ -45,6 +47,8 @@ use super::wire::Wire;
 /// The board's time in one round, ms, and the time on the wall that a round takes at least: twenty times real time.
 const ROUND_MS: u64 = 10;
 const ROUND: Duration = Duration::from_micros(500);
+/// Weight that hands hang on or take off in a round, N: 3 N in a second.
+const HANG: f64 = 0.03;
 /// Time on the wall that the board is away after a restart.
 const AWAY: Duration = Duration::from_millis(300);
 
@@ -60,6 +64,10 @@ pub struct Hands {
     pub counts: AnalogFrame,
     /// Tilt of each arm's tip, rad.
     pub tilt: PerArm<f32>,
+    /// The vehicle that stands on a box, whose servos wind its arms: these have the tilts then. `None`: there is no vehicle.
+    pub vehicle: Option<Arc<Scenario>>,
+    /// Weight on each arm's tip, N.
+    pub hung: PerArm<f64>,
     /// What the barometer reads, Pa; `None`: nothing.
     pub air: Option<f32>,
     /// What the receiver gives at 50 Hz; `None`: nothing.
@@ -116,6 +124,8 @@ impl Default for Hands {
                 servo_battery: 0,
             },
             tilt: [0.0; 4],
+            vehicle: None,
+            hung: [0.0; 4],
             air: None,
             sticks: None,
             mute: false,
@@ -324,7 +334,40 @@ struct Run {
     arms: Arms,
     motors: FakeMotors,
     servos: FakeServos,
+    stand: Option<RefCell<Stand>>,
     chip: ThisChip,
+}
+
+/// A vehicle on a box.
+struct Stand {
+    plant: Plant,
+    hung: PerArm<f64>,
+}
+
+impl Stand {
+    fn of(scenario: &Scenario) -> Self {
+        let mut plant = scenario.plant();
+        plant.stand(true);
+        Self {
+            plant,
+            hung: [0.0; 4],
+        }
+    }
+
+    /// A round under the servos' `pulses`, us, while hands bring the weights to `hung` N; the arms' tilts.
+    fn round(&mut self, pulses: PerArm<f32>, hung: PerArm<f64>) -> PerArm<f32> {
+        for (arm, (now, to)) in self.hung.iter_mut().zip(hung).enumerate() {
+            *now += (to - *now).clamp(-HANG, HANG);
+            self.plant.hang(arm, *now);
+        }
+        for _ in 0..(1e-3 * ROUND_MS as f64 / STEP) as u32 {
+            self.plant.step(&Actuators {
+                motors: [0.0; 4],
+                servos: pulses.map(f64::from),
+            });
+        }
+        self.plant.tilt().map(|tilt| tilt as f32)
+    }
 }
 
 impl Run {
@@ -358,6 +401,10 @@ impl Run {
             arms: Arms::default(),
             motors: FakeMotors::default(),
             servos: FakeServos::default(),
+            stand: now
+                .vehicle
+                .as_deref()
+                .map(|scenario| RefCell::new(Stand::of(scenario))),
             chip: ThisChip {
                 hands: hands.clone(),
                 stored: stored.clone(),
@@ -491,7 +538,11 @@ impl Run {
             accel: hands.force + Vec3::new(0.0, 0.0, GRAVITY),
         });
         self.analog.frame.set(hands.counts);
-        self.arms.0.set(hands.tilt);
+        let pulses = self.servos.pulses.borrow().last().copied().unwrap_or_default();
+        let stand = self.stand.as_ref();
+        self.arms
+            .0
+            .set(stand.map_or(hands.tilt, |stand| stand.borrow_mut().round(pulses, hands.hung)));
         // No number is no pressure.
         self.barometer.1.set(hands.air.unwrap_or(f32::NAN));
         if let (Some(sticks), 0) = (hands.sticks, ms % 20) {

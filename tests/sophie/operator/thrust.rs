@@ -1,6 +1,7 @@
 //! `sophie bringup`'s step `thrust`: the board's own runs on its outputs, the scale's readings from the simulator's rotors,
 //! battery and arms.
 
+use sophie_bringup::STEPS;
 use sophie_control::allocation::wrench::PerArm;
 use sophie_control::params::Params;
 use sophie_control::pilot::rc::Sticks;
@@ -16,37 +17,6 @@ use super::bringup::Builder;
 /// A vehicle that is 11 % stronger than the parameters have it, and of which no two rotors are alike.
 const VEHICLE: &str =
     "[vehicle]\nthrust_max_n = 9.2\nrotor_thrust = [0.96, 1.04, 1.01, 0.99]\nthrust_voltage_power = 1.65\n";
-/// The steps before.
-const BEFORE: [&str; 27] = [
-    "chip",
-    "setup",
-    "selftest",
-    "live-air",
-    "live-imu",
-    "live-arms",
-    "live-grip",
-    "mounting",
-    "gyro",
-    "level",
-    "arm-1",
-    "arm-2",
-    "arm-3",
-    "arm-4",
-    "fsr-1",
-    "fsr-2",
-    "fsr-3",
-    "fsr-4",
-    "servo-1",
-    "servo-2",
-    "servo-3",
-    "servo-4",
-    "flow",
-    "battery",
-    "esc",
-    "rotors",
-    "radio",
-];
-
 /// What the vehicle on its stand shows to the board while a run lasts.
 fn shown(board: &Board, reading: &Reading) {
     board.hands(|hands| {
@@ -84,8 +54,8 @@ fn one(builder: &mut Builder, board: &Board, stand: &mut ThrustStand, rotors: Ro
 /// A builder at the step, the vehicle tied down.
 fn at_the_step(temp: &Temp, board: &Board) -> Builder {
     let mut builder = Builder::begins(temp, board, &[]);
-    for id in BEFORE {
-        builder.at(&format!("({id})"), "s");
+    for step in STEPS.iter().take_while(|step| step.id != "thrust") {
+        builder.at(&format!("({})", step.id), "s");
     }
     builder.step("thrust");
     builder.at("Type tied", "yes");
@@ -127,7 +97,7 @@ fn thrust_of_a_strong_and_uneven_vehicle_is_found_on_a_scale() {
     builder.hears("thrust_max 8.3 -> ");
     builder.hears("storing");
     builder.hears("passed");
-    builder.at("(final)", "q");
+    builder.at("(arm-table)", "q");
     let (status, said, complaint) = builder.ends();
     assert_eq!((status, &*complaint), (Some(1), ""), "{said}");
     let p = board.stored();

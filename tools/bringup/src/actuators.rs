@@ -22,7 +22,7 @@ const FIRST_US: f32 = 30.0;
 /// Initial pulse of a servo without calibrated marks, µs: mid-travel of every servo, far from its end stops.
 const MIDDLE_US: f32 = 1500.0;
 /// Number of the first tendon servo among the outputs.
-const FIRST_SERVO: usize = 5;
+pub(super) const FIRST_SERVO: usize = 5;
 /// Most steps in one reply: what moves a servo over its whole range.
 const MOST_STEPS: i32 = 200;
 
@@ -81,7 +81,7 @@ pub(super) fn servo(walk: &mut Walk<'_>, step: &Step) -> Judged {
 }
 
 /// Back to the release mark, or without a pulse.
-fn give_back(walk: &mut Walk<'_>, servo: usize) -> Result<(), Stop> {
+pub(super) fn give_back(walk: &mut Walk<'_>, servo: usize) -> Result<(), Stop> {
     let output = (FIRST_SERVO + servo) as f32;
     walk.order(MavCmd::MAV_CMD_DO_SET_SERVO, &[output, 0.0])
         .map(|_| ())

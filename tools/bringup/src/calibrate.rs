@@ -159,7 +159,11 @@ pub(super) fn battery(walk: &mut Walk<'_>, _: &Step) -> Judged {
 }
 
 /// A number that the builder types, as text too; Enter takes `usual`.
-fn typed(walk: &mut Walk<'_>, question: &str, usual: Option<String>) -> Result<(String, f32), Stop> {
+pub(super) fn typed(
+    walk: &mut Walk<'_>,
+    question: &str,
+    usual: Option<String>,
+) -> Result<(String, f32), Stop> {
     loop {
         let reply = walk.ask(question)?;
         let text = match (&usual, reply.is_empty()) {

@@ -52,6 +52,9 @@ pub struct Entry {
     /// Parameters that the step has stored.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub parameters: BTreeMap<String, f64>,
+    /// Numbers of one part, of several of which a parameter is the mean, by the parameter's name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub measured: BTreeMap<String, f64>,
 }
 
 /// Identity of the board and its firmware.
@@ -189,6 +192,18 @@ impl Protocol {
     /// Entry of the step `id`.
     pub fn entry(&self, id: &str) -> Option<&Entry> {
         self.content.steps.iter().find(|entry| entry.id == id)
+    }
+
+    /// What the passed steps have measured of parts, by step.
+    pub fn measured(&self) -> BTreeMap<String, BTreeMap<String, f64>> {
+        let passed = self
+            .content
+            .steps
+            .iter()
+            .filter(|entry| entry.result == Result::Passed);
+        passed
+            .map(|entry| (entry.id.clone(), entry.measured.clone()))
+            .collect()
     }
 
     /// The step `id` has passed.

@@ -2,15 +2,13 @@
 //! builder watches the scale; the fit gives largest thrust, curve, trims and the power of the voltage.
 
 use std::ops::RangeInclusive;
-use std::time::{Duration, Instant};
 
-use mavlink_core::MessageData;
 use sophie_control::params::Params;
-use sophie_control::pilot::static_thrust_test::{Rotors, StaticThrustTest};
-use sophie_dialect::{MavCmd, MavMessage, MavResult, SOPHIE_ARMS_DATA, SYS_STATUS_DATA};
+use sophie_control::pilot::static_thrust_test::HOLD;
 use sophie_fit::thrust::{self, ThrustFit};
 use sophie_fit::thrust_data::{GRAVITY, Reading};
 
+use super::tied::{self, Measured};
 use super::walk::{Stop, Verdict, Walk};
 use super::{Judged, Step};
 
@@ -18,14 +16,6 @@ use super::{Judged, Step};
 const TOGETHER: [f64; 5] = [45.0, 55.0, 70.0, 85.0, 100.0];
 /// Drives of each rotor alone, two of those above: the fit compares readings at one drive.
 const ALONE: [f64; 2] = [55.0, 85.0];
-/// Period of voltage and tilts, µs.
-const PERIOD_US: f32 = 100_000.0;
-/// Time between two commands of a run, of the board's and of the wall's: a third of what ends it.
-const RENEWAL: Duration = Duration::from_millis(500);
-/// Time before the end of a run from which its voltage and tilts count, ms: filters and scale have settled.
-const COUNTED_MS: u32 = 2500;
-/// Time before the end at which the run is left to itself, ms.
-const MARGIN_MS: u32 = 300;
 /// Typed readings over what the parameters expect that are asked for once more.
 const USUAL: RangeInclusive<f64> = 0.5..=2.0;
 /// Largest plausible scatter of a reading, share: prop wash on a scale makes 1 %.
@@ -36,16 +26,6 @@ const WORST_MAX: f64 = 0.08;
 const TRIMS: RangeInclusive<f64> = 0.85..=1.15;
 /// Least lift of four rotors over the weight.
 const LIFT_MIN: f64 = 1.3;
-
-/// The vehicle's reply to the renewal of a run that has ended.
-const OVER: &str = "refused: this run has ended";
-
-/// What is known of a run at its end.
-#[derive(Default)]
-struct Averages {
-    volts: Vec<f64>,
-    tilts: Vec<[f64; 4]>,
-}
 
 /// A run and what is read.
 struct Row {
@@ -62,8 +42,8 @@ pub(super) fn thrust(walk: &mut Walk<'_>, _: &Step) -> Judged {
     walk.say("  | The arm switch, Enter and Ctrl-C stop the rotors, and so does a turn by 15 deg.");
     let mut rows = Vec::new();
     // Numbers of runs that no earlier session has given.
-    let mut run = first_run();
-    if let Some(refused) = tied_down(walk)? {
+    let mut run = tied::number();
+    if let Some(refused) = tied::tied_down(walk)? {
         return Ok(Verdict::of(false, vec![refused]));
     }
     battery(walk, &params, &mut run, true, &mut rows)?;
@@ -73,7 +53,7 @@ pub(super) fn thrust(walk: &mut Walk<'_>, _: &Step) -> Judged {
     )?;
     if second == "u" {
         walk.ready()?;
-        if let Some(refused) = tied_down(walk)? {
+        if let Some(refused) = tied::tied_down(walk)? {
             return Ok(Verdict::of(false, vec![refused]));
         }
         battery(walk, &params, &mut run, false, &mut rows)?;
@@ -97,20 +77,6 @@ pub(super) fn thrust(walk: &mut Walk<'_>, _: &Step) -> Judged {
     Ok(verdict)
 }
 
-/// The builder's word that the vehicle is tied down; the vehicle's reason if it refuses.
-fn tied_down(walk: &mut Walk<'_>) -> Result<Option<String>, Stop> {
-    while walk.ask("Type tied once it is tied down, propellers on, everyone away:")? != "tied" {}
-    walk.order(MavCmd::MAV_CMD_USER_1, &[2.0])
-}
-
-/// A number that grows from session to session: ten a second, within what a float counts.
-fn first_run() -> u32 {
-    let since = std::time::SystemTime::now()
-        .duration_since(std::time::UNIX_EPOCH)
-        .unwrap_or_default();
-    (since.as_millis() / 100 % 8_000_000) as u32 + 1
-}
-
 /// All runs with one battery: all rotors at each drive, and, if `alone`, each rotor.
 fn battery(
     walk: &mut Walk<'_>,
@@ -131,15 +97,15 @@ fn battery(
                 break None;
             }
             *run += 1;
-            match one(walk, rotor, percent, *run)? {
-                Ok(averages) => {
-                    if let Some(reading) = read(walk, params, rotor, percent, &averages)? {
+            match tied::run(walk, rotor, percent, HOLD, *run)? {
+                Ok(measured) => {
+                    if let Some(reading) = read(walk, params, rotor, percent, &measured)? {
                         break Some(reading);
                     }
                 }
                 Err(why) => {
                     walk.say(&format!("  | {why}"));
-                    if let Some(refused) = tied_down(walk)? {
+                    if let Some(refused) = tied::tied_down(walk)? {
                         walk.say(&format!("  | {refused}"));
                     }
                 }
@@ -150,115 +116,25 @@ fn battery(
     Ok(())
 }
 
-/// Runs `rotor`, or all, at `percent` of full drive as run number `run`; why it ended early, or what was measured.
-fn one(
-    walk: &mut Walk<'_>,
-    rotor: Option<usize>,
-    percent: f64,
-    run: u32,
-) -> Result<Result<Averages, String>, Stop> {
-    let test = StaticThrustTest::steady(rotor.map_or(Rotors::All, Rotors::One), (0.01 * percent) as f32);
-    let length_ms = (1e3 * test.longest()) as u32;
-    let number = rotor.map_or(0.0, |rotor| (rotor + 1) as f32);
-    let order = [number, percent as f32, 0.0, test.hold, run as f32];
-    walk.vehicle
-        .stream(&[SYS_STATUS_DATA::ID, SOPHIE_ARMS_DATA::ID], PERIOD_US)?;
-    let ended = renewed(walk, &order, length_ms);
-    // Nothing turns on while a question is open, whatever came.
-    let stopped = matches!(ended, Ok(Err(_)) | Err(_));
-    if stopped && !matches!(ended, Err(Stop::Failed(_))) {
-        walk.vehicle
-            .command(MavCmd::MAV_CMD_SOPHIE_STATIC_THRUST, &[0.0, 0.0])?;
-    }
-    walk.vehicle
-        .stream(&[SYS_STATUS_DATA::ID, SOPHIE_ARMS_DATA::ID], 0.0)?;
-    ended
-}
-
-/// Renews the run until its time is over, and measures at its end.
-fn renewed(walk: &mut Walk<'_>, order: &[f32], length_ms: u32) -> Result<Result<Averages, String>, Stop> {
-    let mut averages = Averages::default();
-    let command = MavCmd::MAV_CMD_SOPHIE_STATIC_THRUST;
-    if let Some(refused) = walk.order(command, order)? {
-        return Ok(Err(refused));
-    }
-    let (begun, mut sent) = (walk.vehicle.up_ms(), (walk.vehicle.up_ms(), Instant::now()));
-    loop {
-        let passed = walk.vehicle.up_ms().saturating_sub(begun);
-        if passed + MARGIN_MS >= length_ms {
-            return Ok(match averages.volts.is_empty() {
-                true => Err("no voltage came: is the battery measured?".to_owned()),
-                false => Ok(averages),
-            });
-        }
-        let counts = passed + COUNTED_MS >= length_ms;
-        let mut take = |message: &MavMessage| match message {
-            MavMessage::SYS_STATUS(status) if counts && status.voltage_battery != u16::MAX => {
-                averages.volts.push(f64::from(status.voltage_battery) * 1e-3);
-            }
-            MavMessage::SOPHIE_ARMS(arms) if counts => {
-                averages.tilts.push(arms.tilt.map(f64::from));
-            }
-            _ => (),
-        };
-        walk.vehicle.wait(Duration::from_millis(20), |message| {
-            take(message);
-            None::<()>
-        })?;
-        let since = walk.vehicle.up_ms().saturating_sub(sent.0);
-        if u128::from(since) >= RENEWAL.as_millis() || sent.1.elapsed() >= RENEWAL {
-            sent = (walk.vehicle.up_ms(), Instant::now());
-            let result = walk.vehicle.command_with(command, order, take)?;
-            if result != MavResult::MAV_RESULT_ACCEPTED {
-                return Ok(Err(ended(walk)?));
-            }
-        }
-        if walk.user.answered().is_some() {
-            return Ok(Err("stopped".to_owned()));
-        }
-        walk.user.live(&format!(
-            "  | {:.1} s of {:.1} s, {} V",
-            f64::from(passed) * 1e-3,
-            f64::from(length_ms) * 1e-3,
-            averages
-                .volts
-                .last()
-                .map_or("-".to_owned(), |volts| format!("{volts:.2}")),
-        ));
-    }
-}
-
-/// Why the vehicle has ended a run: it said so before it refused the renewal.
-fn ended(walk: &mut Walk<'_>) -> Result<String, Stop> {
-    let mut texts = walk.vehicle.texts().into_iter();
-    match texts.find(|text| text.starts_with("refused: ") && text != OVER) {
-        Some(why) => Ok(why),
-        None => Ok(walk.vehicle.reason()?),
-    }
-}
-
 /// The reading that the builder types; `None` for another run.
 fn read(
     walk: &mut Walk<'_>,
     params: &Params,
     rotor: Option<usize>,
     percent: f64,
-    averages: &Averages,
+    measured: &Measured,
 ) -> Result<Option<Reading>, Stop> {
-    let mean = |all: &[f64]| all.iter().sum::<f64>() / all.len().max(1) as f64;
-    let voltage = mean(&averages.volts);
-    let tilts: Vec<f64> = averages
-        .tilts
-        .iter()
-        .flat_map(|arms| arms.iter().enumerate())
-        .filter(|(arm, tilt)| tilt.is_finite() && rotor.is_none_or(|rotor| rotor == *arm))
-        .map(|(_, tilt)| *tilt)
+    let voltage = measured.voltage();
+    let arms = 0..4;
+    let tilts: Vec<f64> = arms
+        .filter(|arm| rotor.is_none_or(|rotor| rotor == *arm))
+        .filter_map(|arm| measured.tilt(arm))
         .collect();
     // An arm whose sensor is silent counts as level: 20 degrees are 6 %.
-    let tilt = if tilts.is_empty() { 0.0 } else { mean(&tilts) };
+    let tilt = tilts.iter().sum::<f64>() / tilts.len().max(1) as f64;
     let command = 0.01 * percent;
     let rotors = if rotor.is_some() { 1.0 } else { 4.0 };
-    let expected = rotors * told(params, command, voltage) * tilt.cos() / GRAVITY * 1e3;
+    let expected = rotors * tied::thrust(params, None, command, voltage) * tilt.cos() / GRAVITY * 1e3;
     let mut odd = None;
     loop {
         let reply = walk.ask("What the scale showed at the end, g (r: run it once more):")?;
@@ -288,13 +164,6 @@ fn read(
             tilt,
         }));
     }
-}
-
-/// Thrust of one rotor by the parameters in force, N.
-fn told(params: &Params, command: f64, voltage: f64) -> f64 {
-    let q = f64::from(params.thrust_curve);
-    let ratio = (voltage / f64::from(params.battery_nominal)).powf(f64::from(params.thrust_volt_exp));
-    f64::from(params.thrust_max) * ratio * (q * command + 1.0 - q) * command
 }
 
 /// The verdict on `fit`, with its figures.
@@ -394,7 +263,7 @@ mod tests {
                     command,
                     voltage,
                     rotor,
-                    force: rotors * told(&Params::DEFAULT, command, voltage),
+                    force: rotors * tied::thrust(&Params::DEFAULT, None, command, voltage),
                     tilt: 0.0,
                 };
                 change(&mut reading);

@@ -1,6 +1,7 @@
 //! The context of every step: the builder, the vehicle, and what both are asked.
 
 use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
 use sophie_board_link::Failure;
 use sophie_board_link::vehicle::Vehicle;
@@ -57,6 +58,8 @@ pub(super) struct Verdict {
     pub figures: Vec<String>,
     /// Parameters that are stored and in force.
     pub parameters: BTreeMap<String, f64>,
+    /// Numbers of one part that a parameter of several parts is the mean of, by the parameter's name.
+    pub measured: BTreeMap<String, f64>,
 }
 
 impl Verdict {
@@ -85,8 +88,14 @@ pub(super) struct Walk<'a> {
     off_since: Option<u32>,
     /// Weight of the last pressure sensor, N.
     pub weight: String,
+    /// Weight on the last arm's tip, N.
+    pub tip_weight: String,
+    /// What passed steps have measured, by step.
+    pub passed: BTreeMap<String, BTreeMap<String, f64>>,
     /// Parameters set and not stored yet, with their new values.
     changed: BTreeMap<String, f32>,
+    /// Folder of the protocol.
+    folder: PathBuf,
 }
 
 impl<'a> Walk<'a> {
@@ -96,12 +105,34 @@ impl<'a> Walk<'a> {
             user,
             off_since: None,
             weight: "1.3".to_owned(),
+            tip_weight: "3".to_owned(),
+            passed: BTreeMap::new(),
             changed: BTreeMap::new(),
+            folder: PathBuf::new(),
         }
+    }
+
+    /// With files beside `protocol`.
+    pub(super) fn with_files_at(mut self, protocol: &Path) -> Self {
+        self.folder = protocol.parent().map(Path::to_owned).unwrap_or_default();
+        self
+    }
+
+    /// A file beside the protocol.
+    pub(super) fn beside(&self, name: &str) -> PathBuf {
+        self.folder.join(name)
     }
 
     pub(super) fn say(&mut self, line: &str) {
         self.user.say(line);
+    }
+
+    /// What the passed steps other than `step` have measured of `name`.
+    pub(super) fn measured(&self, name: &str, step: &str) -> Vec<f64> {
+        let others = self.passed.iter().filter(|(id, _)| *id != step);
+        others
+            .filter_map(|(_, measured)| measured.get(name).copied())
+            .collect()
     }
 
     /// Shows what the vehicle has said.

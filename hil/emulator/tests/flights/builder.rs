@@ -10,6 +10,9 @@ use sophie_control::pilot::rc::{ArmChoice, StickMode, Sticks};
 use sophie_emulator::bench_operator::{BenchOperator, Handling};
 use sophie_sim::streams::Streams;
 use sophie_sim::test_stands::scale::Scale;
+use sophie_sim::test_stands::twist_stand::TwistStand;
+
+use super::scenario;
 
 /// Time of the board until a change of handling has passed turn and filters, ms.
 const SETTLED: u64 = 800;
@@ -19,6 +22,9 @@ const STILL: Duration = Duration::from_secs(300);
 const WEIGHT: f64 = 1.3;
 /// A tip bent up, rad.
 const BENT: f64 = 0.3;
+/// Weight on a tip, N, as the walk proposes it, and the time to hang it on, ms.
+const TIP_WEIGHT: f64 = 3.0;
+const HANGS: u64 = 2000;
 /// On a pad under a thumb, Pa.
 const THUMB: f64 = 900.0;
 
@@ -45,10 +51,14 @@ pub(super) struct Builder {
     /// Remaining moves of a live step, and the board's time at which the present one ends.
     moves: Option<VecDeque<Move>>,
     over: u64,
+    /// Weight that is asked for on the tip, N.
+    asked_weight: Option<f64>,
     /// Moves of the servos.
     marks: VecDeque<&'static str>,
     servo_marks: Vec<f64>,
     turned: Vec<Option<usize>>,
+    /// Arm 1 with a rod across its tip.
+    torsion: TwistStand,
     /// Skips every other step.
     only: Option<&'static str>,
     /// The kitchen scale, and what it has shown while rotors ran, N.
@@ -66,9 +76,11 @@ impl Builder {
             last: String::new(),
             moves: None,
             over: 0,
+            asked_weight: None,
             marks: VecDeque::new(),
             servo_marks: Vec::new(),
             turned: Vec::new(),
+            torsion: TwistStand::new(&scenario("hover.toml"), 0, Streams::new(1)),
             only: None,
             scale: Scale::new(Streams::new(1)),
             lifts: Vec::new(),
@@ -122,6 +134,7 @@ impl Builder {
             changed = before.below != held.below
                 || before.pressed != held.pressed
                 || before.bent != held.bent
+                || before.on_box != held.on_box
                 || before.height != held.height
                 || before.sticks != held.sticks;
         });
@@ -164,7 +177,10 @@ impl Builder {
         if self.until == Some(&*self.step) {
             return "q";
         }
-        if self.only.is_some_and(|only| only != self.step) {
+        // One tendon stands for four; nobody records the motors' sound.
+        let tendon = self.step.starts_with("tendon-");
+        let other = self.only.is_some_and(|only| only != self.step);
+        if other || self.step == "lag" || (tendon && self.step != "tendon-1") {
             return "s";
         }
         self.moves = None;
@@ -173,10 +189,21 @@ impl Builder {
         self.does(|held| {
             held.below = Face::Belly;
             held.bent = [0.0; 4];
+            held.on_box = tendon;
             held.sticks = on.then(Sticks::default);
             held.tied = false;
         });
         ""
+    }
+
+    /// Hangs the weight that is asked for, and replies once it hangs.
+    fn hangs(&mut self, now: u64) -> Option<Reply> {
+        if let Some(weight) = self.asked_weight.take() {
+            let arm = self.number();
+            self.operator.change(|held| held.hung[arm] = weight);
+            self.over = now + HANGS;
+        }
+        (now >= self.over).then(|| Reply::Line(String::new()))
     }
 
     /// The next move of a servo; a mark records its pulse.
@@ -199,6 +226,18 @@ impl Builder {
                 return pulse;
             }
         }
+    }
+
+    /// Twist by the phone, deg, with the weight that `question` names.
+    fn twist(&mut self, question: &str) -> String {
+        let grams = question
+            .trim()
+            .split(' ')
+            .next()
+            .and_then(|grams| grams.parse().ok());
+        let side = if question.contains("left") { -1e-3 } else { 1e-3 };
+        let (_, twist) = self.torsion.read(side * grams.unwrap_or(0.0), 0.1);
+        format!("{:.1}", twist.to_degrees())
     }
 
     /// What the scale showed at the end of a run, g.
@@ -266,6 +305,8 @@ impl Builder {
             // 1 and 4 turn anticlockwise.
             let rotor = self.turned.last().copied().flatten();
             if matches!(rotor, Some(0 | 3)) { "a" } else { "c" }.to_owned()
+        } else if question.contains("Twist, deg") {
+            self.twist(question)
         } else if begins("Now switch the transmitter off") {
             self.does(|held| held.sticks = None);
             String::new()
@@ -327,11 +368,16 @@ impl User for Builder {
         {
             self.step = id.trim_end_matches(')').to_owned();
         }
+        if line.contains("Hang the weight on the tip") {
+            self.asked_weight = Some(TIP_WEIGHT);
+        } else if line.contains("Take the weight off, slowly") {
+            self.asked_weight = Some(0.0);
+        }
         self.last = line.to_owned();
     }
 
     fn live(&mut self, line: &str) {
-        if self.step == "thrust" {
+        if matches!(&*self.step, "thrust" | "arm-table" | "vibration") {
             self.lifts.push(self.operator.observe().lift);
             return;
         }
@@ -346,11 +392,14 @@ impl User for Builder {
     }
 
     fn answered(&mut self) -> Option<Reply> {
-        if self.step == "thrust" {
+        if matches!(&*self.step, "thrust" | "arm-table" | "vibration") {
             return None;
         }
         let now = self.operator.observe().ms;
         let id = self.step.clone();
+        if id.starts_with("tendon-") {
+            return self.hangs(now);
+        }
         let moves = self.moves.get_or_insert_with(|| live(&id));
         if now < self.over {
             return None;

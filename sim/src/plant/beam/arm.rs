@@ -50,6 +50,8 @@ pub struct BeamArm {
     twist_sin: f64,
     twist_cos: f64,
     thrust: f64,
+    /// Weight on the tip, N.
+    hung: f64,
     /// Equations of this step.
     equations: Equations,
 }
@@ -92,6 +94,7 @@ impl BeamArm {
             twist_sin: 0.0,
             twist_cos: 1.0,
             thrust: 0.0,
+            hung: 0.0,
             equations: Equations::default(),
         };
         arm.place();
@@ -227,6 +230,14 @@ impl BeamArm {
             ab += mass * (out_by[0] * out_by[1] + up_by[0] * up_by[1]);
             bb += mass * (out_by[1] * out_by[1] + up_by[1] * up_by[1]);
         }
+        if self.hung != 0.0 {
+            let [_, tip] = &self.places;
+            let (r, force) = (self.position(tip), gravity * (self.hung / GRAVITY));
+            held.add(force, r.cross(force));
+            for ((rest, out_by), up_by) in rest.iter_mut().zip(tip.out_by).zip(tip.up_by) {
+                *rest -= out_by * self.side * force.y + up_by * force.z;
+            }
+        }
         let scale = 1.0 / (aa * bb - ab * ab);
         Equations {
             inverse: [[bb * scale, -ab * scale], [-ab * scale, aa * scale]],
@@ -307,6 +318,10 @@ impl Flexible for BeamArm {
 
     fn underside(&self) -> [DVec3; 3] {
         self.bent().underside().map(|skin_point| skin_point.place)
+    }
+
+    fn hang(&mut self, newtons: f64) {
+        self.hung = newtons;
     }
 
     fn touch(&mut self, dt: f64, pose: &Pose, nearby: &Nearby, load: &mut Load) -> f64 {

@@ -124,3 +124,36 @@ fn sections_and_their_moments_are_each_other_s_inverse() {
         assert!(slope > 0.0, "{moment}");
     }
 }
+
+#[test]
+fn a_weight_on_the_tip_bends_a_straight_arm_as_a_thrust_down_and_a_bent_one_less() {
+    let rest = |spec: BeamSpec, weight: f64, moment: f64| {
+        let mut arm = BeamArm::new(0, spec);
+        arm.hang(weight);
+        for _ in 0..20_000 {
+            step(&mut arm, &tendon(moment));
+        }
+        arm.tilt()
+    };
+    // 0.2 °/N: nearly straight.
+    let stiff = uniform(0.2, 0.8);
+    let (hung, pushed) = (rest(stiff, 2.0, 0.0), rest(stiff, 0.0, 0.0));
+    let thrust = {
+        let mut arm = BeamArm::new(0, stiff);
+        for _ in 0..20_000 {
+            step(&mut arm, &thrust(-2.0));
+        }
+        arm.tilt()
+    };
+    assert!((hung - thrust).abs() < 1e-4 && hung < pushed, "{hung} {thrust}");
+    // Bent to an arc of 0.9 rad: a weight's lever is 2 (sin α/α - (1 - cos α)/α²) of the straight arm's, 0.806.
+    let soft = uniform(8.0, 0.8);
+    let stiffness = soft.bending_stiffness() / 0.178;
+    let moment = -0.9 * stiffness;
+    let (bent, more) = (rest(soft, 0.0, moment), rest(soft, 0.2, moment));
+    let straight = 0.2 * 0.178 / 2.0 / stiffness;
+    assert!(
+        (bent + 0.9).abs() < 1e-3 && ((bent - more) / straight / 0.806 - 1.0).abs() < 0.03,
+        "{bent} {more} {straight}"
+    );
+}
