@@ -77,7 +77,7 @@ impl VibrationMeter {
         let floor = self.floor.unwrap_or(force);
         let shake = force - floor;
         self.floor = Some(floor + shake * FLOOR_GAIN);
-        self.squares = self.squares + shake.scale_by(shake);
+        self.squares += shake.scale_by(shake);
         if force.to_array().iter().any(|axis| axis.abs() >= self.clips_at) {
             self.clipped = self.clipped.saturating_add(1);
         }
