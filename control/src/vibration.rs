@@ -2,7 +2,7 @@
 //!
 //! The flight level keeps one raw reading a step, 1 kHz; the commander sums them up. The measure is ArduPilot's (high pass
 //! at 5 Hz, square, mean, root), over each second instead of through a low pass. Rotors turn at 50 to 120 Hz, their blades
-//! pass at twice that; what is above 500 Hz is folded down and counts in full.
+//! pass at twice that; parts above 500 Hz are folded down and count in full.
 
 use crate::attitude::mounting::Mounting;
 use crate::maths::scalar::{self, GRAVITY};
@@ -47,7 +47,7 @@ pub struct VibrationMeter {
     mounting: Mounting,
     /// Specific force that clips, m/s².
     clips_at: f32,
-    /// What is below 5 Hz, m/s²; `None` before the first reading.
+    /// Low-passed force at 5 Hz, m/s²; `None` before the first reading.
     floor: Option<Vec3>,
     /// Sum of squares, (m/s²)².
     squares: Vec3,
@@ -68,8 +68,8 @@ impl VibrationMeter {
         }
     }
 
-    /// Takes the next millisecond's reading, m/s², board axes; a second's vibration with the last of it. What is not finite
-    /// does not count.
+    /// Takes the next millisecond's reading, m/s², board axes; a second's vibration with the last of it. A reading that is
+    /// not finite does not count.
     pub fn take(&mut self, force: Vec3) -> Option<Vibration> {
         if !force.is_finite() {
             return None;
@@ -77,7 +77,7 @@ impl VibrationMeter {
         let floor = self.floor.unwrap_or(force);
         let shake = force - floor;
         self.floor = Some(floor + shake * FLOOR_GAIN);
-        self.squares = self.squares + shake.scale_by(shake);
+        self.squares += shake.scale_by(shake);
         if force.to_array().iter().any(|axis| axis.abs() >= self.clips_at) {
             self.clipped = self.clipped.saturating_add(1);
         }

@@ -132,7 +132,7 @@ fn a_vehicle_that_vibrates_fails_until_it_is_balanced() {
             std::thread::sleep(ROUND * 2);
         };
         meanwhile(shakes, || {
-            builder.at("Enter runs all rotors at 53 %", "");
+            builder.at("Enter runs all rotors at 70 %", "");
             builder.hears("vibration 0.0 0.0 ");
             builder.hears(judged);
         });

@@ -128,10 +128,10 @@ mod tests {
     /// Five thrusts of arms with gains and offsets, degrees.
     fn bench(gains: [f64; 4], offsets: [f64; 4]) -> Vec<ArmPoint> {
         let mut points = Vec::new();
-        for arm in 0..4 {
+        for (arm, (gain, offset)) in gains.into_iter().zip(offsets).enumerate() {
             for thrust in [1.5, 2.8, 4.1, 5.4, 6.7] {
                 let elastic = 8.22 * thrust - 0.448 * thrust * thrust;
-                let tilt = -25.0 + offsets[arm] + gains[arm] * elastic;
+                let tilt = -25.0 + offset + gain * elastic;
                 let point = Point {
                     infill: 6.9,
                     thrust,

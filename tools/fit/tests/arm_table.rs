@@ -35,13 +35,13 @@ fn session(scenario: &Scenario, seed: u64) -> ArmsFit {
     for drive in DRIVES {
         let (thrust, read) = stand.run_of_arms(Rotors::All, drive);
         stand.rest(20.0);
-        for arm in 0..4 {
+        for (arm, (thrust, tilt)) in thrust.into_iter().zip(read.tilt).enumerate() {
             points.push(ArmPoint {
                 arm,
                 point: Point {
                     infill: scenario.vehicle.infill,
-                    thrust: known * thrust[arm],
-                    tilt: read.tilt[arm].to_degrees(),
+                    thrust: known * thrust,
+                    tilt: tilt.to_degrees(),
                     power: 1.0,
                 },
             });
@@ -76,10 +76,10 @@ fn a_table_of_a_day_leaves_what_the_rows_of_the_arms_say() {
         if let (Some(truth), Some(level)) = (level, fit.level_thrust(found.infill)) {
             levels.push(level - truth);
         }
-        let mean = (0..4).map(|arm| scenario.vehicle.arm_offset[arm]).sum::<f64>() / 4.0;
-        for arm in 0..4 {
-            let (value, half) = found.arms[arm].offset;
-            let truth = (scenario.vehicle.arm_offset[arm] - mean).to_degrees();
+        let mean = scenario.vehicle.arm_offset.iter().sum::<f64>() / 4.0;
+        for (own, offset) in found.arms.iter().zip(scenario.vehicle.arm_offset) {
+            let (value, half) = own.offset;
+            let truth = (offset - mean).to_degrees();
             offsets.push(value - truth);
             inside += u64::from((value - truth).abs() <= half);
         }
