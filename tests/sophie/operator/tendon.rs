@@ -146,7 +146,7 @@ fn steps_of_a_servo_are_fitted_from_a_table() {
     let number = |begin: &str| {
         let line = said.lines().find_map(|line| line.strip_prefix(begin));
         let word = line.and_then(|line| line.split(' ').next());
-        word.and_then(|word| word.parse::<f64>().ok())
+        word.and_then(|word| word.trim_end_matches(',').parse::<f64>().ok())
             .unwrap_or_else(|| panic!("{begin}: {said}"))
     };
     assert!(
