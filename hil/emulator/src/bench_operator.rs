@@ -214,7 +214,38 @@ impl HandledVehicle {
 mod tests {
     use sophie_control::maths::vector::Vec3;
 
+    use sophie_sim::plant::Actuators;
+    use sophie_sim::scenario::Scenario;
+
     use super::*;
+
+    #[test]
+    fn on_the_box_a_servo_winds_its_arm_and_a_weight_bends_it() {
+        let (mut operator, pins) = (BenchOperator::default(), Pins::default());
+        let mut plant = Scenario::default_mission().plant();
+        operator.change(|held| held.on_box = true);
+        let mut rest = |servo: f64, weight: f64| {
+            operator.change(|held| held.hung[0] = weight);
+            for _ in 0..4000 {
+                operator.step(&pins, &mut plant);
+                let servos = [servo, 0.0, 0.0, 0.0];
+                (0..2).for_each(|_| {
+                    plant.step(&Actuators {
+                        motors: [0.0; 4],
+                        servos,
+                    });
+                });
+            }
+            plant.tilt().map(f64::to_degrees)
+        };
+        let [free, hung, wound, both] = [(550.0, 0.0), (550.0, 3.0), (1200.0, 0.0), (1200.0, 3.0)]
+            .map(|(servo, weight)| rest(servo, weight));
+        // 8.2 °/N of a straight arm; a tendon of 8 kN/m lets the wound arm give a quarter of that.
+        assert!((15.0..25.0).contains(&(free[0] - hung[0])), "{free:?} {hung:?}");
+        assert!(free[0] - wound[0] > 10.0, "{wound:?}");
+        assert!((2.0..8.0).contains(&(wound[0] - both[0])), "{both:?}");
+        assert!((free[1] - both[1]).abs() < 0.1);
+    }
 
     #[test]
     fn the_sides_lie_as_the_calibration_has_them() {

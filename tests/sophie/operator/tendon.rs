@@ -1,12 +1,14 @@
-//! The tendons' steps of `sophie bringup` on a vehicle that stands on a box, whose true numbers the plant has.
+//! The tendons' steps of `sophie bringup` on a vehicle that stands on a box, whose true numbers the plant has, and `sophie
+//! fit-tendon`.
 
 use std::fs;
 use std::sync::Arc;
 
 use sophie_bringup::STEPS;
 use sophie_control::params::{Params, ServoMarks};
+use sophie_fit::servo_steps::bench::{Given, Rest, tilts};
 use sophie_sim::scenario::{Overrides, Scenario};
-use sophie_test_support::command::Temp;
+use sophie_test_support::command::{Temp, refused, sophie, text};
 
 use super::board::{Board, Hands};
 use super::bringup::Builder;
@@ -89,4 +91,77 @@ fn tendons_are_measured_by_their_servos_and_a_known_weight() {
         "{file}"
     );
     assert_eq!(board.stored().servo_trim_3, 0.0);
+}
+
+/// Rests of a thread of 4 kN/m, 1 mm of slack and a friction of 0.3, as `watch arms` shows them.
+#[test]
+fn steps_of_a_servo_are_fitted_from_a_table() {
+    let temp = Temp::new("fit-tendon");
+    let rests = [
+        (0.0, 0.0),
+        (0.0, 3.0),
+        (0.0, 0.0),
+        (63.0, 0.0),
+        (80.2, 0.0),
+        (97.4, 0.0),
+        (97.4, 3.0),
+        (97.4, 0.0),
+        (114.6, 0.0),
+        (131.8, 0.0),
+        (131.8, 3.0),
+        (131.8, 0.0),
+        (131.8, 3.0),
+        (131.8, 0.0),
+        (114.6, 0.0),
+        (97.4, 0.0),
+        (80.2, 0.0),
+        (63.0, 0.0),
+        (0.0, 0.0),
+    ];
+    let given = Given {
+        reel_radius: 0.015,
+        lever: 0.015,
+        length: 0.178,
+        bend: 2.0,
+        reference: 0.4,
+        speed: 6.16,
+    };
+    let steps: Vec<Rest> = rests
+        .iter()
+        .map(|(reel, weight)| Rest {
+            reel: f64::to_radians(*reel),
+            weight: *weight,
+            tilt: 0.0,
+        })
+        .collect();
+    let truth = [-0.55, 1.5, 1.0 / 4000.0, 1e-3, 0.3, 0.01, 1.0];
+    let mut table = String::from("reel_deg, weight_n, tilt_deg\n");
+    for (rest, tilt) in rests.iter().zip(tilts(&steps, &[0.0; 19], &truth, &given)) {
+        table += &format!("{}, {}, {:.1}\n", rest.0, rest.1, tilt.to_degrees());
+    }
+    temp.file("steps.csv", table.as_bytes());
+    let output = sophie(&temp, &["fit-tendon", "steps.csv"]);
+    assert!(output.status.success(), "{output:?}");
+    let said = text(&output.stdout);
+    let number = |begin: &str| {
+        let line = said.lines().find_map(|line| line.strip_prefix(begin));
+        let word = line.and_then(|line| line.split(' ').next());
+        word.and_then(|word| word.trim_end_matches(',').parse::<f64>().ok())
+            .unwrap_or_else(|| panic!("{begin}: {said}"))
+    };
+    assert!(
+        (number("set tendon_stiffness ") / 4000.0 - 1.0).abs() < 0.1,
+        "{said}"
+    );
+    assert!(
+        (number("slack ") - 1.15).abs() < 0.3 && (number("friction ") - 0.3).abs() < 0.1,
+        "{said}"
+    );
+    let few: String = table.lines().take(5).map(|line| format!("{line}\n")).collect();
+    temp.file("few.csv", few.as_bytes());
+    let line = refused(&temp, &["fit-tendon", "few.csv"]);
+    assert!(
+        line.contains("few.csv: 4 rests: allowed are at least 10"),
+        "{line}"
+    );
 }

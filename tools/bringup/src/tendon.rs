@@ -25,7 +25,7 @@ const MEAN: usize = 10;
 const ARRIVES: usize = 100;
 /// Difference of the reel's angle from the ordered one, rad.
 const THERE: f64 = 0.01;
-/// Messages between two orders that keep a servo where it is, which holds for 30 s.
+/// Messages between two orders that hold a servo: one order lasts 30 s.
 const RENEWED: usize = 100;
 /// Weights on a tip, N.
 const WEIGHTS: (f32, f32) = (1.5, 6.0);
@@ -242,7 +242,7 @@ impl Bench<'_, '_> {
             .ok_or_else(|| End::Bad(format!("the sensor of arm {} is silent", arm + 1)))
     }
 
-    /// Keeps the servo where it is until hands have done what is asked.
+    /// Holds the servo until hands have done as asked.
     fn hands(&mut self, what: &str) -> Result<(), End> {
         self.walk.say(&format!("  | {what}"));
         self.walk.say("  Enter when it is so, s leaves it out, q stops:");
@@ -262,7 +262,7 @@ impl Bench<'_, '_> {
     }
 }
 
-/// Sets and stores what was found.
+/// Sets and stores the results.
 fn taken(walk: &mut Walk<'_>, step: &Step, params: &Params, found: &Found) -> Judged {
     let mut figures = found.lines();
     let name = format!("servo_trim_{}", step.number);

@@ -210,7 +210,7 @@ fn slide(ends: &mut [f64; PIECES], entry: f64, stretched: f64, turn: f64) -> f64
     let loss = (turn.abs() / PIECES as f64).exp();
     let (mut tension, mut sum) = (entry, 0.0);
     for end in ends {
-        // Not `clamp`: a search may come by what is not finite.
+        // Not `clamp`: a search may come by numbers that are not finite.
         *end = (*end + stretched).max(tension / loss).min(tension * loss);
         sum += 0.5 * (tension + *end);
         tension = *end;

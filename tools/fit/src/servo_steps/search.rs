@@ -20,7 +20,7 @@ const WITHIN: [(f64, f64); UNKNOWNS] = [
     (0.8, 1.25),
 ];
 
-/// The problem: rests, the servo's placement that each belongs to, and what is known before (mean, deviation).
+/// The problem: rests, the servo's placement that each belongs to, and prior knowledge (mean, deviation).
 struct Problem<'a> {
     rests: &'a [Rest],
     place: Vec<usize>,
@@ -36,7 +36,7 @@ impl Problem<'_> {
         tilts(self.rests, &errors, &unknowns, self.given)
     }
 
-    /// What is left at `x`, in deviations: of the tilts, then of what is known before.
+    /// Residuals at `x`, in deviations: of the tilts, then of the priors.
     fn left(&self, x: &[f64]) -> Vec<f64> {
         let tilts = self.tilts(x);
         let measured = self
@@ -52,7 +52,7 @@ impl Problem<'_> {
         measured.chain(known).collect()
     }
 
-    /// Slopes of the tilts and of what is known before, in deviations.
+    /// Slopes of the tilts and of the priors, in deviations.
     fn slopes(&self, x: &[f64]) -> Vec<Vec<f64>> {
         let columns: Vec<Vec<f64>> = (0..x.len())
             .map(|k| {
@@ -79,7 +79,7 @@ impl Problem<'_> {
     }
 }
 
-/// Best unknowns, their covariance, and the RMS of what is left of the tilts, rad.
+/// Best unknowns, their covariance, and the RMS residual of the tilts, rad.
 pub fn best(
     rests: &[Rest],
     given: &Given,
@@ -135,7 +135,7 @@ pub fn best(
     Ok((unknowns, covariance, TILT * (square / rests.len() as f64).sqrt()))
 }
 
-/// The step that halves what is `left`, shortened by `damping`.
+/// The step of least squares from the residuals `left`, shortened by `damping`.
 fn damped(slopes: &[Vec<f64>], left: &[f64], damping: f64) -> Option<Vec<f64>> {
     let mut design = slopes.to_vec();
     let mut measured = left.to_vec();
