@@ -8,6 +8,8 @@ mod args;
 mod builder;
 mod capture;
 mod check;
+mod fit_lag;
+mod fit_thrust;
 mod interrupt;
 mod key;
 mod live;
@@ -56,6 +58,8 @@ pub fn main() -> ExitCode {
         Task::Study(Study::Unknown(args)) => unknown::run(&args),
         Task::Paper(args) => study::paper(&args),
         Task::FitArm(args) => study::fit_arm(&args),
+        Task::FitThrust(args) => fit_thrust::run(&args),
+        Task::FitLag(args) => fit_lag::run(&args),
         Task::FitTendon(args) => study::fit_tendon_steps(&args),
         Task::Timing(args) => timing::run(&args).map(|()| true),
         Task::Recording(args) => recording::run(&args).map(|()| true),

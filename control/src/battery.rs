@@ -4,6 +4,7 @@
 //! last one ages, is stale after 500 ms, and the vehicle lands a second later; until then thrusts are compensated for
 //! the last voltage. An implausible current drops only the current.
 
+use crate::allocation::thrust_curve::voltage_ratio;
 use crate::maths::filter::LowPass;
 use crate::maths::hold_timer::HoldTimer;
 use crate::maths::scalar;
@@ -37,7 +38,7 @@ pub struct Battery {
     pub current: Option<f32>,
     /// Charge drawn since power-up, A·s; `None` once too much of it went uncounted.
     pub used: Option<f32>,
-    /// Voltage over nominal, bounded: compensates the thrust curve.
+    /// Root of what the voltage makes of the thrust, of the bounded voltage over nominal ([`voltage_ratio`]).
     pub ratio: f32,
 }
 
@@ -78,7 +79,10 @@ impl Monitor {
             voltage,
             current,
             used: (self.uncounted < UNCOUNTED_MAX).then_some(self.used + self.fraction),
-            ratio: scalar::clamp(voltage / p.battery_nominal, RATIO_BOUNDS.0, RATIO_BOUNDS.1),
+            ratio: voltage_ratio(
+                scalar::clamp(voltage / p.battery_nominal, RATIO_BOUNDS.0, RATIO_BOUNDS.1),
+                p,
+            ),
         })
     }
 
@@ -210,6 +214,19 @@ mod tests {
         let mut m = Monitor::default();
         assert!((run(&mut m, 1.0, 0.0, 5.0).ratio - 0.7).abs() < 1e-6);
         assert!((run(&mut m, 50.0, 0.0, 5.0).ratio - 1.25).abs() < 1e-6);
+    }
+
+    #[test]
+    fn the_ratio_takes_the_power_of_the_voltage() {
+        let p = Params {
+            thrust_volt_exp: 1.6,
+            ..Params::default()
+        };
+        let battery = Monitor::default().step(&p, Some(13.3), None, 0.01).unwrap();
+        assert!(
+            (battery.ratio - (13.3f32 / 14.8).powf(0.8)).abs() < 1e-4,
+            "{battery:?}"
+        );
     }
 
     #[test]

@@ -4,6 +4,7 @@
 //! as a parameter that was set.
 
 pub mod flow;
+pub mod loads;
 pub mod procedure;
 pub mod step;
 
@@ -38,14 +39,6 @@ pub const METER: [f32; 2] = [3.0, 60.0];
 /// Range of the battery's divider, that of its parameter.
 pub const DIVIDER: [f32; 2] = [1.0, 60.0];
 
-/// Largest spread of a pressure at rest, Pa.
-pub const PRESSURE_SPREAD_MAX: f32 = 30.0;
-/// Pressures of a calibration weight, Pa: at least a fifth of a grip, at most the sensor's limit.
-pub const WEIGHT_PRESSURE: [f32; 2] = [200.0, 5000.0];
-/// Range of a sensor's conductance relative to the common one, that of its parameter.
-pub const TRIM: [f32; 2] = [0.2, 5.0];
-/// Range of a sensor's zero, Pa, that of its parameter.
-pub const ZERO: [f32; 2] = [0.0, 300.0];
 /// Largest spread of an arm's tilt at rest, rad.
 pub const TILT_SPREAD_MAX: f32 = 0.02;
 /// Rotation of an arm that is bent up by hand, rad: the lower bound suffices for its sign, the upper one excludes other
@@ -364,49 +357,12 @@ pub fn divider(samples: &Samples, divider: f32, meter: f32) -> Result<f32, Unfit
     Ok(new)
 }
 
-/// Pressure of a sensor that nothing moves, Pa.
-///
-/// # Errors
-/// Samples are too few or too noisy.
-pub fn quiet_pressure(samples: &Samples) -> Result<f32, Unfit> {
-    Ok(samples.quiet_mean(PRESSURE_SPREAD_MAX, "Pa")?.x)
-}
-
 /// Tilt of an arm that is held still, rad.
 ///
 /// # Errors
 /// Samples are too few or too noisy.
 pub fn quiet_tilt(samples: &Samples) -> Result<f32, Unfit> {
     Ok(samples.quiet_mean(TILT_SPREAD_MAX, "rad")?.x)
-}
-
-/// Correction of one pressure sensor relative to the common model.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FsrFit {
-    /// Conductance over the common one.
-    pub trim: f32,
-    /// Reading of the unloaded sensor, Pa.
-    pub zero: f32,
-}
-
-/// Correction with which the sensor reads 0 when `empty` and `pressure` (Pa) when `loaded`; the samples (Pa, along x)
-/// were read with the correction `now`.
-///
-/// # Errors
-/// Samples are too few or too noisy, the weight is too small or too large, or the correction is out of its range.
-pub fn pressure_sensor(
-    empty: &Samples,
-    loaded: &Samples,
-    pressure: f32,
-    now: FsrFit,
-) -> Result<FsrFit, Unfit> {
-    within("pressure of the weight", pressure, WEIGHT_PRESSURE, "Pa")?;
-    let [empty, loaded] = [quiet_pressure(empty)?, quiet_pressure(loaded)?];
-    let trim = now.trim * (loaded - empty) / pressure;
-    within("conductance over fsr_gain", trim, TRIM, "")?;
-    let zero = (empty + now.zero) * now.trim / trim;
-    within("pressure without the weight", zero, ZERO, "Pa")?;
-    Ok(FsrFit { trim, zero })
 }
 
 /// Correction of an arm's tilt sensor.
@@ -534,21 +490,6 @@ mod tests {
             prop_assert!((found - 11.0 / wrong).abs() < 0.01 * found);
         }
 
-        /// Within 5 % and 4 Pa of what it shows, under noise of 40 Pa.
-        #[test]
-        fn a_sensors_zero_and_conductance_are_found(
-            trim in 0.4f32..2.5, zero in 0.0f32..100.0, old_trim in 0.5f32..2.0,
-            old_zero in 0.0f32..50.0, weight in 500.0f32..3000.0,
-        ) {
-            // What it shows with the old fit: the conductance is that of the true one.
-            let shown = |pressure: f32| Vec3::new((pressure + zero) * trim / old_trim - old_zero, 0.0, 0.0);
-            let now = FsrFit { trim: old_trim, zero: old_zero };
-            let found = pressure_sensor(&samples(shown(0.0), 40.0), &samples(shown(weight), 40.0), weight, now).unwrap();
-            prop_assert!((found.trim / trim - 1.0).abs() < 0.05, "{found:?}");
-            // A pressure is what is shown, over the new conductance.
-            prop_assert!((found.zero - zero).abs() < 4.0 * old_trim / trim + 0.05 * zero, "{found:?}");
-        }
-
         /// Within 0.01 rad, under noise of 0.03 rad.
         #[test]
         fn an_arms_zero_and_sign_are_found(
@@ -635,18 +576,8 @@ mod tests {
     }
 
     #[test]
-    fn a_weight_that_is_not_felt_and_an_arm_that_is_not_bent_are_refused() {
+    fn an_arm_that_is_not_bent_is_refused() {
         let at = |value| samples(Vec3::new(value, 0.0, 0.0), 0.001);
-        let now = FsrFit { trim: 1.0, zero: 0.0 };
-        for (empty, loaded, pressure, what) in [
-            (0.0, 0.0, 1000.0, "conductance over fsr_gain"),
-            (0.0, 1000.0, 100.0, "pressure of the weight"),
-            (400.0, 1400.0, 1000.0, "pressure without the weight"),
-            (f32::NAN, 1000.0, 1000.0, "mean"),
-        ] {
-            let unfit = pressure_sensor(&at(empty), &at(loaded), pressure, now).unwrap_err();
-            assert_eq!(unfit.what, what);
-        }
         let now = ArmFit { sign: 1.0, zero: 0.0 };
         for (straight, up, what) in [
             (0.0, 0.05, "turn of the arm"),

@@ -27,3 +27,4 @@ pub mod mode;
 pub mod navigation;
 pub mod pilot;
 pub mod position_hold;
+pub mod vibration;

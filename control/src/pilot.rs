@@ -4,4 +4,5 @@ pub mod actuator_test;
 pub mod rc;
 pub mod release_throttle;
 pub mod remote;
+pub mod static_thrust_test;
 pub mod stick_positions;

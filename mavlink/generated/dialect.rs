@@ -147,7 +147,7 @@ pub enum MavCmd {
     #[doc = "| 1 (Calibration)| Which.      | [`SophieCalibration`] |"]
     #[doc = "| 2 (Index) | Arm, pressure sensor or servo, 1 to 4; else 0.| 0 .. 4 |"]
     #[doc = "| 3 (Step)  | Step, from 1; a step wants those before it.| &ge; 1 |"]
-    #[doc = "| 4 (Value) | Battery: V by a meter. Servo: pulse at release, us. Pressure sensor, step 2: weight on its pad, N.|  |"]
+    #[doc = "| 4 (Value) | Battery: V by a meter. Servo: pulse at release, us. Pressure sensor, steps 2 to 6: load on its pad, N.|  |"]
     #[doc = "| 5 (Value 2)| Servo: pulse at the full mark, us.|  |"]
     MAV_CMD_SOPHIE_CALIBRATE = 53000,
     #[doc = "Sends a report as SOPHIE_CHECK, row by row, then the acknowledgement."]
@@ -166,6 +166,18 @@ pub enum MavCmd {
     #[doc = "| --------- | ----------- | ------ |"]
     #[doc = "| 1 (Confirm)| 1.          | 1 .. 1 |"]
     MAV_CMD_SOPHIE_SET_BROWN_OUT = 53002,
+    #[doc = "Runs rotors with propellers on, the vehicle tied down. Sent again with the same run at least once a second, or the run ends; a run that has ended does not begin again."]
+    #[doc = ""]
+    #[doc = "# Parameters"]
+    #[doc = ""]
+    #[doc = "| Parameter | Description | Values | Units |"]
+    #[doc = "| --------- | ----------- | ------ | ----- |"]
+    #[doc = "| 1 (Rotor) | 1 to 4; 0 for all.| 0 .. 4 |  |"]
+    #[doc = "| 2 (Drive) | Share of full drive, 5 at least; 0 ends the run.| 0 .. 100 | % |"]
+    #[doc = "| 3 (Other drive)| Five steps to this drive and back, 50 away at most; 0: steady.| 0 .. 100 | % |"]
+    #[doc = "| 4 (Time)  | Time at each drive, 0.5 to 10, of steps 2 at most; 0: 5, of steps 1.| 0 .. 10 | s |"]
+    #[doc = "| 5 (Run)   | Number of the run, another one for each.| &ge; 1 |  |"]
+    MAV_CMD_SOPHIE_STATIC_THRUST = 53003,
 }
 impl MavCmd {
     pub const DEFAULT: Self = Self::MAV_CMD_DO_SET_SERVO;
@@ -502,7 +514,7 @@ pub enum SophieCalibration {
     SOPHIE_CALIBRATION_BATTERY = 5,
     #[doc = "Release and full mark of one tendon servo."]
     SOPHIE_CALIBRATION_SERVO = 6,
-    #[doc = "Zero and gain of one pressure sensor. Steps: without a weight, with a known one."]
+    #[doc = "Line and hysteresis of one pressure sensor. Steps: empty, three known loads up, two down, empty."]
     SOPHIE_CALIBRATION_FSR = 7,
     #[doc = "Zero and sign of one arm's tilt sensor. Steps: arm straight, its tip bent up."]
     SOPHIE_CALIBRATION_ARM = 8,
@@ -4120,7 +4132,7 @@ pub struct SOPHIE_CALIBRATION_RESULT_DATA {
     pub least: f32,
     #[doc = "Its largest allowed value, NaN if none is."]
     pub most: f32,
-    #[doc = "What was found beside the parameters: gyro: rates x, y, z and noise, deg/s; flow: height of the turning point over the lens, m. NaN: unused."]
+    #[doc = "What was found beside the parameters: gyro: rates x, y, z and noise, deg/s; pressure sensor: half of the 95 % interval at the grip pressure, Pa, half width of the hysteresis, %, reading without a load at the end, Pa; flow: height of the turning point over the lens, m. NaN: unused."]
     #[cfg_attr(feature = "serde", serde(with = "serde_arrays"))]
     #[cfg_attr(feature = "ts-rs", ts(type = "Array<number>"))]
     pub figures: [f32; 4],
@@ -4652,6 +4664,96 @@ impl MessageData for TIMESYNC_DATA {
         }
     }
 }
+#[doc = "ID: 241"]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "arbitrary", derive(Arbitrary))]
+#[cfg_attr(feature = "ts-rs", derive(TS))]
+#[cfg_attr(feature = "ts-rs", ts(export))]
+pub struct VIBRATION_DATA {
+    pub time_usec: u64,
+    pub vibration_x: f32,
+    pub vibration_y: f32,
+    pub vibration_z: f32,
+    pub clipping_0: u32,
+    pub clipping_1: u32,
+    pub clipping_2: u32,
+}
+impl VIBRATION_DATA {
+    pub const ENCODED_LEN: usize = 32usize;
+    pub const DEFAULT: Self = Self {
+        time_usec: 0_u64,
+        vibration_x: 0.0_f32,
+        vibration_y: 0.0_f32,
+        vibration_z: 0.0_f32,
+        clipping_0: 0_u32,
+        clipping_1: 0_u32,
+        clipping_2: 0_u32,
+    };
+    #[cfg(feature = "arbitrary")]
+    pub fn random<R: rand::Rng>(rng: &mut R) -> Self {
+        use arbitrary::{Arbitrary, Unstructured};
+        let mut buf = [0u8; 1024];
+        rng.fill_bytes(&mut buf);
+        let mut unstructured = Unstructured::new(&buf);
+        Self::arbitrary(&mut unstructured).unwrap_or_default()
+    }
+}
+impl Default for VIBRATION_DATA {
+    fn default() -> Self {
+        Self::DEFAULT.clone()
+    }
+}
+impl MessageData for VIBRATION_DATA {
+    type Message = MavMessage;
+    const ID: u32 = 241u32;
+    const NAME: &'static str = "VIBRATION";
+    const EXTRA_CRC: u8 = 90u8;
+    const ENCODED_LEN: usize = 32usize;
+    fn deser(_version: MavlinkVersion, __input: &[u8]) -> Result<Self, ::mavlink_core::error::ParserError> {
+        let avail_len = __input.len();
+        let mut payload_buf;
+        let mut buf = if avail_len < Self::ENCODED_LEN {
+            payload_buf = [0; Self::ENCODED_LEN];
+            payload_buf[0..avail_len].copy_from_slice(__input);
+            Bytes::new(&payload_buf)
+        } else {
+            Bytes::new(__input)
+        };
+        let mut __struct = Self::default();
+        __struct.time_usec = buf.get_u64_le()?;
+        __struct.vibration_x = buf.get_f32_le()?;
+        __struct.vibration_y = buf.get_f32_le()?;
+        __struct.vibration_z = buf.get_f32_le()?;
+        __struct.clipping_0 = buf.get_u32_le()?;
+        __struct.clipping_1 = buf.get_u32_le()?;
+        __struct.clipping_2 = buf.get_u32_le()?;
+        Ok(__struct)
+    }
+    fn ser(&self, version: MavlinkVersion, bytes: &mut [u8]) -> usize {
+        let mut __tmp = BytesMut::new(bytes);
+        if __tmp.remaining() < Self::ENCODED_LEN {
+            panic!(
+                "buffer is too small (need {} bytes, but got {})",
+                Self::ENCODED_LEN,
+                __tmp.remaining(),
+            )
+        }
+        __tmp.put_u64_le(self.time_usec);
+        __tmp.put_f32_le(self.vibration_x);
+        __tmp.put_f32_le(self.vibration_y);
+        __tmp.put_f32_le(self.vibration_z);
+        __tmp.put_u32_le(self.clipping_0);
+        __tmp.put_u32_le(self.clipping_1);
+        __tmp.put_u32_le(self.clipping_2);
+        if matches!(version, MavlinkVersion::V2) {
+            let len = __tmp.len();
+            ::mavlink_core::utils::remove_trailing_zeroes(&bytes[..len])
+        } else {
+            __tmp.len()
+        }
+    }
+}
 #[doc = "ID: 102"]
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
@@ -4855,6 +4957,8 @@ pub enum MavMessage {
     SYS_STATUS(SYS_STATUS_DATA),
     #[doc = "ID: 111"]
     TIMESYNC(TIMESYNC_DATA),
+    #[doc = "ID: 241"]
+    VIBRATION(VIBRATION_DATA),
     #[doc = "ID: 102"]
     VISION_POSITION_ESTIMATE(VISION_POSITION_ESTIMATE_DATA),
 }
@@ -4863,8 +4967,8 @@ impl MavMessage {
         &[
             0u32, 1u32, 4u32, 20u32, 21u32, 22u32, 23u32, 26u32, 29u32, 30u32, 31u32, 36u32, 65u32, 75u32,
             76u32, 77u32, 102u32, 106u32, 110u32, 111u32, 126u32, 132u32, 138u32, 147u32, 148u32, 149u32,
-            244u32, 245u32, 251u32, 253u32, 256u32, 331u32, 396u32, 397u32, 435u32, 436u32, 437u32, 53000u32,
-            53001u32, 53002u32, 53003u32,
+            241u32, 244u32, 245u32, 251u32, 253u32, 256u32, 331u32, 396u32, 397u32, 435u32, 436u32, 437u32,
+            53000u32, 53001u32, 53002u32, 53003u32,
         ]
     }
     pub const fn all_messages() -> &'static [(&'static str, u32)] {
@@ -4898,6 +5002,7 @@ impl MavMessage {
             (BATTERY_STATUS_DATA::NAME, BATTERY_STATUS_DATA::ID),
             (AUTOPILOT_VERSION_DATA::NAME, AUTOPILOT_VERSION_DATA::ID),
             (LANDING_TARGET_DATA::NAME, LANDING_TARGET_DATA::ID),
+            (VIBRATION_DATA::NAME, VIBRATION_DATA::ID),
             (MESSAGE_INTERVAL_DATA::NAME, MESSAGE_INTERVAL_DATA::ID),
             (EXTENDED_SYS_STATE_DATA::NAME, EXTENDED_SYS_STATE_DATA::ID),
             (NAMED_VALUE_FLOAT_DATA::NAME, NAMED_VALUE_FLOAT_DATA::ID),
@@ -5005,6 +5110,7 @@ impl Message for MavMessage {
             STATUSTEXT_DATA::ID => STATUSTEXT_DATA::deser(version, payload).map(Self::STATUSTEXT),
             SYS_STATUS_DATA::ID => SYS_STATUS_DATA::deser(version, payload).map(Self::SYS_STATUS),
             TIMESYNC_DATA::ID => TIMESYNC_DATA::deser(version, payload).map(Self::TIMESYNC),
+            VIBRATION_DATA::ID => VIBRATION_DATA::deser(version, payload).map(Self::VIBRATION),
             VISION_POSITION_ESTIMATE_DATA::ID => {
                 VISION_POSITION_ESTIMATE_DATA::deser(version, payload).map(Self::VISION_POSITION_ESTIMATE)
             }
@@ -5053,6 +5159,7 @@ impl Message for MavMessage {
             Self::STATUSTEXT(..) => STATUSTEXT_DATA::NAME,
             Self::SYS_STATUS(..) => SYS_STATUS_DATA::NAME,
             Self::TIMESYNC(..) => TIMESYNC_DATA::NAME,
+            Self::VIBRATION(..) => VIBRATION_DATA::NAME,
             Self::VISION_POSITION_ESTIMATE(..) => VISION_POSITION_ESTIMATE_DATA::NAME,
         }
     }
@@ -5098,6 +5205,7 @@ impl Message for MavMessage {
             Self::STATUSTEXT(..) => STATUSTEXT_DATA::ID,
             Self::SYS_STATUS(..) => SYS_STATUS_DATA::ID,
             Self::TIMESYNC(..) => TIMESYNC_DATA::ID,
+            Self::VIBRATION(..) => VIBRATION_DATA::ID,
             Self::VISION_POSITION_ESTIMATE(..) => VISION_POSITION_ESTIMATE_DATA::ID,
         }
     }
@@ -5143,6 +5251,7 @@ impl Message for MavMessage {
             STATUSTEXT_DATA::NAME => Some(STATUSTEXT_DATA::ID),
             SYS_STATUS_DATA::NAME => Some(SYS_STATUS_DATA::ID),
             TIMESYNC_DATA::NAME => Some(TIMESYNC_DATA::ID),
+            VIBRATION_DATA::NAME => Some(VIBRATION_DATA::ID),
             VISION_POSITION_ESTIMATE_DATA::NAME => Some(VISION_POSITION_ESTIMATE_DATA::ID),
             _ => None,
         }
@@ -5199,6 +5308,7 @@ impl Message for MavMessage {
             STATUSTEXT_DATA::ID => Some(Self::STATUSTEXT(STATUSTEXT_DATA::default())),
             SYS_STATUS_DATA::ID => Some(Self::SYS_STATUS(SYS_STATUS_DATA::default())),
             TIMESYNC_DATA::ID => Some(Self::TIMESYNC(TIMESYNC_DATA::default())),
+            VIBRATION_DATA::ID => Some(Self::VIBRATION(VIBRATION_DATA::default())),
             VISION_POSITION_ESTIMATE_DATA::ID => Some(Self::VISION_POSITION_ESTIMATE(
                 VISION_POSITION_ESTIMATE_DATA::default(),
             )),
@@ -5266,6 +5376,7 @@ impl Message for MavMessage {
             STATUSTEXT_DATA::ID => Some(Self::STATUSTEXT(STATUSTEXT_DATA::random(rng))),
             SYS_STATUS_DATA::ID => Some(Self::SYS_STATUS(SYS_STATUS_DATA::random(rng))),
             TIMESYNC_DATA::ID => Some(Self::TIMESYNC(TIMESYNC_DATA::random(rng))),
+            VIBRATION_DATA::ID => Some(Self::VIBRATION(VIBRATION_DATA::random(rng))),
             VISION_POSITION_ESTIMATE_DATA::ID => Some(Self::VISION_POSITION_ESTIMATE(
                 VISION_POSITION_ESTIMATE_DATA::random(rng),
             )),
@@ -5314,6 +5425,7 @@ impl Message for MavMessage {
             Self::STATUSTEXT(body) => body.ser(version, bytes),
             Self::SYS_STATUS(body) => body.ser(version, bytes),
             Self::TIMESYNC(body) => body.ser(version, bytes),
+            Self::VIBRATION(body) => body.ser(version, bytes),
             Self::VISION_POSITION_ESTIMATE(body) => body.ser(version, bytes),
         }
     }
@@ -5359,6 +5471,7 @@ impl Message for MavMessage {
             STATUSTEXT_DATA::ID => STATUSTEXT_DATA::EXTRA_CRC,
             SYS_STATUS_DATA::ID => SYS_STATUS_DATA::EXTRA_CRC,
             TIMESYNC_DATA::ID => TIMESYNC_DATA::EXTRA_CRC,
+            VIBRATION_DATA::ID => VIBRATION_DATA::EXTRA_CRC,
             VISION_POSITION_ESTIMATE_DATA::ID => VISION_POSITION_ESTIMATE_DATA::EXTRA_CRC,
             _ => 0,
         }

@@ -12,6 +12,7 @@ use sophie_control::navigation::air_pressure::AirPressure;
 use sophie_control::pilot::actuator_test::ActuatorTestView;
 use sophie_control::pilot::rc::Sticks;
 use sophie_control::pilot::remote::RemoteAnswer;
+use sophie_control::vibration::Vibration;
 
 /// State of the commander.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -57,6 +58,8 @@ pub struct Vehicle {
     pub readings: Readings,
     /// The air around the board.
     pub air: Option<AirPressure>,
+    /// Vibration of the last second.
+    pub vibration: Option<Vibration>,
     /// Name of the board.
     pub board: &'static str,
     /// Revision of the chip, as text; zeros where it is not known.
@@ -108,6 +111,7 @@ impl Default for Vehicle {
             grip: None,
             readings: Readings::default(),
             air: None,
+            vibration: None,
             board: "",
             chip: [0; 24],
             build: [0; 2],

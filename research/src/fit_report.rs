@@ -6,6 +6,7 @@ use sophie_sim::scenario::Scenario;
 use crate::results::model::{Axis, Cell, Chart, Section, Series, SeriesStyle, Table, num};
 use sophie_fit::arm::{Fit, Fitted};
 use sophie_fit::arm_data::Point;
+use sophie_fit::friction::{self, Surface};
 use sophie_fit::tendon::TendonFit;
 
 /// Tilts within this span may be radians: a quarter turn. Table I's stiffest arm (10 %, K = 1) bends by 2.8°.
@@ -86,8 +87,8 @@ pub fn infill(points: &[Point]) -> f64 {
     default.clamp(low, high.max(low))
 }
 
-/// The section of the fit, followed by the tendon's if one is given.
-pub fn section(points: &[Point], fit: &Fit, tendon: Option<&TendonFit>) -> Section {
+/// The section of the fit, followed by the tendon's and the pipe's if they are given.
+pub fn section(points: &[Point], fit: &Fit, tendon: Option<&TendonFit>, surfaces: &[Surface]) -> Section {
     let mut s = Section::new("fit", "Eq. 1 fitted to bench data");
     s.table(coefficients(fit));
     s.text(format!(
@@ -100,6 +101,9 @@ pub fn section(points: &[Point], fit: &Fit, tendon: Option<&TendonFit>) -> Secti
     }
     if let Some(tendon) = tendon {
         tendon_table(&mut s, tendon);
+    }
+    if !surfaces.is_empty() {
+        friction_table(&mut s, surfaces);
     }
     curves(&mut s, points, fit);
     s.finding = format!("{} points, residual {:.2}° RMS.", points.len(), fit.residual);
@@ -131,6 +135,45 @@ fn tendon_table(s: &mut Section, tendon: &TendonFit) {
          of the force on the pipe.",
         1e3 * tendon.lever
     ));
+}
+
+fn friction_table(s: &mut Section, surfaces: &[Surface]) {
+    let mut t = Table::new(
+        "The skin on the pipe, with 95 % confidence intervals",
+        &["pipe", "name", "unit", "value", "from", "to"],
+    );
+    for surface in surfaces {
+        let found = [Some(surface.sliding), Some(surface.adhesion), surface.sticking];
+        for f in found.iter().flatten() {
+            let [name, unit, value, from, to] = show(f);
+            t.row([surface.name().into(), name, unit, value, from, to]);
+        }
+    }
+    s.table(t);
+    let residuals: Vec<String> = surfaces
+        .iter()
+        .map(|surface| format!("{:.2} N on the {} pipe", surface.residual, surface.name()))
+        .collect();
+    s.text(format!(
+        "`pipe_friction` is the least that slides. RMS residuals of the sliding pull: {}.",
+        residuals.join(", ")
+    ));
+}
+
+/// Friction of the simulated pipe, and its sticking share where that was measured: of the worse surface.
+fn pipe(surfaces: &[Surface]) -> String {
+    let worse = surfaces
+        .iter()
+        .min_by(|a, b| a.sliding.value.total_cmp(&b.sliding.value));
+    let Some(surface) = worse else {
+        return String::new();
+    };
+    let sliding = surface.sliding.value;
+    let share = surface.sticking.map_or(1.0, |sticking| sticking.value / sliding);
+    format!(
+        "[world]\npipe_friction = {sliding:.3}\npipe_friction_static_share = {:.3}\n\n",
+        share.clamp(1.0, 2.0)
+    )
 }
 
 fn coefficients(fit: &Fit) -> Table {
@@ -218,6 +261,7 @@ pub fn parameters(
     points: &[Point],
     fit: &Fit,
     tendon: Option<&TendonFit>,
+    surfaces: &[Surface],
     source: &str,
 ) -> Result<String, String> {
     let rho = infill(points);
@@ -246,12 +290,16 @@ pub fn parameters(
          # flight stack assumes, under the names of its parameter table.\n\n\
          [vehicle]\ninfill = {rho}\ngain_k = 1.0\narm_coefficients = [{a1:.6}, {a2:.6}, {b1:.6}, {b2:.6}]\n\
          arm_level_share = {share:.6}\n\n\
-         [params]\ninfill = {rho}\ngain_k = 1.0\narm_a1 = {a1:.6}\narm_a2 = {a2:.6}\narm_b1 = {b1:.6}\narm_b2 = {b2:.6}\n\
+         {}[params]\ninfill = {rho}\ngain_k = 1.0\narm_a1 = {a1:.6}\narm_a2 = {a2:.6}\narm_b1 = {b1:.6}\narm_b2 = {b2:.6}\n\
          arm_level_share = {share:.6}\npower_exponent = {:.4}\n",
         points.len(),
         fit.residual,
+        pipe(surfaces),
         fit.exponent.clamp(1.0, 2.5)
     );
+    if let Some(friction) = friction::parameter(surfaces)? {
+        text += &format!("pipe_friction = {:.3}\n", friction.value);
+    }
     if let Some(TendonFit {
         lever, bend, relief, ..
     }) = tendon
@@ -321,7 +369,7 @@ mod tests {
             })
             .collect();
         let f = fit(&points, [2.4387, -0.1997, -0.162, 0.0151]).unwrap();
-        let text = parameters(&points, &f, None, "bench.csv").unwrap();
+        let text = parameters(&points, &f, None, &[], "bench.csv").unwrap();
         let s = Scenario::parse(&text, "arm.toml", &Default::default()).unwrap();
         let model = sophie_control::allocation::arm_deflection::ArmModel::from_params(&s.params);
         for t in [0.5f32, 3.0, 6.0] {
@@ -353,7 +401,7 @@ mod tests {
         let falling: Vec<Point> = points.iter().map(|p| Point { tilt: -p.tilt, ..*p }).collect();
         let f = fit(&falling, [2.4387, -0.1997, -0.162, 0.0151]).unwrap();
         assert!(
-            parameters(&falling, &f, None, "b")
+            parameters(&falling, &f, None, &[], "b")
                 .unwrap_err()
                 .contains("does not rise")
         );

@@ -4,6 +4,7 @@
 pub mod allocation;
 pub mod capture;
 pub mod cause;
+pub mod half_hour;
 pub mod perturbation;
 pub mod rig;
 pub mod touch;

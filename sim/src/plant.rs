@@ -299,6 +299,24 @@ impl Plant {
         &self.base.state.pose
     }
 
+    /// Ties the body down, level and `height` m above the ground: what a stand would hold it with. Called after each step.
+    pub fn tie(&mut self, height: f64) {
+        let pose = &mut self.base.state.pose;
+        *pose = Pose {
+            position: DVec3::new(pose.position.x, pose.position.y, -height),
+            attitude: DQuat::IDENTITY,
+            velocity: DVec3::ZERO,
+            omega: DVec3::ZERO,
+        };
+    }
+
+    /// Force of the rotors along the body's thrust axis, N: what a scale under a vehicle that is tied down loses.
+    #[must_use]
+    pub fn lift(&self) -> f64 {
+        let arms = self.thrust().into_iter().zip(self.tilt());
+        arms.map(|(thrust, tilt)| thrust * libm::cos(tilt)).sum()
+    }
+
     /// Roll, pitch and yaw, rad.
     #[must_use]
     pub fn euler(&self) -> [f64; 3] {
@@ -375,6 +393,11 @@ impl Plant {
     #[must_use]
     pub fn battery_voltage(&self) -> f64 {
         self.base.battery.voltage()
+    }
+
+    /// Puts in another flight battery of the same make with `charge` (0..1).
+    pub fn change_battery(&mut self, charge: f64) {
+        self.base.battery = self.base.battery.exchanged(charge);
     }
 
     /// Voltage of the servo battery under load, V.

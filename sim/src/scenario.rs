@@ -74,6 +74,8 @@ pub struct Scenario {
     pub known: Known,
     /// Flight stack parameters: the builder's model of the vehicle.
     pub params: Params,
+    /// What else the builder has measured: his check takes it, no parameter has it.
+    pub measured: Measured,
     /// Allocation used by the stack.
     pub mixer: sophie_mixers::Variant,
     /// Arms that close on the pipe.
@@ -92,6 +94,19 @@ pub struct Scenario {
     pub steps: Vec<Step>,
     /// Expected outcome, for tests.
     pub expect: Expect,
+}
+
+/// Measured numbers of the vehicle that no law of the flight takes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measured {
+    /// Torsional stiffness of the arms over the derived one.
+    pub arm_torsion: f64,
+}
+
+impl Default for Measured {
+    fn default() -> Self {
+        Self { arm_torsion: 1.0 }
+    }
 }
 
 impl Scenario {
@@ -173,6 +188,8 @@ pub struct Vehicle {
     pub battery_age: f64,
     /// Resistance that the battery's current meets slowly, Ω.
     pub battery_sag: f64,
+    /// Capacity of the servo battery, A·s.
+    pub servo_capacity: f64,
     /// Charge of the servo battery at power-up, 0..1.
     pub servo_charge: f64,
     /// The tendon servo.

@@ -2,3 +2,8 @@
 
 pub mod arm_stand;
 pub mod flight_level;
+pub mod phone;
+pub mod scale;
+pub mod sled;
+pub mod thrust_stand;
+pub mod twist_stand;

@@ -16,7 +16,7 @@ use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand};
 
 pub use console::{BringupArgs, ParamsArgs, ParamsVerb};
-pub use data::{FitArgs, FitTendonArgs, Kind, RecordingArgs, TimingArgs};
+pub use data::{FitArgs, FitLagArgs, FitTendonArgs, FitThrustArgs, Kind, RecordingArgs, TimingArgs};
 pub use fly::{FlyArgs, LiveArgs};
 pub use message::Message;
 pub use mission::MissionArgs;
@@ -86,6 +86,20 @@ pub enum Task {
     ///
     /// Exit status: 0 done, 2 bad input or unwritable output.
     FitArm(FitArgs),
+    /// Fit static thrust to readings of a scale and print lines for the console.
+    ///
+    /// READINGS.csv has a header line with the columns command_percent (% of full drive), voltage_v (V, by the board,
+    /// rotors running), reading_g (g at the scale) or thrust_n (N) and, if wanted, rotor (1 to 4, 0 for all four) and
+    /// tilt_deg (degrees, of the arms of the rotors that run, tip up positive).
+    ///
+    /// Exit status: 0 done, 2 bad input.
+    FitThrust(FitThrustArgs),
+    /// Fit the lag of a motor to the sound of a train of steps and print lines for the console.
+    ///
+    /// SOUND.wav is a phone's recording beside the rotor, at most a minute, of `thrust 1 30 to 60`.
+    ///
+    /// Exit status: 0 done, 2 bad input.
+    FitLag(FitLagArgs),
     /// Fit a tendon to steps of its servo with and without a weight on the arm's tip.
     ///
     /// STEPS.csv has a header line with the columns reel_deg (from the release mark), weight_n (on the tip) and tilt_deg

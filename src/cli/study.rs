@@ -10,10 +10,11 @@ use super::publish::Publisher;
 use sophie_control::gripper::tendon::REFERENCE_TILT;
 use sophie_control::params::Params;
 use sophie_fit::arm::{self, Fit};
+use sophie_fit::friction::{self, Surface};
 use sophie_fit::servo_steps::bench::Given;
 use sophie_fit::servo_steps::{self, data};
 use sophie_fit::tendon::{self, TendonFit};
-use sophie_fit::{arm_data, tendon_data};
+use sophie_fit::{arm_data, friction_data, tendon_data};
 use sophie_research::fit_report as report;
 use sophie_research::paper;
 use sophie_research::paper::printed::Printed;
@@ -45,11 +46,12 @@ pub fn fit_arm(args: &FitArgs) -> Result<bool, String> {
     let fitted = arm::fit(&points, [t.a1, t.a2, t.b1, t.b2]).map_err(|why| format!("{file}: {why}"))?;
     report::check_units(&points).map_err(|why| format!("{file}: {why}"))?;
     let tendon = fit_tendon(args, &fitted, report::infill(&points))?;
-    let parameters = report::parameters(&points, &fitted, tendon.as_ref(), &file)
+    let surfaces = fit_friction(args)?;
+    let parameters = report::parameters(&points, &fitted, tendon.as_ref(), &surfaces, &file)
         .map_err(|why| format!("{file}: {why}"))?;
     let out = OutDir::prepare(&args.out, &FIT_FILES)?;
     let console = Console::new(args.json);
-    let sections = [report::section(&points, &fitted, tendon.as_ref())];
+    let sections = [report::section(&points, &fitted, tendon.as_ref(), &surfaces)];
     for line in text::lines(1, &sections[0]) {
         console.say(&line);
     }
@@ -114,4 +116,16 @@ fn fit_tendon(args: &FitArgs, arm: &Fit, infill: f64) -> Result<Option<TendonFit
     fitted
         .map(Some)
         .map_err(|why| format!("{}: {why}", path.display()))
+}
+
+/// Fits the friction to the third table; no surfaces without one.
+fn fit_friction(args: &FitArgs) -> Result<Vec<Surface>, String> {
+    let Some(path) = &args.friction else {
+        return Ok(Vec::new());
+    };
+    let pulls = friction_data::load(path)?;
+    let complaint = |why| format!("{}: {why}", path.display());
+    let surfaces = friction::fit(&pulls).map_err(complaint)?;
+    friction::parameter(&surfaces).map_err(complaint)?;
+    Ok(surfaces)
 }

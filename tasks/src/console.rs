@@ -143,6 +143,8 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
                 self.changes().await;
             }
             Command::PropellersOff => self.propellers_off().await,
+            Command::TiedDown => self.tied_down().await,
+            Command::Thrust(which, percent, to) => self.thrust(which, percent, to).await,
             Command::Motor(number, percent) => self.motor(number, percent).await,
             Command::MotorPulse(number, pulse) => self.motor_by_pulse(number, pulse).await,
             Command::Servo { number, to, at } => self.servo(number, to, at).await,

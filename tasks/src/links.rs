@@ -17,6 +17,7 @@ pub mod last_value;
 pub mod link;
 pub mod mavlink_line;
 pub mod messages;
+pub mod raw_forces;
 pub mod tendon_order;
 pub mod timing_records;
 
@@ -43,6 +44,7 @@ use sophie_control::navigation::position_estimator::Fault;
 use sophie_control::params::Params;
 use sophie_control::pilot::actuator_test::{ActuatorTestAnswer, ActuatorTestRequest, ActuatorTestView};
 use sophie_control::pilot::remote::{RemoteAnswer, RemoteRequest};
+use sophie_control::vibration::Vibration;
 use sophie_ports::external_pose::ExternalPose;
 use sophie_ports::receiver::RcState;
 use sophie_ports::retained::StartCause;
@@ -52,6 +54,7 @@ use self::last_value::Raw;
 use self::link::Link;
 use self::mavlink_line::LineState;
 use self::messages::{ArmAngles, Contact, Status};
+use self::raw_forces::RawForces;
 use self::tendon_order::TendonOrder;
 use self::timing_records::TimingRecords;
 use crate::schedule::TaskId;
@@ -93,6 +96,8 @@ macro_rules! links {
             )*
             /// Timing of every task. every task -> console, log, supervisor, commander.
             pub timing: TimingRecords,
+            /// The newest raw readings of the accelerometer. imu -> commander.
+            pub raw_forces: RawForces,
             hardware: Mutex<Raw, Cell<ArmingInhibits>>,
             stack_scarce: AtomicBool,
         }
@@ -115,6 +120,7 @@ macro_rules! links {
                     start,
                     $($name: Link::new(Duration::from_millis($stale)),)*
                     timing: TimingRecords::new(),
+                    raw_forces: RawForces::new(),
                     hardware: Mutex::new(Cell::new(match start.cause {
                         StartCause::BrownOut => ArmingInhibits::NONE.with(ArmingInhibit::BrownOut),
                         _ => ArmingInhibits::NONE,
@@ -165,6 +171,8 @@ links! {
     rc: RcState, Rc to "commander, console, mavlink", stale after 500 ms;
     /// State reported by the commander.
     status: Status, Commander to "telemetry, console, mavlink, log", stale after 200 ms;
+    /// Vibration of each second at the inertial sensor.
+    vibration: Vibration, Commander to "console, mavlink", stale after 2500 ms;
     /// Test of one actuator, by console or MAVLink, renewed while it lasts; without it motors stop and servos go to release.
     actuator_test: ActuatorTestRequest, Console to "commander", stale after 150 ms;
     /// Reply to the last actuator test.

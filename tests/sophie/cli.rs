@@ -239,7 +239,7 @@ fn help_is_a_word_and_an_option_everywhere() {
     }
     assert_eq!(
         refused(&temp, &["help", "perch"]),
-        "sophie: no help on 'perch': allowed are fly, check, bringup, params, capture, study, paper, fit-arm, fit-tendon, timing, recording"
+        "sophie: no help on 'perch': allowed are fly, check, bringup, params, capture, study, paper, fit-arm, fit-thrust, fit-lag, fit-tendon, timing, recording"
     );
 }
 

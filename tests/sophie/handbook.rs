@@ -385,9 +385,12 @@ fn the_lights_of_the_pilots_page_are_those_of_the_firmware() {
 #[test]
 fn the_numbers_of_calibration_and_safety_follow_from_the_defaults() {
     let p = Params::DEFAULT;
-    // 0.5 kg on a pressure sensor with its divider; 132 g on its area; four cells.
+    // 0.5 kg on a pressure sensor with its divider; 140 g on its area; four cells.
     let conductance = p.fsr_gain * 4.9 * p.fsr_divider;
-    let (volts, pascals) = (3.3 * conductance / (1.0 + conductance), 1.3 / p.fsr_area);
+    let (volts, pascals) = (
+        3.3 * conductance / (1.0 + conductance),
+        0.14 * 9.806_65 / p.fsr_area,
+    );
     let tendon = p.servo_torque_max / p.reel_radius;
     let numbers = [
         ("calibration.md", format!("make {volts:.2} V")),

@@ -6,6 +6,8 @@ mod check;
 mod check_sweep;
 mod cli;
 mod determinism;
+mod fit_lag;
+mod fit_thrust;
 mod handbook;
 mod live;
 mod operator;

@@ -250,9 +250,12 @@ fn an_arm_from_the_bench_is_fitted_and_flies() {
         include_str!("../../docs/tendon-bench.csv"),
     )
     .unwrap();
+    let pulls = include_str!("../../docs/friction-bench.csv");
+    fs::write(temp.0.join("friction.csv"), pulls).unwrap();
+    let tables = ["--tendon", "tendon.csv", "--friction", "friction.csv"];
     let output = sophie(
         &temp.0,
-        &["fit-arm", "bench.csv", "--tendon", "tendon.csv", "--json"],
+        &[&["fit-arm", "bench.csv", "--json"][..], &tables].concat(),
     );
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
     let results: Value = serde_json::from_slice(&output.stdout).unwrap();
@@ -273,7 +276,26 @@ fn an_arm_from_the_bench_is_fitted_and_flies() {
         );
     }
     let lines = fs::read_to_string(temp.0.join("out/arm.console")).unwrap();
-    for name in ["tendon_lever 0.015", "tendon_bend ", "tendon_relief "] {
+    for (at, truth) in [(0, 0.42), (3, 0.25)] {
+        let [value, from, to] =
+            [3, 4, 5].map(|i| column(&results, "fit", "The skin", i)[at].as_f64().unwrap());
+        assert!(
+            from < truth && truth < to && (value / truth - 1.0).abs() < 0.05,
+            "{value} {truth}"
+        );
+    }
+    let flown = fs::read_to_string(temp.0.join("out/arm.toml")).unwrap();
+    assert!(
+        flown.contains("[world]\npipe_friction = 0.2")
+            && flown.contains("\npipe_friction_static_share = 1.3"),
+        "{flown}"
+    );
+    for name in [
+        "tendon_lever 0.015",
+        "tendon_bend ",
+        "tendon_relief ",
+        "pipe_friction 0.2",
+    ] {
         assert!(lines.contains(&format!("set {name}")), "{lines}");
     }
     let names = column(&results, "fit", "Coefficients", 0);

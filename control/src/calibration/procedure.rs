@@ -7,11 +7,13 @@
 mod tests;
 
 use super::flow::{FlowFit, FlowTurns, Round, flow_fit};
+use super::loads::{self, Loads};
 use super::step::{Calibration, Step};
-use super::{AccelFit, ArmFit, BIAS, Face, FsrFit, SCALES, Samples, Unfit, thousandths, within};
+use super::{AccelFit, ArmFit, BIAS, Face, SCALES, Samples, Unfit, thousandths, within};
 use crate::allocation::wrench::PerArm;
 use crate::attitude::messages::Attitude;
 use crate::attitude::mounting::{Direction, Mounting};
+use crate::gripper::contact_pressure::SensorLine;
 use crate::gripper::tendon::SPAN_MIN_US;
 use crate::maths::scalar::to_deg;
 use crate::maths::vector::Vec3;
@@ -82,8 +84,9 @@ pub struct Finding {
     pub step: Step,
     /// Its outcome, or the quantity that forbids it.
     pub result: Result<Outcome, Unfit>,
-    /// Results beside the parameters, NaN for unused ones. Gyro: rates about x, y, z and noise, deg/s. Flow: height of
-    /// the turning point over the lens, m.
+    /// Results beside the parameters, NaN for unused ones. Gyro: rates about x, y, z and noise, deg/s. Pressure sensor:
+    /// half of the 95 % interval of the pressure at the grip pressure, Pa; half width of the hysteresis, %; reading
+    /// without a load at the end, Pa. Flow: height of the turning point over the lens, m.
     pub figures: [f32; 4],
 }
 
@@ -119,6 +122,7 @@ struct Kept {
     means: [Vec3; 6],
     below: [Direction; 3],
     samples: Samples,
+    loads: Loads,
     near: Option<Round>,
 }
 
@@ -140,6 +144,7 @@ impl Procedure {
                 means: [Vec3::ZERO; 6],
                 below: [Direction::Down; 3],
                 samples: Samples::NONE,
+                loads: loads::NONE,
                 near: None,
             },
         }
@@ -172,6 +177,13 @@ impl Procedure {
     /// Ends the running step without a result; true if one ran.
     pub fn cancel(&mut self) -> bool {
         self.running.take().is_some()
+    }
+
+    /// Number of the step of `calibration` that comes next for `part` (0 to 3): 1, or the one after those that have
+    /// passed less than [`KEPT_US`] ago.
+    pub fn next(&self, calibration: Calibration, part: usize, now_us: u64) -> u8 {
+        let kept = self.kept.of == Some((calibration, part)) && now_us <= self.kept.until_us;
+        if kept { self.kept.steps + 1 } else { 1 }
     }
 
     /// The running step.
@@ -217,7 +229,11 @@ impl Procedure {
         let mut figures = [f32::NAN; 4];
         let result = self.kept.end(&running, in_force, working, &mut figures);
         if result.is_ok() {
-            self.kept.steps = self.kept.steps.max(step.number);
+            // A sensor remembers its loads: one that is repeated wants those after it again.
+            self.kept.steps = match step.calibration {
+                Calibration::Fsr => step.number,
+                _ => self.kept.steps.max(step.number),
+            };
             self.kept.until_us = now_us.saturating_add(KEPT_US);
         }
         if matches!(result, Ok(Outcome::Done(_))) {
@@ -274,7 +290,7 @@ impl Kept {
                 done(changes(step, &[divider]))
             }
             Calibration::Servo => marks(step, in_force, working).map(Outcome::Done),
-            Calibration::Fsr => self.pressure_sensor(step, samples, in_force),
+            Calibration::Fsr => self.pressure_sensor(step, samples, in_force, figures),
             Calibration::Arm => self.arm_sensor(step, samples, in_force),
             Calibration::Flow => self.flow(step, &running.turns, in_force, figures),
         }
@@ -320,20 +336,23 @@ impl Kept {
         step: &Step,
         samples: &Samples,
         in_force: &Params,
+        figures: &mut [f32; 4],
     ) -> Result<Outcome, Unfit> {
+        let at = usize::from(step.number) - 1;
+        let [load, _] = step.values;
+        let load = if loads::is_empty(step.number) { 0.0 } else { load };
+        let now = SensorLine::from_params(in_force, step.part);
+        let loaded = loads::loaded(samples, load / in_force.fsr_area, &now)?;
+        if let Some(kept) = self.loads.get_mut(at) {
+            *kept = loaded;
+        }
+        loads::follows(&self.loads, at, in_force.grip_pressure)?;
         if !step.is_last() {
-            super::quiet_pressure(samples)?;
-            self.samples = *samples;
             return Ok(Outcome::Taken);
         }
-        let [trim, zero] = FSR.get(step.part).copied().unwrap_or_default();
-        let now = FsrFit {
-            trim: in_force.get(trim).unwrap_or(1.0),
-            zero: in_force.get(zero).unwrap_or_default(),
-        };
-        let [weight, _] = step.values;
-        let fit = super::pressure_sensor(&self.samples, samples, weight / in_force.fsr_area, now)?;
-        Ok(Outcome::Done(changes(step, &[fit.trim, fit.zero])))
+        let found = loads::line(&self.loads, in_force.grip_pressure)?;
+        *figures = [found.error, found.hysteresis, found.empty, f32::NAN];
+        Ok(Outcome::Done(changes(step, &[found.line.trim, found.line.zero])))
     }
 
     fn arm_sensor(&mut self, step: &Step, samples: &Samples, in_force: &Params) -> Result<Outcome, Unfit> {

@@ -1,5 +1,6 @@
 //! One step of one calibration, as a person or a host requests it.
 
+use super::loads;
 use crate::gripper::tendon::SPAN_MIN_US;
 
 /// A calibration; the numbers are those of MAVLink's SOPHIE_CALIBRATION.
@@ -18,7 +19,7 @@ pub enum Calibration {
     Battery = 5,
     /// Marks of one tendon servo.
     Servo = 6,
-    /// Zero and gain of one pressure sensor, by a weight.
+    /// Line and hysteresis of one pressure sensor, by three loads up and down.
     Fsr = 7,
     /// Zero and sign of one arm's tilt sensor.
     Arm = 8,
@@ -44,9 +45,10 @@ impl Calibration {
     pub const fn steps(self) -> u8 {
         match self {
             Self::Gyro | Self::Level | Self::Battery | Self::Servo => 1,
-            Self::Fsr | Self::Arm | Self::Flow => 2,
+            Self::Arm | Self::Flow => 2,
             Self::Mounting => 3,
             Self::Accel => 6,
+            Self::Fsr => loads::STEPS as u8,
         }
     }
 
@@ -75,8 +77,8 @@ pub struct Step {
     pub part: usize,
     /// Number of the step, from 1.
     pub number: u8,
-    /// Values that belong to it. Battery: V by a meter. Servo: pulses at release and at the full mark, µs. Second step
-    /// of a pressure sensor: weight on its pad, N.
+    /// Values that belong to it. Battery: V by a meter. Servo: pulses at release and at the full mark, µs. Pressure
+    /// sensor: load on its pad, N; none in the first and the last step.
     pub values: [f32; 2],
 }
 
@@ -95,7 +97,8 @@ impl Step {
         }
         let [first, second] = values;
         let given = match (calibration, number) {
-            (Calibration::Battery, _) | (Calibration::Fsr, 2) => first > 0.0 && first.is_finite(),
+            (Calibration::Fsr, number) if loads::is_empty(number) => true,
+            (Calibration::Battery | Calibration::Fsr, _) => first > 0.0 && first.is_finite(),
             (Calibration::Servo, _) => {
                 (first + second).is_finite() && first >= SPAN_MIN_US && second >= SPAN_MIN_US
             }

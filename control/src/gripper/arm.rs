@@ -25,8 +25,10 @@ const RESUME_TIME: f32 = 0.2;
 /// Time without a tilt until a fault, s; the servo is held at once.
 const TILT_MISSING_MAX: f32 = 0.5;
 /// A fall between these shares of the grip pressure within one step of 10 ms means a broken sensor lead: an arm's modes
-/// are below 30 Hz.
+/// are below 30 Hz. Below its turn-on force a sensor reads 0: so that a bounce across it counts as no break, the first
+/// share is counted from there, up to a share below a grip's least pressure.
 const VANISHED_FROM_SHARE: f32 = 0.3;
+const VANISHED_FROM_SHARE_MAX: f32 = 0.85;
 const VANISHED_TO_SHARE: f32 = 0.02;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -197,10 +199,10 @@ impl ArmGripper {
     fn input_fault(&self, cfg: &Config, measured: &Measured) -> Option<GripFault> {
         let latched = self.fault.is_some_and(GripFault::is_latched);
         let pressure = measured.sensed.known();
+        let from = measured.turn_on + VANISHED_FROM_SHARE * cfg.demand.pressure;
+        let from = scalar::clamp(from, 0.0, VANISHED_FROM_SHARE_MAX * cfg.demand.pressure);
         let vanished = matches!(self.phase, Phase::Grip(_))
-            && self
-                .last_pressure
-                .is_some_and(|p| p > VANISHED_FROM_SHARE * cfg.demand.pressure)
+            && self.last_pressure.is_some_and(|p| p > from)
             && pressure.is_some_and(|p| p < VANISHED_TO_SHARE * cfg.demand.pressure);
         match measured.sensed {
             _ if latched => self.fault,

@@ -9,6 +9,13 @@
 //! scale; on a bare pad s is 1. A pin that sees only a part s of x reads at most s / ((1 - s) R_d): 692 Pa for a half,
 //! 69 Pa for an eleventh. An open lead reads as no pressure; only the gripper, which knows its pull, detects it
 //! ([`crate::gripper::grip_fault::GripFault::Unfelt`]).
+//!
+//! A sensor in a curved skin conducts as G = g (F + F_p - F_0): the skin's curvature preloads it with F_p, and below the
+//! turn-on force F_0 it conducts nothing (Interlink: 0.2 N; guide: 20 to 100 g). So F = G / g + (F_0 - F_p), and with
+//! c = G / (g A), which is the pressure of a sensor without both, the pressure is p = c - z, z = (F_p - F_0) / A
+//! ([`SensorLine`]). Of a sensor with more turn-on than preload z is negative and all pressures from 0 to -z give c = 0:
+//! it reads 0 there, since an arm in the air must count as free. Just above, c is the noise of the converter, which must
+//! not read as -z either: so the missing pressure is added in proportion up to c = [`RAMP`], and in full from there on.
 
 use crate::allocation::wrench::PerArm;
 use crate::maths::scalar;
@@ -24,6 +31,59 @@ const RANGE_MARGIN: f32 = 1.2;
 /// Plausible time that clears a fault, s.
 const RECOVERY_TIME: f32 = 0.2;
 
+/// Conductance, as a pressure, over which the pressure that a late sensor misses is added, Pa. A count of noise (0.17 Pa
+/// at 10 kΩ) reads as 1.3 Pa at the most of 650 Pa missed, a free arm with five counts far less than `release_pressure`.
+/// From 750 Pa on, a grip less four tolerances, even that sensor reads by its line.
+const RAMP: f32 = 100.0;
+
+/// Line of one sensor: its conductance as a pressure by the common model, c Pa, is trim times (pressure + zero).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SensorLine {
+    /// Conductance over the common one.
+    pub trim: f32,
+    /// Preload less turn-on force, over the area, Pa: what the unloaded sensor reads, or, negative, the pressure below
+    /// which it reads nothing.
+    pub zero: f32,
+}
+
+impl SensorLine {
+    /// That of arm `arm` (0 to 3).
+    pub const fn from_params(p: &Params, arm: usize) -> Self {
+        let (trim, zero) = match arm {
+            0 => (p.fsr_trim_1, p.fsr_zero_1),
+            1 => (p.fsr_trim_2, p.fsr_zero_2),
+            2 => (p.fsr_trim_3, p.fsr_zero_3),
+            _ => (p.fsr_trim_4, p.fsr_zero_4),
+        };
+        Self { trim, zero }
+    }
+
+    /// Pressure below which the sensor reads nothing, Pa; 0 without one.
+    pub fn turn_on(&self) -> f32 {
+        if self.zero < 0.0 { -self.zero } else { 0.0 }
+    }
+
+    /// Pressure, Pa, at a conductance over the sensor's own of `c` Pa.
+    pub fn pressure(&self, c: f32) -> f32 {
+        if self.zero < 0.0 && c < RAMP {
+            c - self.zero * (c / RAMP)
+        } else {
+            c - self.zero
+        }
+    }
+
+    /// Conductance as a pressure by the common model, Pa, at which the sensor reads `pressure` Pa.
+    pub fn conductance(&self, pressure: f32) -> f32 {
+        let turn_on = self.turn_on();
+        self.trim
+            * if turn_on > 0.0 && pressure < RAMP + turn_on {
+                pressure * (RAMP / (RAMP + turn_on))
+            } else {
+                pressure + self.zero
+            }
+    }
+}
+
 /// Fault of a sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FsrFault {
@@ -37,8 +97,7 @@ pub enum FsrFault {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FsrScale {
     pascal_per_siemens: f32,
-    /// Reading of the unloaded sensor, Pa.
-    zero: f32,
+    line: SensorLine,
     divider: f32,
     /// Counts at the whole supply.
     full: f32,
@@ -49,15 +108,16 @@ pub struct FsrScale {
 impl FsrScale {
     /// The sensor of arm `arm` (0 to 3).
     pub fn from_params(p: &Params, arm: usize) -> Self {
-        let [scale, trim, zero] = match arm {
-            0 => [p.fsr_scale_1, p.fsr_trim_1, p.fsr_zero_1],
-            1 => [p.fsr_scale_2, p.fsr_trim_2, p.fsr_zero_2],
-            2 => [p.fsr_scale_3, p.fsr_trim_3, p.fsr_zero_3],
-            _ => [p.fsr_scale_4, p.fsr_trim_4, p.fsr_zero_4],
+        let scale = match arm {
+            0 => p.fsr_scale_1,
+            1 => p.fsr_scale_2,
+            2 => p.fsr_scale_3,
+            _ => p.fsr_scale_4,
         };
+        let line = SensorLine::from_params(p, arm);
         Self {
-            pascal_per_siemens: 1.0 / (p.fsr_gain * trim * p.fsr_area),
-            zero,
+            pascal_per_siemens: 1.0 / (p.fsr_gain * line.trim * p.fsr_area),
+            line,
             divider: p.fsr_divider,
             full: FULL_SCALE / scale,
             // Such a pin saturates first.
@@ -72,6 +132,11 @@ impl FsrScale {
     /// Scales of all four arms.
     pub fn all(p: &Params) -> PerArm<Self> {
         [0, 1, 2, 3].map(|arm| Self::from_params(p, arm))
+    }
+
+    /// Pressure below which the sensor reads nothing, Pa; 0 without one.
+    pub fn turn_on(&self) -> f32 {
+        self.line.turn_on()
     }
 
     /// Pressure, Pa, for `counts`, limited to a sound sensor's.
@@ -92,7 +157,8 @@ impl FsrScale {
     fn pressure_of(&self, counts: f32) -> f32 {
         let counts = if counts > self.most { self.most } else { counts };
         let x = counts / self.full;
-        x / ((1.0 - x) * self.divider) * self.pascal_per_siemens - self.zero
+        let c = x / ((1.0 - x) * self.divider) * self.pascal_per_siemens;
+        self.line.pressure(c)
     }
 }
 
@@ -176,6 +242,30 @@ mod tests {
         assert!(first == third && (first - 692.5).abs() < 1.0);
         assert!((second - (692.5 / 2.0 - 40.0)).abs() < 1.0, "{second}");
         assert!((fourth - 2.0 * 692.5).abs() < 1.0, "{fourth}");
+    }
+
+    #[test]
+    fn a_sensor_with_a_turn_on_force_reads_by_its_line_and_nothing_without_conductance() {
+        // 0.4 N on 1444 mm² are 277 Pa: it is missing at every pressure beyond 100 Pa of conductance.
+        let p = Params {
+            fsr_zero_1: -277.0,
+            fsr_trim_1: 0.8,
+            fsr_zero_2: -650.0,
+            ..params()
+        };
+        let [late, latest, ..] = FsrScale::all(&p);
+        // 2047 counts are 692.5 Pa by the common conductance.
+        assert!((late.pressure(2047) - (692.5 / 0.8 + 277.0)).abs() < 1.0);
+        assert!((latest.pressure(2047) - (692.5 + 650.0)).abs() < 1.0);
+        assert!(late.pressure(0) == 0.0 && latest.pressure(0) == 0.0);
+        // Half of the ramp, 50 Pa, 276 counts: half of what is missing is added.
+        assert!(
+            (latest.pressure(276) - (50.0 + 325.0)).abs() < 2.0,
+            "{}",
+            latest.pressure(276)
+        );
+        // Five counts of noise stay below the least release pressure, 20 Pa.
+        assert!(latest.pressure(5) < 10.0, "{}", latest.pressure(5));
     }
 
     #[test]
@@ -267,10 +357,20 @@ mod tests {
 
     proptest! {
         #[test]
-        fn more_counts_never_mean_less_pressure(a in 0u16..4096, b in 0u16..4096) {
+        fn more_counts_never_mean_less_pressure(a in 0u16..4096, b in 0u16..4096, zero in -650f32..300.0) {
             let (low, high) = if a < b { (a, b) } else { (b, a) };
-            prop_assert!(scale().pressure(low) <= scale().pressure(high));
-            prop_assert!(scale().pressure(high).is_finite());
+            let scale = FsrScale::from_params(&Params { fsr_zero_1: zero, ..params() }, 0);
+            prop_assert!(scale.pressure(low) <= scale.pressure(high));
+            prop_assert!(scale.pressure(high).is_finite());
+        }
+
+        #[test]
+        fn the_conductance_of_a_reading_gives_that_reading(
+            c in 0f32..2000.0, trim in 0.2f32..5.0, zero in -650f32..300.0,
+        ) {
+            let line = SensorLine { trim, zero };
+            let back = line.conductance(line.pressure(c)) / trim;
+            prop_assert!((back - c).abs() < 1e-3 * (1.0 + c), "{back} {c}");
         }
 
         #[test]

@@ -37,6 +37,8 @@ pub struct ArmInput {
     pub close: bool,
     /// Contact pressure.
     pub pressure: Pressure,
+    /// Contact pressure below which the sensor reads nothing, Pa.
+    pub turn_on: f32,
     /// Thrust demanded of the arm's rotor, N; 0 when stopped.
     pub thrust: f32,
     /// Estimated tension, N.
@@ -52,6 +54,8 @@ pub(super) struct Measured {
     pub sensed: Pressure,
     /// Contact pressure, Pa.
     pub pressure: Option<f32>,
+    /// Pressure below which the sensor reads nothing, Pa.
+    pub turn_on: f32,
     /// Thrust, N.
     pub thrust: Option<f32>,
     /// Tension, N.
@@ -82,6 +86,7 @@ impl InputFilters {
         Measured {
             sensed: input.pressure,
             pressure,
+            turn_on: input.turn_on,
             thrust,
             tension: tension.map(|t| scalar::clamp(t, 0.0, 1e4)),
             tilt: input.tilt.filter(|t| t.abs() <= scalar::PI),

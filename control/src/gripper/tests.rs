@@ -27,6 +27,7 @@ fn input(cfg: &Config, arm: &ArmGripper, pressure: f32) -> ArmInput {
     ArmInput {
         close: true,
         pressure: Pressure::Known(pressure),
+        turn_on: 0.0,
         thrust: 0.0,
         tension: Some(arm.force),
         tilt: Some(scalar::clamp(-0.2 - cfg.bend_per_force * arm.force, -2.5, 0.0)),

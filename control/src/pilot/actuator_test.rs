@@ -1,9 +1,11 @@
-//! Tests of single motors and servos on the ground: orders of the console and the replies of the mode logic.
+//! Tests of motors and servos on the ground: orders of the console and the replies of the mode logic.
 //!
 //! An order has a number, and the console renews it under that number while it lasts; without renewal it ends
 //! ([`crate::mode::ModeLogic`], in DISARMED alone).
 
 pub use crate::chain::spin::{SPIN_DRIVE, SPIN_DRIVE_MAX, SPIN_DRIVE_MIN, SPIN_TIME, Spin};
+
+use super::static_thrust_test::StaticThrustTest;
 
 /// Longest time for which a servo is held away from its release mark, s: one that pulls at an arm gets hot.
 pub const PLACE_TIME: f32 = 30.0;
@@ -34,28 +36,34 @@ pub enum ActuatorTest {
     End,
     /// The builder confirms that the propellers are off: motors may be tried.
     PropellersOff,
+    /// The builder confirms that the vehicle is tied down and its propellers are on: static thrust may be tested.
+    TiedDown,
     /// Spins a motor, for [`SPIN_TIME`] at most.
     Spin(Spin),
     /// Places a servo, for [`PLACE_TIME`] at most, then back to the release mark.
     Place(Place),
+    /// Rotors with propellers on, for [`StaticThrustTest::longest`].
+    StaticThrust(StaticThrustTest),
 }
 
 impl ActuatorTest {
     /// Longest duration, s.
-    pub const fn longest(&self) -> f32 {
+    pub fn longest(&self) -> f32 {
         match self {
-            Self::End | Self::PropellersOff => 0.0,
+            Self::End | Self::PropellersOff | Self::TiedDown => 0.0,
             Self::Spin(_) => SPIN_TIME,
             Self::Place(_) => PLACE_TIME,
+            Self::StaticThrust(test) => test.longest(),
         }
     }
 
     /// Its numbers are within their limits.
     pub fn is_allowed(&self) -> bool {
         match self {
-            Self::End | Self::PropellersOff => true,
+            Self::End | Self::PropellersOff | Self::TiedDown => true,
             Self::Spin(spin) => spin.is_allowed(),
             Self::Place(place) => place.is_allowed(),
+            Self::StaticThrust(test) => test.is_allowed(),
         }
     }
 }
@@ -98,10 +106,16 @@ actuator_test_refusals! {
     GripUnknown = "pressure sensors silent: whether the arms hold is not known";
     /// The builder has not confirmed that the propellers are off.
     PropellersOn = "say 'propellers off' first, once they are";
+    /// The builder has not confirmed that the vehicle is tied down.
+    NotTiedDown = "say 'tied down' first, once it is";
     /// The motors' path runs at the sensor's pace.
     ImuSilent = "inertial sensor silent: motors wait for it";
     /// The motor pulses are out of order: no pulse turns a motor safely.
     MotorPulses = "motor pulses out of order";
+    /// The battery is below its critical voltage, or that is not known.
+    BatteryCritical = "battery critical or not measured";
+    /// The vehicle has turned away from its attitude at the start.
+    Turned = "vehicle turned: it may have come loose";
     /// A number is beyond its limits.
     OutOfRange = "out of range";
     /// The sender of the order has not renewed it.

@@ -43,6 +43,10 @@ pub struct Handling {
     pub sticks: Option<Sticks>,
     /// Rotor that each motor output is wired to.
     pub wiring: MotorMap,
+    /// The body is tied down on a scale.
+    pub tied: bool,
+    /// Charge of a battery that he puts in, 0 to 1; `None`: the one that is in.
+    pub battery: Option<f64>,
 }
 
 /// What the operator observes: time, rotors, servo pulses, and the battery voltage by multimeter.
@@ -58,6 +62,8 @@ pub struct Observation {
     pub volts: f64,
     /// Servo pulses, µs.
     pub servos: PerArm<f64>,
+    /// What the scale under the tied vehicle loses, N.
+    pub lift: f64,
 }
 
 struct Table {
@@ -85,6 +91,8 @@ impl Default for BenchOperator {
             height: 0.0,
             sticks: None,
             wiring: MotorMap::STRAIGHT,
+            tied: false,
+            battery: None,
         };
         let seen = Observation::default();
         Self {
@@ -130,8 +138,10 @@ impl BenchOperator {
             rotors,
             volts: plant.battery_voltage(),
             servos: pins.servos,
+            lift: plant.lift(),
         };
         let held = table.held.clone();
+        table.held.battery = None;
         drop(table);
         if plant.stands() != held.on_box {
             plant.stand(held.on_box);
@@ -151,6 +161,8 @@ impl BenchOperator {
             bent: held.bent,
             height: held.height,
             sticks: held.sticks,
+            tied: held.tied,
+            battery: held.battery,
         }
     }
 }
@@ -177,6 +189,10 @@ pub struct HandledVehicle {
     /// Height above the table, m.
     pub height: f64,
     sticks: Option<Sticks>,
+    /// Tied down on a scale.
+    pub(crate) tied: bool,
+    /// Charge of a battery that he puts in now.
+    pub(crate) battery: Option<f64>,
 }
 
 impl HandledVehicle {

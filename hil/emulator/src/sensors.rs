@@ -48,7 +48,11 @@ impl Sensors {
         imu.mount(scenario.vehicle.vibration);
         let calibration = imu.bench_bias().as_vec3().to_array();
         let arms = std::array::from_fn(|arm| ArmImu::new(arm, streams).with_errors(scenario.sensors.tilt));
-        let fsr = std::array::from_fn(|arm| FsrSensor::new(arm, streams).with_errors(scenario.fsr_on(arm)));
+        let fsr = std::array::from_fn(|arm| {
+            let (gain, _) = scenario.faults.pressure(arm);
+            let sensor = FsrSensor::new(arm, streams).with_fault(gain, None);
+            sensor.with_errors(scenario.fsr_on(arm))
+        });
         Self {
             imu,
             samples: ((f64::from(params.imu_rate.number()) * STEP) as u32).max(1),
@@ -120,10 +124,10 @@ impl Sensors {
         let air = self.barometer.measure(self.ms * 1000);
         wires.air = air.map(|air| (f64::from(air.pascal), f64::from(air.celsius)));
         let volts = |counts: u16| f64::from(counts) * REFERENCE / FULL_SCALE;
-        let pressed = operator.map_or([0.0; 4], |held| held.pressed);
+        let [pressed, bent] = operator.map_or([[0.0; 4]; 2], |held| [held.pressed, held.bent]);
         let pressures = plant.pressure().into_iter().zip(pressed);
-        for (sensor, tilt) in self.fsr.iter_mut().zip(plant.tilt()) {
-            sensor.bend(tilt);
+        for (sensor, (tilt, bent)) in self.fsr.iter_mut().zip(plant.tilt().into_iter().zip(bent)) {
+            sensor.bend(tilt + bent);
         }
         let pressures = self.fsr.iter_mut().zip(pressures);
         for ((counts, (sensor, (pressure, pressed))), volt) in self

@@ -223,6 +223,7 @@ fn stream(encoder: &mut Encoder, id: u32, now: u64, vehicle: &Vehicle) -> Option
         SERVO_OUTPUT_RAW_DATA::ID => encoder.encode(&make::servo_output_raw(vehicle, ms)),
         BATTERY_STATUS_DATA::ID => encoder.encode(&make::battery_status(vehicle)),
         SCALED_PRESSURE_DATA::ID => encoder.encode(&make::scaled_pressure(vehicle, ms)?),
+        VIBRATION_DATA::ID => encoder.encode(&make::vibration(vehicle, now)?),
         SCALED_IMU_DATA::ID => encoder.encode(&make::scaled_imu(vehicle, ms)?),
         _ => return None,
     })

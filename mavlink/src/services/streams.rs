@@ -49,6 +49,7 @@ streams! {
     SERVO_OUTPUT_RAW_DATA each 500 ms;
     BATTERY_STATUS_DATA each 1000 ms;
     SCALED_IMU_DATA each 200 ms;
+    VIBRATION_DATA each 1000 ms;
     SCALED_PRESSURE_DATA each 0 ms;
 }
 

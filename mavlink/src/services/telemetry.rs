@@ -581,3 +581,17 @@ pub fn scaled_pressure(vehicle: &Vehicle, ms: u32) -> Option<SCALED_PRESSURE_DAT
         ..SCALED_PRESSURE_DATA::DEFAULT
     })
 }
+
+/// Vibration of the last second; `None` before the first.
+pub fn vibration(vehicle: &Vehicle, us: u64) -> Option<VIBRATION_DATA> {
+    let vibration = vehicle.vibration?;
+    let [vibration_x, vibration_y, vibration_z] = vibration.rms.to_array();
+    Some(VIBRATION_DATA {
+        time_usec: us,
+        vibration_x,
+        vibration_y,
+        vibration_z,
+        clipping_0: vibration.clipped,
+        ..VIBRATION_DATA::DEFAULT
+    })
+}

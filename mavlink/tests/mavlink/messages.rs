@@ -11,6 +11,7 @@ use sophie_control::maths::vector::{Quat, Vec3};
 use sophie_control::mode::{Mode, Reason};
 use sophie_control::params::{MotorProtocol, Params};
 use sophie_control::pilot::rc::{ArmChoice, StickMode, Sticks};
+use sophie_control::vibration::Vibration;
 use sophie_mavlink::Vehicle;
 use sophie_mavlink::services::telemetry::*;
 
@@ -350,4 +351,19 @@ fn a_second_battery_follows_the_first_as_often_and_on_request() {
     station.command(MavCmd::MAV_CMD_REQUEST_MESSAGE, [147.0, 0.0]);
     station.run(100);
     assert_eq!(ids(&station), [0, 1]);
+}
+
+#[test]
+fn vibration_is_in_m_s2_of_each_axis_with_what_clipped() {
+    let mut v = vehicle(Mode::Flight);
+    v.vibration = Some(Vibration {
+        rms: Vec3::new(1.5, 2.5, 3.5),
+        clipped: 7,
+    });
+    let sent = vibration(&v, 5_000_000).unwrap();
+    let axes = [sent.vibration_x, sent.vibration_y, sent.vibration_z];
+    assert_eq!((axes, sent.time_usec), ([1.5, 2.5, 3.5], 5_000_000));
+    assert_eq!((sent.clipping_0, sent.clipping_1, sent.clipping_2), (7, 0, 0));
+    v.vibration = None;
+    assert_eq!(vibration(&v, 1), None);
 }

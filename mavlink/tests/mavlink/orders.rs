@@ -10,6 +10,7 @@ use sophie_control::pilot::actuator_test::{
 };
 use sophie_control::pilot::rc::Sticks;
 use sophie_control::pilot::remote::RemoteRequest;
+use sophie_control::pilot::static_thrust_test::Rotors;
 use sophie_dialect::*;
 use sophie_mavlink::{Answers, CommanderRequests, Condition};
 
@@ -88,7 +89,10 @@ impl Craft {
             for _ in 0..2 {
                 self.out = self.logic.step(&self.inputs, 0.01);
             }
-            self.spun += u32::from(matches!(self.out.rotors, Setpoint::Spin(_)));
+            self.spun += u32::from(matches!(
+                self.out.rotors,
+                Setpoint::Spin(_) | Setpoint::StaticThrust(_)
+            ));
             self.station.vehicle.condition = Some(Condition {
                 mode: self.out.mode,
                 reason: self.out.reason,
@@ -153,7 +157,7 @@ fn long(command: MavCmd, params: &[f32]) -> Vec<u8> {
 
 use MavCmd::{
     MAV_CMD_COMPONENT_ARM_DISARM as ARM, MAV_CMD_DO_GRIPPER as GRIPPER, MAV_CMD_DO_MOTOR_TEST as MOTOR,
-    MAV_CMD_DO_SET_SERVO as SERVO, MAV_CMD_USER_1 as PROPELLERS_OFF,
+    MAV_CMD_DO_SET_SERVO as SERVO, MAV_CMD_SOPHIE_STATIC_THRUST as THRUST, MAV_CMD_USER_1 as PROPELLERS_OFF,
 };
 
 #[test]
@@ -315,7 +319,7 @@ fn one_motor_turns_once_propellers_are_said_to_be_off() {
         PROPELLERS_OFF,
         &[0.0],
         DENIED,
-        "refused: 1 confirms that propellers are off",
+        "refused: 1 propellers off, 2 on and tied down",
     );
     craft.accepted(PROPELLERS_OFF, &[1.0]);
     assert_eq!(craft.spun, 0);
@@ -380,6 +384,127 @@ fn one_motor_turns_once_propellers_are_said_to_be_off() {
     );
     craft.accepted(ARM, &[1.0]);
     craft.refused(MOTOR, &eight, REJECTED, "refused: only while DISARMED");
+}
+
+impl Craft {
+    /// Renews the run of `params` twice a second for `ms`.
+    fn renews(&mut self, params: &[f32], ms: u64) {
+        for _ in 0..ms / 500 {
+            self.station.say(&long(THRUST, params));
+            self.run(500);
+        }
+    }
+}
+
+#[test]
+fn rotors_run_as_long_as_the_station_renews_the_run() {
+    let mut craft = Craft::new();
+    let run = |number: f32| [0.0, 60.0, 0.0, 0.0, number];
+    craft.refused(
+        THRUST,
+        &run(1.0),
+        REJECTED,
+        "refused: say 'tied down' first, once it is",
+    );
+    craft.accepted(PROPELLERS_OFF, &[1.0]);
+    craft.refused(
+        THRUST,
+        &run(2.0),
+        REJECTED,
+        "refused: say 'tied down' first, once it is",
+    );
+    assert_eq!(craft.spun, 0);
+    craft.accepted(PROPELLERS_OFF, &[2.0]);
+    craft.refused(
+        MOTOR,
+        &[2.0, 0.0, 8.0],
+        REJECTED,
+        "refused: say 'propellers off' first, once they are",
+    );
+    // 1.2 s to rise, 5 s at 60 %.
+    craft.accepted(THRUST, &run(3.0));
+    craft.renews(&run(3.0), 8000);
+    assert!(craft.spun.abs_diff(310) <= 3, "{}", craft.spun);
+    // A run that has ended does not begin again.
+    craft.spun = 0;
+    craft.refused(THRUST, &run(3.0), REJECTED, "refused: this run has ended");
+    assert_eq!(craft.spun, 0);
+    // Without its sender it ends.
+    craft.accepted(THRUST, &run(4.0));
+    craft.run(1500);
+    assert_eq!(craft.out.rotors, Setpoint::Stop);
+    assert!(craft.spun.abs_diff(75) <= 5, "{}", craft.spun);
+    assert!(
+        craft
+            .station
+            .texts()
+            .iter()
+            .any(|text| text == "refused: run not renewed: it ends")
+    );
+    craft.refused(THRUST, &run(4.0), REJECTED, "refused: this run has ended");
+}
+
+#[test]
+fn a_run_ends_by_its_command_and_a_command_that_is_repeated_begins_it_once() {
+    let mut craft = Craft::new();
+    craft.accepted(PROPELLERS_OFF, &[2.0]);
+    craft.station.sent.clear();
+    let one = [3.0, 100.0, 0.0, 1.0, 9.0];
+    craft.station.say(&long(THRUST, &one));
+    craft.station.say(&long(THRUST, &one));
+    craft.run(400);
+    let acks = craft.station.got::<COMMAND_ACK_DATA>();
+    assert_eq!(acks.iter().map(|ack| ack.result).collect::<Vec<_>>(), [ACCEPTED]);
+    let Setpoint::StaticThrust(thrust) = craft.out.rotors else {
+        panic!("{:?}", craft.out.rotors);
+    };
+    assert!(
+        thrust.rotors == Rotors::One(2) && (thrust.drive - 0.2).abs() < 0.02,
+        "{thrust:?}"
+    );
+    craft.accepted(THRUST, &[0.0, 0.0]);
+    assert_eq!(craft.out.rotors, Setpoint::Stop);
+    // A train.
+    craft.spun = 0;
+    let train = [0.0, 30.0, 60.0, 0.5, 10.0];
+    craft.accepted(THRUST, &train);
+    craft.renews(&train, 8000);
+    assert!(craft.spun.abs_diff(305) <= 3, "{}", craft.spun);
+}
+
+#[test]
+fn a_run_that_is_not_understood_or_beyond_the_limits_never_begins() {
+    let mut craft = Craft::new();
+    craft.accepted(PROPELLERS_OFF, &[2.0]);
+    let range = "refused: out of range";
+    for (params, why) in [
+        ([5.0, 60.0, 0.0, 0.0, 1.0], "refused: rotor 1 to 4, 0 for all"),
+        (
+            [f32::NAN, 60.0, 0.0, 0.0, 1.0],
+            "refused: rotor 1 to 4, 0 for all",
+        ),
+        (
+            [0.0, 60.0, 0.0, 0.0, 0.0],
+            "refused: each run has a number, from 1",
+        ),
+        (
+            [0.0, 60.0, 0.0, 0.0, f32::NAN],
+            "refused: each run has a number, from 1",
+        ),
+        ([0.0, 101.0, 0.0, 0.0, 1.0], range),
+        ([0.0, 4.0, 0.0, 0.0, 1.0], range),
+        ([0.0, f32::NAN, 0.0, 0.0, 1.0], range),
+        ([0.0, 20.0, 80.0, 0.0, 1.0], range),
+        ([0.0, 60.0, 0.0, 11.0, 1.0], range),
+    ] {
+        craft.refused(THRUST, &params, DENIED, why);
+    }
+    assert_eq!(craft.spun, 0);
+    // Time and other drive are not given.
+    craft.accepted(THRUST, &[0.0, 60.0, f32::NAN, f32::NAN, 1.0]);
+    craft.sticks().arm_switch = true;
+    let (results, _) = craft.command(THRUST, &[0.0, 60.0, 0.0, 0.0, 1.0]);
+    assert_eq!((results, craft.out.rotors), (vec![REJECTED], Setpoint::Stop));
 }
 
 #[test]

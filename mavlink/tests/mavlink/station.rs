@@ -40,6 +40,7 @@ pub fn vehicle(mode: Mode) -> Vehicle {
             ..Default::default()
         }),
         capacity: 6480.0,
+        vibration: Some(sophie_control::vibration::Vibration::default()),
         ..Vehicle::default()
     }
 }

@@ -76,7 +76,7 @@ pub fn inspection(scenario: &Scenario, tries: &[TriedArm]) -> Row {
         .sum();
     Row::new(
         "inspection time",
-        endurance(current) / MINUTE,
+        endurance(scenario.vehicle.servo_capacity, current) / MINUTE,
         "min",
         Limit::AtLeast(held / MINUTE),
     )

@@ -159,7 +159,7 @@ impl Toy {
 
     fn move_on(&mut self) {
         let (roll, pitch, yaw_rate, thrust) = match self.out.rotors {
-            Setpoint::Stop | Setpoint::Spin(_) => (0.0, 0.0, 0.0, 0.0),
+            Setpoint::Stop | Setpoint::Spin(_) | Setpoint::StaticThrust(_) => (0.0, 0.0, 0.0, 0.0),
             Setpoint::Idle => (0.0, 0.0, 0.0, 1.0),
             Setpoint::Angle {
                 roll,

@@ -53,10 +53,10 @@ impl Battery {
         Self::of(FLIGHT, charge)
     }
 
-    /// A servo battery with `charge` (0..1) of its capacity.
+    /// A servo battery with `charge` (0..1) of its `capacity`, A·s.
     #[must_use]
-    pub fn of_servos(charge: f64) -> Self {
-        Self::of(SERVOS, charge)
+    pub fn of_servos(capacity: f64, charge: f64) -> Self {
+        Self::of(Pack { capacity, ..SERVOS }, charge)
     }
 
     fn of(pack: Pack, charge: f64) -> Self {
@@ -75,6 +75,16 @@ impl Battery {
         self.pack.resistance *= age;
         self.sag_resistance = sag;
         self
+    }
+
+    /// Another pack of the same make and age with `charge` (0..1), at rest.
+    #[must_use]
+    pub fn exchanged(self, charge: f64) -> Self {
+        Self {
+            charge: charge.clamp(0.0, 1.0),
+            sag: 0.0,
+            ..self
+        }
     }
 
     /// Draws `current` A, of motors or servos, for `dt` s.
@@ -144,7 +154,7 @@ mod tests {
             "{}",
             b.voltage()
         );
-        let mut b = Battery::of_servos(0.1);
+        let mut b = Battery::of_servos(servo_power::CAPACITY, 0.1);
         assert!((b.voltage() - 7.38).abs() < 1e-9 && !b.empty());
         // 432 A s.
         b.step(100.0, 4.32);

@@ -7,7 +7,7 @@
 
 mod arm_skin;
 mod belly;
-mod friction;
+pub(crate) mod friction;
 mod pad;
 pub mod pipe;
 mod point;

@@ -76,6 +76,15 @@ impl RotorSpec {
         self.thrust_max * (share * share)
     }
 
+    /// Thrust at full command and nominal voltage in air of `density` kg/m³ over that in the standard's: thin air unloads the
+    /// rotor, which then turns faster.
+    #[must_use]
+    pub fn air_ratio(&self, density: f64) -> f64 {
+        let density = density / STANDARD_DENSITY;
+        let share = self.steady_share(1.0, NOMINAL_VOLTAGE, density);
+        density * share * share
+    }
+
     /// Steady speed over full speed at `command` (0..1), `voltage` V and `density` over the standard's.
     fn steady_share(&self, command: f64, voltage: f64, density: f64) -> f64 {
         match self.voltage_power {
@@ -171,6 +180,12 @@ impl Rotor {
         self.coefficient * self.speed * self.speed * self.heat.factor()
     }
 
+    /// Speed at full command and nominal voltage, rad/s.
+    #[must_use]
+    pub fn full_speed(&self) -> f64 {
+        self.full_speed
+    }
+
     /// Speed, rad/s.
     #[must_use]
     pub fn speed(&self) -> f64 {
@@ -227,6 +242,20 @@ mod tests {
         }
         assert!((r.thrust() - 8.3).abs() < 1e-3);
         assert!((RotorSpec::default().steady_thrust(1.0, NOMINAL_VOLTAGE) - 8.3).abs() < 1e-9);
+    }
+
+    #[test]
+    fn thin_air_takes_less_thrust_than_its_density() {
+        let spec = RotorSpec::default();
+        assert_eq!(spec.air_ratio(STANDARD_DENSITY), 1.0);
+        // u = (1 - s) x + s ρ x² at ρ 0.9 of the standard's: x = 2 / (0.75 + √(0.5625 + 0.9)).
+        let ratio = spec.air_ratio(0.9 * STANDARD_DENSITY);
+        assert!((ratio - 0.9 * 1.020_75f64.powi(2)).abs() < 1e-4, "{ratio}");
+        let mut rotor = Rotor::new(0, 1.0, spec).in_air(1.0, 0.9 * STANDARD_DENSITY);
+        for _ in 0..2000 {
+            rotor.step(STEP, 1.0, NOMINAL_VOLTAGE);
+        }
+        assert!((rotor.thrust() / (8.3 * ratio) - 1.0).abs() < 1e-4);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Power of the tendon servos from their battery while they hold.
 
-/// Charge of the servos' battery, A·s: 2S 1200 mAh (paper).
+/// Capacity of the servos' battery, A·s: 2S 1200 mAh (paper).
 pub const CAPACITY: f64 = 1.2 * 3600.0;
 
 /// Servo current over torque: linear from no load to stall, as of a DC motor.
@@ -29,10 +29,10 @@ impl ServoCurrent {
     }
 }
 
-/// Time (s) for which a full battery feeds `current` A.
+/// Time (s) for which a full battery of `capacity` A·s feeds `current` A.
 #[must_use]
-pub fn endurance(current: f64) -> f64 {
-    CAPACITY / current
+pub fn endurance(capacity: f64, current: f64) -> f64 {
+    capacity / current
 }
 
 #[cfg(test)]
@@ -43,6 +43,6 @@ mod tests {
     fn a_servo_draws_its_idle_current_without_load_and_its_stall_current_at_stall() {
         assert!((MG996R.at(0.0) - 0.17).abs() < 1e-12 && (MG996R.at(MG996R.stall) - 2.5).abs() < 1e-12);
         // Four idle servos: 1.2 Ah over 0.68 A, 1 h 46 min.
-        assert!((endurance(4.0 * MG996R.at(0.0)) / 60.0 - 105.9).abs() < 0.1);
+        assert!((endurance(CAPACITY, 4.0 * MG996R.at(0.0)) / 60.0 - 105.9).abs() < 0.1);
     }
 }

@@ -6,8 +6,8 @@ use sophie_control::pilot::rc::ArmChoice;
 use sophie_mixers::Variant;
 
 use super::{
-    Assist, Assumed, Expect, Faults, Known, Overrides, Pilot, ROOM, Rule, Scenario, Sensors, Servos, Tendons,
-    Vehicle, World,
+    Assist, Assumed, Expect, Faults, Known, Measured, Overrides, Pilot, ROOM, Rule, Scenario, Sensors,
+    Servos, Tendons, Vehicle, World,
 };
 use crate::plant::air::wind::WindSpec;
 use crate::plant::air::{AirSpec, AirframeSpec};
@@ -19,6 +19,7 @@ use crate::plant::esc::EscSpec;
 use crate::plant::flexible::ArmBending;
 use crate::plant::hinged::link::TABLE_1;
 use crate::plant::rotor::{RotorSpec, STANDARD_DENSITY};
+use crate::plant::servo_power::CAPACITY;
 use crate::plant::tendon::ServoProfile;
 use crate::sensors::flow::Optics;
 use crate::sensors::imu::VibrationSpec;
@@ -49,6 +50,7 @@ impl Default for Vehicle {
             battery_charge: 1.0,
             battery_age: 1.0,
             battery_sag: 0.0,
+            servo_capacity: CAPACITY,
             servo_charge: 1.0,
             servo: ServoProfile::Paper,
             servo_release: [550.0; 4],
@@ -146,6 +148,7 @@ impl Scenario {
             vehicle: Vehicle::default(),
             known: Known::default(),
             params: Params::default(),
+            measured: Measured::default(),
             mixer: Variant::Flexible,
             arms: ArmChoice::All,
             judge: Rule::default(),

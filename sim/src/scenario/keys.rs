@@ -491,7 +491,7 @@ pub const KEYS: &[Key] = &[
     ),
     number!(
         "vehicle.vibration_m_s2",
-        Range::new(0.0, 15.0, "m/s2"),
+        Range::new(0.0, 60.0, "m/s2"),
         vehicle.vibration.once
     ),
     number!(
@@ -518,6 +518,11 @@ pub const KEYS: &[Key] = &[
         "vehicle.battery_sag_ohm",
         Range::new(0.0, 0.1, "ohm"),
         vehicle.battery_sag
+    ),
+    number!(
+        "vehicle.servo_battery_mah",
+        Range::new(200.0, 20_000.0, "mAh").times(3.6),
+        vehicle.servo_capacity
     ),
     number!(
         "vehicle.servo_charge_percent",

@@ -115,6 +115,7 @@ impl Scenario {
     pub fn assumed(&self) -> Self {
         let mut built = Self {
             params: self.params,
+            measured: self.measured,
             steps: self.steps.clone(),
             sensors: self.sensors,
             pilot: self.pilot.clone(),

@@ -62,7 +62,7 @@ impl Scenario {
                     .breaking(self.faults.tendon[arm], self.faults.at)
             }),
             battery: Battery::new(v.battery_charge).aged(v.battery_age, v.battery_sag),
-            servo_battery: Battery::of_servos(v.servo_charge),
+            servo_battery: Battery::of_servos(v.servo_capacity, v.servo_charge),
             air: Air::new(v.air, self.air(), v.hover_speed(), self.streams()),
             gust: Gust::new(w.gust_force, w.gust_moment, self.streams())
                 .in_wind(w.steady_wind, self.wind_from()),

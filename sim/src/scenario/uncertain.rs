@@ -5,7 +5,7 @@ use sophie_control::gripper::tendon::Reel;
 use sophie_control::params::Params;
 
 use super::{ROOM, Scenario};
-use crate::plant::rotor::STANDARD_DENSITY;
+use crate::plant::contact::ARM_LENGTH;
 use crate::plant::tendon::{ServoSpec, TendonSpec};
 use crate::sensors::fsr::FsrErrors;
 
@@ -157,8 +157,9 @@ pub const QUANTITIES: &[Quantity] = &[
         key: "vehicle.thrust_max_n",
         all: Some(Spread::Times(0.9, 1.12)),
         calibration: Some(Calibration {
-            by: "throttle in hover ([tuning](tuning.md), 1), with the day's air and the four rotors' mean",
-            error: Spread::Times(0.95, 1.05),
+            by: "`bringup`'s step `thrust` ([static thrust](calibration.md#static-thrust)), with the day's air and the four \
+                 rotors' mean; by the throttle in hover alone ([tuning](tuning.md), 1) 5 %",
+            error: Spread::Times(0.98, 1.02),
             apart: false,
             demanded: false,
         }),
@@ -178,9 +179,35 @@ pub const QUANTITIES: &[Quantity] = &[
     Quantity {
         key: "vehicle.rotor_thrust",
         each: Some(Spread::Times(0.95, 1.05)),
+        calibration: Some(Calibration {
+            by: "`bringup`'s step `thrust`",
+            error: Spread::Times(0.985, 1.015),
+            apart: true,
+            demanded: false,
+        }),
+        exact: true,
         source: "propellers and motors of one kind (assumed)",
         truth: |s| s.vehicle.rotor_thrust.to_vec(),
-        assumed: |s| vec![mean(&s.vehicle.rotor_thrust); 4],
+        assumed: |s| {
+            // What is common to the four is part of `thrust_max`.
+            let (p, mean) = (&s.params, mean(&s.vehicle.rotor_thrust));
+            [p.thrust_trim_1, p.thrust_trim_2, p.thrust_trim_3, p.thrust_trim_4]
+                .map(|trim| f64::from(trim) * mean)
+                .to_vec()
+        },
+        learn: |s, n| {
+            let mean = mean(n);
+            let (p, shares) = (&mut s.params, n.iter().map(|n| n / mean).collect::<Vec<_>>());
+            set(
+                [
+                    &mut p.thrust_trim_1,
+                    &mut p.thrust_trim_2,
+                    &mut p.thrust_trim_3,
+                    &mut p.thrust_trim_4,
+                ],
+                &shares,
+            );
+        },
         ..FIXED
     },
     Quantity {
@@ -193,9 +220,17 @@ pub const QUANTITIES: &[Quantity] = &[
     Quantity {
         key: "vehicle.thrust_voltage_power",
         all: Some(Spread::Within(1.5, 2.0)),
+        calibration: Some(Calibration {
+            by: "`bringup`'s step `thrust`, with a fresh battery and a used one",
+            error: Spread::Plus(-0.11, 0.11),
+            apart: false,
+            demanded: false,
+        }),
+        exact: true,
         source: "1.7 in recordings of others' flights; the stack takes 2",
         truth: |s| s.vehicle.rotor.voltage_power.into_iter().collect(),
-        assumed: |_| vec![2.0],
+        assumed: |s| vec![s.params.thrust_volt_exp.into()],
+        learn: |s, n| set([&mut s.params.thrust_volt_exp], n),
         ..FIXED
     },
     Quantity {
@@ -223,8 +258,8 @@ pub const QUANTITIES: &[Quantity] = &[
         key: "vehicle.motor_tau_s",
         all: Some(Spread::Within(0.04, 0.10)),
         calibration: Some(Calibration {
-            by: "step of thrust on a scale ([tuning](tuning.md), 4)",
-            error: Spread::Times(0.85, 1.15),
+            by: "`bringup`'s step `lag`, by sound ([lag](calibration.md#lag-of-the-motors)), the mean of rise and fall",
+            error: Spread::Times(0.9, 1.1),
             apart: false,
             demanded: false,
         }),
@@ -232,8 +267,14 @@ pub const QUANTITIES: &[Quantity] = &[
         source: "0.0125 up and 0.025 s down (RotorS, a small one) to 0.17 s (2212-920, 9450, 30 A on PWM: \
                  CrissCCL/DIY_UAV_Motor_System_Identification)",
         truth: |s| vec![s.vehicle.rotor.spin.up],
-        assumed: |s| vec![s.params.motor_tau.into()],
-        learn: |s, n| set([&mut s.params.motor_tau], n),
+        assumed: |s| vec![f64::from(s.params.motor_tau) / mean_over_rise(s)],
+        learn: |s, n| {
+            let mean = mean_over_rise(s);
+            set(
+                [&mut s.params.motor_tau],
+                &n.iter().map(|n| n * mean).collect::<Vec<_>>(),
+            );
+        },
         ..FIXED
     },
     Quantity {
@@ -284,7 +325,7 @@ pub const QUANTITIES: &[Quantity] = &[
         key: "vehicle.arm_level_share",
         all: Some(Spread::Plus(-0.05, 0.05)),
         calibration: Some(Calibration {
-            by: "`sophie fit-arm` ([arms](calibration.md#arms))",
+            by: "`bringup`'s step `arm-table`, `sophie fit-arm` ([arms](calibration.md#arms))",
             error: Spread::Plus(-0.02, 0.02),
             apart: false,
             demanded: false,
@@ -306,7 +347,7 @@ pub const QUANTITIES: &[Quantity] = &[
         key: "vehicle.arm_level_n",
         all: Some(Spread::Within(3.7, 4.6)),
         calibration: Some(Calibration {
-            by: "`sophie fit-arm` ([arms](calibration.md#arms))",
+            by: "`bringup`'s step `arm-table`, `sophie fit-arm` ([arms](calibration.md#arms))",
             error: Spread::Plus(-0.17, 0.17),
             apart: false,
             demanded: false,
@@ -330,7 +371,7 @@ pub const QUANTITIES: &[Quantity] = &[
         all: Some(Spread::Times(0.7, 1.4)),
         each: Some(Spread::Times(0.93, 1.07)),
         calibration: Some(Calibration {
-            by: "`sophie fit-arm` ([arms](calibration.md#arms)): one equation for four arms",
+            by: "`bringup`'s step `arm-table`, `sophie fit-arm` ([arms](calibration.md#arms)): one equation for four arms",
             error: Spread::Times(0.95, 1.05),
             apart: false,
             demanded: false,
@@ -355,7 +396,8 @@ pub const QUANTITIES: &[Quantity] = &[
     Quantity {
         key: "vehicle.arm_offset_deg",
         each: Some(Spread::Plus(-3.0, 3.0)),
-        source: "print and glue (assumed); the arms' sensors see it in flight",
+        source: "print and glue (assumed); `arm-table` shows each arm's to 1.9°, the parameters are common to the four; the arms' \
+                 sensors see it in flight",
         truth: |s| s.vehicle.arm_offset.map(|offset| offset / DEGREE).to_vec(),
         assumed: |_| vec![0.0; 4],
         ..FIXED
@@ -370,8 +412,21 @@ pub const QUANTITIES: &[Quantity] = &[
     Quantity {
         key: "vehicle.arm_torsion",
         all: Some(Spread::Within(0.5, 2.0)),
+        calibration: Some(Calibration {
+            by: "`sophie bringup`, step `twist` ([arms](calibration.md#arms)), for `sophie check`; no parameter has it",
+            error: Spread::Times(0.96, 1.04),
+            apart: false,
+            demanded: false,
+        }),
+        exact: true,
         source: "derived of a square section; infill and skin share it differently (assumed)",
         truth: |s| vec![s.vehicle.arm_torsion],
+        assumed: |s| vec![s.measured.arm_torsion],
+        learn: |s, n| {
+            if let [torsion] = n {
+                s.measured.arm_torsion = *torsion;
+            }
+        },
         ..FIXED
     },
     Quantity {
@@ -620,19 +675,14 @@ pub const QUANTITIES: &[Quantity] = &[
         key: "faults.pressure_gain",
         each: Some(Spread::Times(0.8, 1.2)),
         calibration: Some(Calibration {
-            by: "`calibrate fsr` ([pressure sensors](calibration.md#pressure-sensors))",
-            error: Spread::Times(0.92, 1.08),
+            by: "`calibrate fsr` ([pressure sensors](calibration.md#pressure-sensors)): slope of the line",
+            error: Spread::Times(1.04, 1.12),
             apart: true,
             demanded: false,
         }),
         source: "Interlink's guide: 15 to 25 % from part to part; repeatability 12 to 16 % (J. Sensors 6561901)",
         truth: |s| s.faults.pressure_gain.to_vec(),
-        assumed: |s| {
-            let p = &s.params;
-            [p.fsr_trim_1, p.fsr_trim_2, p.fsr_trim_3, p.fsr_trim_4]
-                .map(f64::from)
-                .to_vec()
-        },
+        assumed: |s| fsr_trims(s).to_vec(),
         learn: |s, n| {
             let p = &mut s.params;
             set(
@@ -650,7 +700,8 @@ pub const QUANTITIES: &[Quantity] = &[
     Quantity {
         key: "vehicle.vibration_m_s2",
         all: Some(Spread::Within(0.5, 4.0)),
-        source: "up to 15 m/s² of all rotors on three axes are normal (ArduPilot, measuring vibration; 3DR's Iris)",
+        source: "up to 15 m/s² of all rotors on three axes are normal (ArduPilot, measuring vibration; 3DR's Iris); `bringup`'s step \
+                 `vibration` passes all of these: its mark is at 6",
         truth: |s| vec![s.vehicle.vibration.once],
         ..FIXED
     },
@@ -671,23 +722,58 @@ pub const QUANTITIES: &[Quantity] = &[
     Quantity {
         key: "sensors.fsr_turn_on_n",
         each: Some(Spread::Within(0.1, 0.8)),
+        calibration: Some(Calibration {
+            by: "`calibrate fsr` ([pressure sensors](calibration.md#pressure-sensors)): the line at the grip pressure, \
+                 which it reads 0.5 to 4.6 % low",
+            error: Spread::Plus(-0.063, -0.007),
+            apart: true,
+            demanded: false,
+        }),
         source: "0.2 N (Interlink's data sheet), break force 20 to 100 g (guide)",
         truth: |s| s.sensors.pressure.turn_on.to_vec(),
-        assumed: |_| vec![0.0; 4],
+        assumed: |s| {
+            let arms = zeros(s).into_iter().zip(s.sensors.pressure.preload);
+            arms.map(|(zero, preload)| (preload * pipe_bend(s) - zero).max(0.0))
+                .collect()
+        },
+        learn: |s, n| {
+            let found = lines_through_the_grip(s, n);
+            let p = &mut s.params;
+            set(
+                [
+                    &mut p.fsr_zero_1,
+                    &mut p.fsr_zero_2,
+                    &mut p.fsr_zero_3,
+                    &mut p.fsr_zero_4,
+                ],
+                &found,
+            );
+        },
         ..FIXED
     },
     Quantity {
         key: "sensors.fsr_preload_n",
         each: Some(Spread::Within(0.0, 0.3)),
         source: "curvature, compliance and shear shift the calibration (Schofield, PMC5903557; Swanson, PMC6808001); number \
-                 assumed",
+                 assumed. An arm bent as on the pipe has it in the turn-on force that `calibrate fsr` finds",
         truth: |s| s.sensors.pressure.preload.to_vec(),
-        assumed: |_| vec![0.0; 4],
+        // In the same parameter as the turn-on force.
+        assumed: |s| {
+            let arms = zeros(s).into_iter().zip(s.sensors.pressure.turn_on);
+            arms.map(|(zero, turn_on)| ((zero + turn_on) / pipe_bend(s)).max(0.0))
+                .collect()
+        },
         ..FIXED
     },
     Quantity {
         key: "sensors.fsr_hysteresis_percent",
         all: Some(Spread::Within(5.0, 10.0)),
+        calibration: Some(Calibration {
+            by: "`calibrate fsr` shows it; the line is between rising and falling pressure",
+            error: Spread::Plus(0.6, 3.2),
+            apart: false,
+            demanded: false,
+        }),
         source: "10 % on average (Interlink's data sheet), Preisach-like (Paredes-Madrid 2018)",
         truth: |s| vec![s.sensors.pressure.hysteresis / PERCENT],
         assumed: |_| vec![FsrErrors::default().hysteresis / PERCENT],
@@ -873,8 +959,9 @@ pub const QUANTITIES: &[Quantity] = &[
         key: "world.pipe_friction",
         all: Some(Spread::Within(0.2, 0.8)),
         calibration: Some(Calibration {
-            by: "skin on the pipe, by a luggage scale ([parameters](parameters.md), `pipe_friction`)",
-            error: Spread::Times(0.85, 1.15),
+            by: "`sophie bringup`, friction, or `sophie fit-arm --friction`: pads on the pipe, by a luggage scale \
+                 ([friction](calibration.md#friction-on-the-pipe))",
+            error: Spread::Times(0.935, 1.065),
             apart: false,
             demanded: false,
         }),
@@ -1011,10 +1098,48 @@ fn mean(numbers: &[f64]) -> f64 {
     numbers.iter().sum::<f64>() / numbers.len().max(1) as f64
 }
 
-/// Thrust that the arms receive on the scenario's day over that of the nominal rotor in the standard's air.
+/// Mean of a motor's lags up and down over the one up; at least 1, as `sophie_fit::motor_lag` takes it.
+fn mean_over_rise(s: &Scenario) -> f64 {
+    let spin = s.vehicle.rotor.spin;
+    0.5 * (1.0 + spin.down.map_or(1.0, |down| (down / spin.up).max(1.0)))
+}
+
+/// Thrust at full drive that the arms receive on the scenario's day over that of the nominal rotor in the standard's air.
 fn received(s: &Scenario) -> f64 {
     let v = &s.vehicle;
-    s.world.air.density / STANDARD_DENSITY * mean(&v.rotor_thrust) * (1.0 - v.air.wash.loss)
+    v.rotor.air_ratio(s.world.air.density) * mean(&v.rotor_thrust) * (1.0 - v.air.wash.loss)
+}
+
+/// Tilt of an arm on the pipe, rad.
+fn pipe_bend(s: &Scenario) -> f64 {
+    2.0 * ARM_LENGTH / s.world.pipe_diameter
+}
+
+fn fsr_trims(s: &Scenario) -> [f64; 4] {
+    let p = &s.params;
+    [p.fsr_trim_1, p.fsr_trim_2, p.fsr_trim_3, p.fsr_trim_4].map(f64::from)
+}
+
+/// Zeros of the pressure sensors that the stack takes off, N.
+fn zeros(s: &Scenario) -> [f64; 4] {
+    let p = &s.params;
+    [p.fsr_zero_1, p.fsr_zero_2, p.fsr_zero_3, p.fsr_zero_4].map(|zero| f64::from(zero * p.fsr_area))
+}
+
+/// Zeros with which the trims in force read the grip pressure of sensors that begin at `turn_on`, N, as the parameter
+/// takes them, Pa.
+fn lines_through_the_grip(s: &Scenario, turn_on: &[f64]) -> Vec<f64> {
+    let (grip, area) = (f64::from(s.params.grip_pressure), f64::from(s.params.fsr_area));
+    let parts = s.faults.pressure_gain.into_iter().zip(s.sensors.pressure.preload);
+    let lines = parts.zip(fsr_trims(s)).zip(turn_on);
+    lines
+        .map(|(((gain, preload), trim), turn_on)| {
+            let true_zero = (preload * pipe_bend(s) - turn_on) / area;
+            let zero = gain * (grip + true_zero) / trim - grip;
+            let range = Params::row("fsr_zero_1").map_or((-650.0, 300.0), |row| (row.min, row.max));
+            zero.clamp(f64::from(range.0), f64::from(range.1))
+        })
+        .collect()
 }
 
 /// Elastic slope of the stack's arm without thrust over that of the nominal one.

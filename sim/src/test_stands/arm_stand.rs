@@ -391,6 +391,7 @@ impl ArmStand {
             let input = ArmInput {
                 close,
                 pressure: self.pressure,
+                turn_on: self.scale.turn_on(),
                 thrust: self.thrust_asked as f32,
                 tension: Some(self.order.tension),
                 tilt: self.tilt,

@@ -208,6 +208,7 @@ impl Bench {
             let input = ArmInput {
                 close: self.close,
                 pressure: self.sensed,
+                turn_on: self.scale.turn_on(),
                 thrust: self.asked as f32,
                 tension: Some(self.driven.tension),
                 tilt: self.measured_tilt,

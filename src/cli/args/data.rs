@@ -113,6 +113,9 @@ pub struct FitArgs {
     /// Distance of that tendon from the arm's neutral line, 5 to 100 mm.
     #[arg(long, value_name = "MM", value_parser = lever, default_value = "15", allow_negative_numbers = true)]
     pub lever: f64,
+    /// Pulls of the skin along the pipe: a third table, for pipe_friction.
+    #[arg(long, value_name = "FRICTION.csv")]
+    pub friction: Option<PathBuf>,
     /// Directory for fit.html, fit.json, arm.toml and arm.console.
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
@@ -133,6 +136,29 @@ pub struct FitTendonArgs {
     /// Radius of the reel, 5 to 100 mm.
     #[arg(long, value_name = "MM", value_parser = lever, default_value = "15", allow_negative_numbers = true)]
     pub reel: f64,
+}
+
+/// Options of `fit-thrust`.
+#[derive(Args, Debug)]
+pub struct FitThrustArgs {
+    /// Readings of the scale.
+    #[arg(value_name = "READINGS.csv")]
+    pub readings: PathBuf,
+    /// Voltage of thrust_max, 6 to 52 V: the parameter battery_nominal.
+    #[arg(long, value_name = "V", value_parser = nominal, default_value = "14.8", allow_negative_numbers = true)]
+    pub nominal: f64,
+}
+
+/// Options of `fit-lag`.
+#[derive(Args, Debug)]
+pub struct FitLagArgs {
+    /// Recording of the steps.
+    #[arg(value_name = "SOUND.wav")]
+    pub sound: PathBuf,
+}
+
+fn nominal(text: &str) -> Result<f64, String> {
+    within(text, &(6.0..=52.0), " V")
 }
 
 fn lever(text: &str) -> Result<f64, String> {

@@ -8,7 +8,7 @@ use sophie_terminal::console;
 use crate::cli::refuse;
 
 /// The subcommands, as listed in messages.
-const VERBS: [&str; 11] = [
+const VERBS: &[&str] = &[
     "fly",
     "check",
     "bringup",
@@ -17,6 +17,8 @@ const VERBS: [&str; 11] = [
     "study",
     "paper",
     "fit-arm",
+    "fit-thrust",
+    "fit-lag",
     "fit-tendon",
     "timing",
     "recording",
@@ -64,7 +66,8 @@ impl Message {
             let allowed = match std::env::args().nth(1).as_deref() {
                 Some("paper" | "capture") => "no file",
                 Some("study") => "one study and no file",
-                Some("fit-arm" | "fit-tendon") => "one CSV file",
+                Some("fit-arm" | "fit-thrust" | "fit-tendon") => "one CSV file",
+                Some("fit-lag") => "one WAV file",
                 Some("recording") => "one recording",
                 Some("timing") => "one log file",
                 Some("params") => "one parameter file",

@@ -1,4 +1,4 @@
-//! Actuator tests: drives one motor or one servo at a time, within the limits of the commander.
+//! Actuator tests: drives motors or one servo, within the limits of the commander.
 //!
 //! The console renews an order periodically. The commander ends it independently of the console: at its time limit, on
 //! its own conditions, or when renewals stop.
@@ -13,6 +13,7 @@ use sophie_control::pilot::actuator_test::{
     ActuatorTest, ActuatorTestRefusal, ActuatorTestRequest, ActuatorTestState, PULSE_MAX_US, PULSE_MIN_US,
     Place, SPIN_DRIVE, SPIN_DRIVE_MAX, SPIN_DRIVE_MIN, SPIN_TIME, Spin,
 };
+use sophie_control::pilot::static_thrust_test::{DRIVE_MAX, DRIVE_MIN, Rotors, STEP_MAX, StaticThrustTest};
 
 use super::Console;
 use crate::deadline::FixedRate;
@@ -42,16 +43,52 @@ pub(super) enum End {
 
 impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, C> {
     pub(super) async fn propellers_off(&mut self) {
-        match self.order(ActuatorTest::PropellersOff, format_args!("")).await {
-            End::Done | End::Key => {
-                self.out
-                    .line(format_args!(
-                        "propellers off: motors may be tried until the next arming or restart"
-                    ))
-                    .await;
-            }
+        let confirmed = "propellers off: motors may be tried until the next arming or restart";
+        self.confirm(ActuatorTest::PropellersOff, confirmed).await;
+    }
+
+    pub(super) async fn tied_down(&mut self) {
+        let confirmed = "tied down, propellers on: 'thrust' runs them until the next arming or restart";
+        self.confirm(ActuatorTest::TiedDown, confirmed).await;
+    }
+
+    async fn confirm(&mut self, order: ActuatorTest, confirmed: &str) {
+        match self.order(order, format_args!("")).await {
+            End::Done | End::Key => self.out.line(format_args!("{confirmed}")).await,
             end => self.not_begun(end).await,
         }
+    }
+
+    /// Runs rotor `which`, or `all`, with propellers on at `percent` of full drive; with `to` in a train of steps between
+    /// both.
+    pub(super) async fn thrust(&mut self, which: &str, percent: &str, to: Option<&str>) {
+        let rotors = if which == "all" {
+            Rotors::All
+        } else {
+            match self.one_of_four("rotor", which).await {
+                Some(rotor) => Rotors::One(rotor),
+                None => return,
+            }
+        };
+        let drive = |text| decimal::parse(text).map(|percent| percent / 100.0);
+        let test = match (drive(percent), to.map(drive)) {
+            (Some(drive), None) => Some(StaticThrustTest::steady(rotors, drive)),
+            (Some(drive), Some(Some(to))) => Some(StaticThrustTest::train(rotors, drive, to)),
+            _ => None,
+        };
+        let Some(test) = test.filter(StaticThrustTest::is_allowed) else {
+            let [least, most, step] = [DRIVE_MIN, DRIVE_MAX, STEP_MAX].map(|drive| Decimal(drive * 100.0));
+            return self
+                .out
+                .line(format_args!(
+                    "thrust takes {least:.0} to {most:.0} %, and steps of at most {step:.0} %"
+                ))
+                .await;
+        };
+        let seconds = Decimal(test.longest());
+        let begun = format_args!("rotor {which}: {seconds:.0} s; any key stops it");
+        let end = self.order(ActuatorTest::StaticThrust(test), begun).await;
+        self.say_end(format_args!("rotor {which} stopped"), end).await;
     }
 
     /// Spins motor `number` at `percent` of full drive for two seconds.

@@ -29,15 +29,15 @@ const VERBS: [(&str, &str); 11] = [
     ("mounting SIDE", "of the inertial sensor: belly, nose, right down"),
     ("battery VOLTS", "its divider, by a meter"),
     ("servo N R F", "marks: pulses at release and full, us"),
-    ("fsr N empty", "pressure sensor N without a weight"),
-    ("fsr N NEWTON", "and with one: zero and gain"),
+    ("fsr N empty", "pressure sensor N, pad empty: first and last"),
+    ("fsr N NEWTON", "between: three loads up, two down"),
     ("arm N straight", "tilt sensor of arm N, arm held straight"),
     ("arm N up", "and its tip bent up: zero and sign"),
     ("flow near|far", "turned for 8 s, 0.5 m, then 1.5 m over a floor"),
 ];
 
-/// The step that a verb requests; `None` for an unknown verb.
-fn step(what: &str, arguments: [Option<&str>; 3]) -> Option<Step> {
+/// The step that a verb requests, with the number of the step that comes `next` for a part; `None` for an unknown verb.
+fn step(what: &str, arguments: [Option<&str>; 3], next: impl Fn(Calibration, usize) -> u8) -> Option<Step> {
     let either = |names: &[&str]| {
         let [name, None, _] = arguments else {
             return None;
@@ -58,9 +58,21 @@ fn step(what: &str, arguments: [Option<&str>; 3]) -> Option<Step> {
             let pulses = [number(release)?, number(full)?];
             Step::new(Calibration::Servo, part(servo)?, 1, pulses)
         }
-        ("fsr", [sensor, Some("empty"), None]) => Step::new(Calibration::Fsr, part(sensor)?, 1, [0.0; 2]),
-        ("fsr", [sensor, weight, None]) => {
-            Step::new(Calibration::Fsr, part(sensor)?, 2, [number(weight)?, 0.0])
+        ("fsr", [sensor, load, None]) => {
+            let part: u32 = part(sensor)?;
+            let next = u32::from(next(Calibration::Fsr, part.checked_sub(1)? as usize));
+            let last = u32::from(Calibration::Fsr.steps());
+            match load {
+                Some("empty") if next == last => Step::new(Calibration::Fsr, part, last, [0.0; 2]),
+                Some("empty") => Step::new(Calibration::Fsr, part, 1, [0.0; 2]),
+                // After the last load it repeats that one.
+                load => Step::new(
+                    Calibration::Fsr,
+                    part,
+                    next.clamp(2, last - 1),
+                    [number(load)?, 0.0],
+                ),
+            }
         }
         ("arm", [arm, Some("straight"), None]) => Step::new(Calibration::Arm, part(arm)?, 1, [0.0; 2]),
         ("arm", [arm, Some("up"), None]) => Step::new(Calibration::Arm, part(arm)?, 2, [0.0; 2]),
@@ -74,13 +86,15 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         if let Err(why) = self.stopped() {
             return self.refuse("not calibrated", why).await;
         }
-        let Some(step) = step(what, arguments) else {
+        let now = Instant::now().as_micros();
+        let next = |calibration, part| self.procedure.next(calibration, part, now);
+        let Some(step) = step(what, arguments, next) else {
             for (verb, text) in VERBS {
                 self.out.line(format_args!("calibrate {verb:14} {text}")).await;
             }
             return;
         };
-        if self.procedure.begin(step, Instant::now().as_micros()).is_err() {
+        if self.procedure.begin(step, now).is_err() {
             let first = "not measured: the step before it first, within ten minutes";
             return self.out.line(format_args!("{first}")).await;
         }
@@ -114,11 +128,19 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
                     ))
                     .await;
             }
-            (Ok(Outcome::Done(changes)), _) => {
+            (Ok(Outcome::Done(changes)), calibration) => {
                 for (name, value) in changes.into_iter().flatten() {
                     if let Some(row) = Params::row(name) {
                         self.put(row, value).await;
                     }
+                }
+                if calibration == Calibration::Fsr {
+                    let grip = Decimal(self.links.params.grip_pressure);
+                    self.out
+                        .line(format_args!(
+                            "within {x:.0} Pa at {grip} Pa; hysteresis {y:.1} %; {z:.0} Pa at the end, empty"
+                        ))
+                        .await;
                 }
             }
             (Err(unfit), _) => self.out.line(format_args!("not taken: {unfit}")).await,
@@ -135,7 +157,9 @@ mod tests {
         let of = |text: &str| {
             let mut words = text.split(' ');
             let what = words.next().unwrap();
-            step(what, [words.next(), words.next(), words.next()])
+            step(what, [words.next(), words.next(), words.next()], |_, part| {
+                if part == 3 { 7 } else { part as u8 + 3 }
+            })
         };
         for (text, calibration, number) in [
             ("gyro", Calibration::Gyro, 1),
@@ -145,7 +169,10 @@ mod tests {
             ("battery 15.2", Calibration::Battery, 1),
             ("servo 2 900 2100", Calibration::Servo, 1),
             ("fsr 3 empty", Calibration::Fsr, 1),
-            ("fsr 3 1.3", Calibration::Fsr, 2),
+            ("fsr 3 1.3", Calibration::Fsr, 5),
+            // The last step of sensor 4 is the empty pad: a load is that before.
+            ("fsr 4 1.3", Calibration::Fsr, 6),
+            ("fsr 4 empty", Calibration::Fsr, 7),
             ("arm 4 straight", Calibration::Arm, 1),
             ("arm 4 up", Calibration::Arm, 2),
             ("flow far", Calibration::Flow, 2),
@@ -164,6 +191,7 @@ mod tests {
             "servo 5 900 2100",
             "servo 1 900",
             "fsr 1",
+            "fsr 0 1",
             "fsr 1 -1",
             "arm 1",
             "arm 0 up",

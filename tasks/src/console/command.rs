@@ -29,6 +29,8 @@ pub(super) enum Command<'a> {
     Mavlink,
     MavlinkKey(&'a str),
     PropellersOff,
+    TiedDown,
+    Thrust(&'a str, &'a str, Option<&'a str>),
     Motor(&'a str, Option<&'a str>),
     MotorPulse(&'a str, &'a str),
     Servo {
@@ -39,7 +41,7 @@ pub(super) enum Command<'a> {
 }
 
 /// Name with arguments, and description.
-pub(super) const HELP: [(&str, &str); 23] = [
+pub(super) const HELP: [(&str, &str); 26] = [
     ("help", "this list"),
     ("status", "mode, what forbids arming, battery, receiver"),
     (
@@ -72,6 +74,12 @@ pub(super) const HELP: [(&str, &str); 23] = [
         "motor N US us",
         "the same by a pulse, to find the one that turns it",
     ),
+    (
+        "tied down",
+        "says that the vehicle is, propellers on: thrust may be run",
+    ),
+    ("thrust N %", "runs rotor N, or all, for 5 s; a key stops it"),
+    ("thrust N % to %", "five steps up and down, to time the motors"),
     (
         "servo N TO [AT]",
         "TO is release, pulse (AT us) or angle (AT deg); a key ends it",
@@ -141,6 +149,11 @@ pub(super) fn parse(line: &str) -> Option<Result<Command<'_>, Misunderstood<'_>>
         ("mavlink", [None, ..]) => Command::Mavlink,
         ("mavlink", [Some("key"), Some(key), None, _]) => Command::MavlinkKey(key),
         ("propellers", [Some("off"), None, ..]) => Command::PropellersOff,
+        ("tied", [Some("down"), None, ..]) => Command::TiedDown,
+        ("thrust", [Some(which), Some(percent), None, _]) => Command::Thrust(which, percent, None),
+        ("thrust", [Some(which), Some(percent), Some("to"), Some(to)]) if words.next().is_none() => {
+            Command::Thrust(which, percent, Some(to))
+        }
         ("motor", [Some(number), percent, None, _]) => Command::Motor(number, percent),
         ("motor", [Some(number), Some(pulse), Some("us"), None]) => Command::MotorPulse(number, pulse),
         ("servo", [Some(number), Some(to), at, None]) => Command::Servo { number, to, at },

@@ -6,6 +6,7 @@ use sophie_control::mode::{Mode, Reason};
 use super::Console;
 use crate::schedule::TaskId;
 use sophie_control::maths::decimal::Decimal;
+use sophie_control::vibration::MARK;
 use sophie_ports::chip::Chip;
 use sophie_ports::serial::{SerialInput, SerialOutput};
 use sophie_ports::storage::Storage;
@@ -66,6 +67,15 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
                     .line(format_args!("receiver silent since the start"))
                     .await
             }
+        }
+        if let Some(vibration) = self.links.vibration.fresh() {
+            let [x, y, z] = vibration.rms.to_array().map(Decimal);
+            let (most, clipped) = (Decimal(MARK), vibration.clipped);
+            self.out
+                .line(format_args!(
+                    "vibration {x:.1} {y:.1} {z:.1} m/s2 ({most} at most in flight), {clipped} readings clipped"
+                ))
+                .await;
         }
         let up = Instant::now().as_secs();
         let (hours, minutes, seconds) = (up / 3600, up / 60 % 60, up % 60);

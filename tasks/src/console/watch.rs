@@ -37,7 +37,7 @@ struct Group {
     read: fn(&Links) -> Row,
 }
 
-const GROUPS: [Group; 10] = [
+const GROUPS: [Group; 11] = [
     Group {
         name: "sticks",
         what: "sticks -1 to 1, throttle 0 to 1, switches by their position",
@@ -51,6 +51,13 @@ const GROUPS: [Group; 10] = [
         columns: "    roll   pitch     yaw       p       q       r      ax      ay      az",
         places: 2,
         read: imu,
+    },
+    Group {
+        name: "vibe",
+        what: "vibration above 5 Hz, m/s2 RMS, readings at full scale",
+        columns: "       x       y       z clipped",
+        places: 1,
+        read: vibration,
     },
     Group {
         name: "arms",
@@ -141,6 +148,20 @@ fn imu(links: &Links) -> Row {
         .chain(a.rate.to_array())
         .map(to_deg);
     angles.chain(a.accel.to_array()).map(Some).collect()
+}
+
+fn vibration(links: &Links) -> Row {
+    let Some(vibration) = links.vibration.fresh() else {
+        return silent(4);
+    };
+    let clipped = vibration.clipped as f32;
+    vibration
+        .rms
+        .to_array()
+        .into_iter()
+        .chain([clipped])
+        .map(Some)
+        .collect()
 }
 
 fn arms(links: &Links) -> Row {

@@ -49,6 +49,9 @@ pub async fn run(links: &Links, mut port: impl Imu) -> ! {
         if !sensing.take(released.as_micros(), batch.as_ref(), &mut sample) {
             continue;
         }
+        if let [reading, ..] = batch.as_ref() {
+            links.raw_forces.push(reading.accel);
+        }
         links.imu.send(released, sample);
         note_run(links, TaskId::Imu, released, started, DEADLINE);
     }

@@ -526,6 +526,7 @@ fn picture(links: &Links, reels: &PerArm<Reel>) -> Vehicle {
         grip: links.grip.fresh(),
         readings: links.readings(),
         air: links.air_pressure.fresh(),
+        vibration: links.vibration.fresh(),
         load: load(links),
         answers: answers(links),
         ..Vehicle::default()

@@ -26,6 +26,7 @@ use crate::links::messages::Contact;
 use crate::links::tendon_order::{TendonForce, TendonForces, TendonOrder};
 use crate::schedule::TaskId;
 use sophie_control::gripper::clamp_command::ClampCommand;
+use sophie_control::gripper::contact_pressure::SensorLine;
 use sophie_control::gripper::grip::GripState;
 
 /// Runs the gripper; never returns.
@@ -111,6 +112,9 @@ fn inputs(links: &Links, close: PerArm<bool>, contact: Option<Stamped<Contact>>)
         close,
         ..ArmInput::default()
     });
+    for (arm, input) in inputs.iter_mut().enumerate() {
+        input.turn_on = SensorLine::from_params(&links.params, arm).turn_on();
+    }
     if let Some(Stamped { value: contact, .. }) = contact {
         for (input, pressure) in inputs.iter_mut().zip(contact.arms) {
             input.pressure = pressure.map_or(Pressure::Faulty, Pressure::Known);

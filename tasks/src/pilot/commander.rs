@@ -5,8 +5,10 @@
 use embassy_time::{Duration, Instant};
 use sophie_control::attitude::motion::Motion;
 use sophie_control::gripper::tendon::ForceLimit;
+use sophie_control::maths::scalar::GRAVITY;
 use sophie_control::mode::{Inputs, Mode, ModeLogic, Outputs};
 use sophie_control::navigation::flow_range::FlowRangeLimit;
+use sophie_control::vibration::{VibrationMeter, VibrationWatch};
 
 use crate::deadline::FixedRate;
 use crate::links::Links;
@@ -29,6 +31,7 @@ pub async fn run(links: &Links) -> ! {
     };
     let mut late = Lateness::new();
     let mut flow_limit = FlowLimit::default();
+    let mut vibration = Shaking::new(links);
     let mut rate = FixedRate::of(links, TaskId::Commander);
     loop {
         let tick = rate.next().await;
@@ -49,7 +52,8 @@ pub async fn run(links: &Links) -> ! {
         links.actuator_test_answer.send(tick.started, actuator_test);
         links.remote_answer.send(tick.started, remote);
         let limit = flow_limit.step(links, mode, tick.started);
-        let warning = warning(links, mode, limit);
+        let vibrates = vibration.step(links, tick.started);
+        let warning = warning(links, mode, limit, vibrates);
         links.status.send(
             tick.started,
             Status {
@@ -63,7 +67,7 @@ pub async fn run(links: &Links) -> ! {
 }
 
 /// Warning that does not affect the modes.
-fn warning(links: &Links, mode: Mode, limit: Option<FlowRangeLimit>) -> &'static str {
+fn warning(links: &Links, mode: Mode, limit: Option<FlowRangeLimit>, vibrates: bool) -> &'static str {
     let started = Warning::Restarted(links.start.cause);
     let servos = Warning::Servos(links.servo_supply());
     let clipped = links
@@ -84,6 +88,8 @@ fn warning(links: &Links, mode: Mode, limit: Option<FlowRangeLimit>) -> &'static
         Warning::Position(fault).text()
     } else if let Some(limit) = limit {
         Warning::Limit(limit).text()
+    } else if vibrates {
+        Warning::Vibrates.text()
     } else if mode == Mode::Disarmed && ForceLimit::from_params(&links.params).capped_by_servo {
         Warning::ServoWeak.text()
     } else if mode == Mode::Disarmed && links.params.infill < INFILL_FLOWN {
@@ -119,6 +125,43 @@ fn collect(links: &Links, late: bool) -> Inputs {
         remote: links.remote.fresh(),
         position: links.position.fresh(),
         target: links.pipe_target.fresh(),
+    }
+}
+
+/// Lift of rotors that carry the vehicle, share of its weight: they idle at less.
+const FLIES: f32 = 0.5;
+
+/// Vibration at the inertial sensor.
+struct Shaking {
+    meter: VibrationMeter,
+    watch: VibrationWatch,
+    /// Raw readings taken.
+    seen: u32,
+}
+
+impl Shaking {
+    fn new(links: &Links) -> Self {
+        Self {
+            meter: VibrationMeter::new(&links.params),
+            watch: VibrationWatch::default(),
+            seen: 0,
+        }
+    }
+
+    /// Takes the readings since the last step and sends each second's vibration; true while it is beyond the mark.
+    fn step(&mut self, links: &Links, now: Instant) -> bool {
+        let meter = &mut self.meter;
+        let mut second = None;
+        links.raw_forces.take(&mut self.seen, |force| {
+            second = meter.take(force).or(second);
+        });
+        let least = FLIES * links.params.mass * GRAVITY;
+        let flies = links.mix.fresh_to(now, |mix| mix.lift() > least);
+        self.watch.step(flies.unwrap_or(false), second.as_ref());
+        if let Some(second) = second {
+            links.vibration.send(now, second);
+        }
+        self.watch.strong()
     }
 }
 

@@ -14,6 +14,8 @@ use sophie_ports::retained::StartCause;
 pub enum Warning {
     /// The accelerometer is at its full scale.
     AccelClips,
+    /// The vehicle vibrates, or did when last it flew, more than its attitude is tested for.
+    Vibrates,
     /// Less than a quarter of the stack is unused; an overflow stops the motors.
     Stack,
     /// An arm's tilt is beyond its model's correction.
@@ -34,8 +36,9 @@ pub enum Warning {
 
 impl Warning {
     /// Every warning.
-    pub const ALL: [Self; 26] = [
+    pub const ALL: [Self; 27] = [
         Self::AccelClips,
+        Self::Vibrates,
         Self::Stack,
         Self::ArmTilt,
         Self::Servos(ServoSupply::NearEnd),
@@ -67,6 +70,7 @@ impl Warning {
     pub const fn text(self) -> &'static str {
         match self {
             Self::AccelClips => "vibration: accelerometer clips",
+            Self::Vibrates => "vibration: balance the propellers",
             Self::Stack => "stack nearly full",
             Self::ArmTilt => "arm tilt beyond its model",
             Self::Servos(ServoSupply::NearEnd) => "servo battery near its end",

@@ -9,6 +9,7 @@ use sophie_control::allocation::wrench::{Configuration, PerArm};
 use sophie_control::params::{Params, ServoMarks};
 use sophie_control::pilot::actuator_test::{ActuatorTest, ActuatorTestRequest, PLACE_TIME, Spin};
 use sophie_control::pilot::rc::Sticks;
+use sophie_control::pilot::static_thrust_test::{Rotors, StaticThrustTest};
 use sophie_fakes::{Answer, FakeAnalog, FakeArms, FakeImu, FakeLine, FakeMotors, FakeServos};
 use sophie_ports::receiver::RcState;
 use sophie_ports::sensors::AnalogFrame;
@@ -253,6 +254,115 @@ fn a_console_or_a_sensor_that_dies_stops_a_motor() {
     assert!((400..=520).contains(&table.turned[0]), "{:?}", table.turned);
 }
 
+const TIED: &str = "tied down, propellers on: 'thrust' runs them until the next arming or restart";
+
+#[test]
+fn rotors_run_at_their_drive_once_the_vehicle_is_tied_down() {
+    let mut table = Table::set();
+    let refused = "refused: say 'tied down' first, once it is";
+    assert_eq!(table.says("thrust all 60", 3000), [refused]);
+    table.says("propellers off", 200);
+    assert_eq!(table.says("thrust all 60", 3000), [refused]);
+    assert_eq!(table.turned, [0; 4]);
+    assert_eq!(table.says("tied down", 200), [TIED]);
+    let spin = "refused: say 'propellers off' first, once they are";
+    assert_eq!(table.says("motor 1", 3000), [spin]);
+    for (typed, name, rotors, seconds, most) in [
+        ("thrust all 60", "all", [true; 4], 6.2, 0.6),
+        ("thrust 3 100", "3", [false, false, true, false], 7.0, 1.0),
+        ("thrust all 30 to 60", "all", [true; 4], 11.6, 0.6),
+    ] {
+        let said = table.says(typed, 13_000);
+        assert_eq!(
+            said,
+            [
+                format!("rotor {name}: {seconds:.0} s; any key stops it"),
+                format!("rotor {name} stopped")
+            ]
+        );
+        for ((turned, largest), runs) in table.turned.into_iter().zip(table.largest).zip(rotors) {
+            if runs {
+                let expected = (seconds * 1000.0) as u32;
+                assert!(turned.abs_diff(expected) <= 40, "{typed}: {turned} ms");
+                assert!((largest - most).abs() < 1e-6, "{typed}: {largest}");
+            } else {
+                assert_eq!((turned, largest), (0, 0.0), "{typed}");
+            }
+        }
+    }
+    let takes = "thrust takes 5 to 100 %, and steps of at most 50 %";
+    for (typed, answer) in [
+        ("thrust all 4", takes),
+        ("thrust all 101", takes),
+        ("thrust 1 full", takes),
+        ("thrust all 20 to 80", takes),
+        (
+            "thrust 5 60",
+            "no rotor '5'; 1 front-left, 2 rear-left, 3 front-right, 4 rear-right",
+        ),
+        ("thrust all", "say 'thrust N %'"),
+        ("thrust all 30 to", "say 'thrust N %'"),
+    ] {
+        assert_eq!(table.says(typed, 500), [answer]);
+        assert_eq!(table.turned, [0; 4], "{typed}");
+    }
+}
+
+#[test]
+fn a_key_the_arm_switch_a_sensor_a_battery_and_a_silent_console_stop_the_rotors() {
+    let mut table = Table::set();
+    table.says("tied down", 200);
+    table.begins("thrust all 100");
+    table.run(1600);
+    table.line.put(b"\x03");
+    assert_eq!(table.goes_on(400), ["rotor all stopped by a key"]);
+    assert!((1500..=1680).contains(&table.turned[0]), "{} ms", table.turned[0]);
+
+    table.sticks.set(Some(Sticks::default()));
+    table.begins("thrust all 100");
+    table.run(600);
+    table.sticks.set(Some(Sticks {
+        arm_switch: true,
+        ..Sticks::default()
+    }));
+    let said = table.goes_on(400);
+    assert_eq!(said, ["rotor all stopped: arm switch on: turn it off first"]);
+    assert!((500..=640).contains(&table.turned[0]), "{} ms", table.turned[0]);
+    table.sticks.set(Some(Sticks::default()));
+    table.run(100);
+
+    // An order that is not renewed.
+    let test = StaticThrustTest::steady(Rotors::All, 0.5);
+    let order = ActuatorTest::StaticThrust(test);
+    table.begins("");
+    let request = ActuatorTestRequest { number: 1000, order };
+    table.rig.links.actuator_test.send(Instant::now(), request);
+    table.run(2000);
+    assert!((100..=170).contains(&table.turned[2]), "{:?}", table.turned);
+
+    // 12 V at the plug, as the filter follows it.
+    table.begins("thrust all 100");
+    table.run(600);
+    table.analog.frame.set(AnalogFrame {
+        battery_voltage: 1200,
+        ..UNLOADED
+    });
+    let said = table.goes_on(1000);
+    assert_eq!(said, ["rotor all stopped: battery critical or not measured"]);
+    table.analog.frame.set(UNLOADED);
+    table.run(1000);
+
+    table.begins("thrust all 100");
+    table.run(600);
+    table.imu.0.answer.set(Answer::Hangs);
+    let said = table.goes_on(1000);
+    assert_eq!(
+        said[0],
+        "rotor all stopped: inertial sensor silent: motors wait for it"
+    );
+    assert!((500..=620).contains(&table.turned[0]), "{:?}", table.turned);
+}
+
 /// 550 to 2450 µs are 270 degrees: the pulse at `angle` degrees, µs.
 fn pulse(angle: f32) -> f32 {
     550.0 + 1900.0 * angle.to_radians() / 4.71
@@ -404,8 +514,8 @@ fn numbers_are_watched_until_a_key() {
         table.line.put(b"q");
         table.run(300);
     }
-    assert_eq!(table.says("watch", 100).len(), 10);
-    assert_eq!(table.says("watch nothing", 100).len(), 10);
+    assert_eq!(table.says("watch", 100).len(), 11);
+    assert_eq!(table.says("watch nothing", 100).len(), 11);
 }
 
 #[test]

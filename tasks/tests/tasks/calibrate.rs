@@ -279,28 +279,58 @@ fn a_dead_zone_wider_than_the_bench_s_drive_is_jumped_over() {
     assert!((command - 110.0 / 800.0).abs() < 1e-5, "{command}");
 }
 
+/// Counts of a sensor of 10 kOhm that conducts as under `pascal` Pa on 1444 mm2.
+fn counts(pascal: f32) -> u16 {
+    let load = pascal * 0.001_444 * 1e-4 * 1e4;
+    (4095.0 * load / (1.0 + load)).round() as u16
+}
+
 #[test]
-fn a_pressure_sensor_is_fitted_by_a_known_weight() {
+fn a_pressure_sensor_is_fitted_by_known_loads_up_and_down() {
     let mut table = Table::set();
-    let mut frame = UNLOADED;
-    // 100 counts are 17.3 Pa, 2047 counts 692.5 Pa: 675.2 Pa for 1.3 N on 1444 mm2, 900.3 Pa.
-    frame.fsr[2] = 100;
-    table.analog.frame.set(frame);
-    table.run(500);
+    let mut said = Vec::new();
+    // It begins at 200 Pa, has 0.8 of the conductance and 5 % of hysteresis.
+    let loads = [
+        ("0.94", 0.95),
+        ("1.37", 0.95),
+        ("1.95", 0.95),
+        ("1.37", 1.05),
+        ("0.94", 1.05),
+    ];
     assert_eq!(table.calibrates("fsr 3 empty"), [TAKEN]);
-    frame.fsr[2] = 2047;
-    table.analog.frame.set(frame);
+    for (newton, side) in loads {
+        let pascal: f32 = newton.parse::<f32>().unwrap() / 0.001_444;
+        let mut frame = UNLOADED;
+        frame.fsr[2] = counts(0.8 * (side * pascal - 200.0));
+        table.analog.frame.set(frame);
+        table.run(500);
+        said = table.calibrates(&format!("fsr 3 {newton}"));
+        assert_eq!(said, [TAKEN], "{newton}");
+    }
+    table.analog.frame.set(UNLOADED);
     table.run(500);
-    let said = table.calibrates("fsr 3 1.3");
+    said.clone_from(&table.calibrates("fsr 3 empty"));
     assert!(
-        said[0].starts_with("fsr_trim_3 1 -> 0.75") && said[1].starts_with("fsr_zero_3 0 -> 23."),
+        said[0].starts_with("fsr_trim_3 1 -> ") && said[1].starts_with("fsr_zero_3 0 -> -"),
         "{said:?}"
     );
-    // Without the weight.
-    table.calibrates("fsr 1 empty");
+    assert!((value(&said[0]) - 0.8).abs() < 0.004, "{said:?}");
+    assert!((value(&said[1]) + 200.0).abs() < 4.0, "{said:?}");
+    assert!(
+        said[2].starts_with("within 4")
+            && said[2].ends_with(" Pa at 950 Pa; hysteresis 5.0 %; 0 Pa at the end, empty"),
+        "{said:?}"
+    );
+    // A load without the empty pad before, and one that is not put on.
     assert_eq!(
-        table.calibrates("fsr 1 1.3"),
-        ["not taken: conductance over fsr_gain is 0.00; 0.20 to 5.00 allowed"]
+        table.says("calibrate fsr 1 0.94", 100),
+        ["not measured: the step before it first, within ten minutes"]
+    );
+    table.calibrates("fsr 1 empty");
+    let said = table.calibrates("fsr 1 0.94");
+    assert!(
+        said[0].starts_with("not taken: reading of the load is 0.00; 32."),
+        "{said:?}"
     );
 }
 

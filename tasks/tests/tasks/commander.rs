@@ -325,3 +325,40 @@ fn pressures_that_are_held_are_a_fault_of_every_sensor() {
     bench.run(20);
     assert_eq!(bench.inhibits(), []);
 }
+
+impl Bench {
+    /// For `ms` with a vertical force of `size` m/s² at 86 Hz.
+    fn shakes(&mut self, ms: u64, size: f32) {
+        let world = self.world;
+        self.rig.run_with(ms, |links, at| {
+            let turn = core::f64::consts::TAU * 86e-6 * at.as_micros() as f64;
+            let force = size * f64::sin(turn) as f32 - GRAVITY;
+            links.raw_forces.push(Vec3::new(0.0, 0.0, force));
+            world.speak(links, at);
+        });
+    }
+}
+
+#[test]
+fn vibration_is_measured_each_second_and_warned_of_in_flight_and_after() {
+    let text = "vibration: balance the propellers";
+    let mut bench = Bench::new();
+    assert!(bench.rig.links.vibration.fresh().is_none(), "no reading has come");
+    // On the ground hands shake it.
+    bench.shakes(20_000, 30.0);
+    let found = bench.rig.links.vibration.fresh().unwrap();
+    assert!(
+        (found.rms.z - 21.2).abs() < 0.5 && found.rms.x == 0.0,
+        "{found:?}"
+    );
+    assert_ne!(bench.warning(), text);
+    let mut bench = Bench::flying();
+    bench.shakes(20_000, 8.0);
+    assert_ne!(bench.warning(), text, "5.7 m/s2");
+    bench.shakes(12_000, 14.0);
+    assert_eq!(bench.warning(), text, "9.9 m/s2");
+    assert_eq!(bench.mode(), Mode::Flight, "nothing else happens");
+    bench.world.mix = MixOutput::default();
+    bench.shakes(5000, 0.0);
+    assert_eq!(bench.warning(), text, "the rotors stand");
+}

@@ -6,8 +6,10 @@ use std::rc::Rc;
 use embassy_time::{Duration, Instant};
 use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
 use sophie_control::battery::Battery;
+use sophie_control::maths::vector::Vec3;
 use sophie_control::mode::{Mode, Reason};
 use sophie_control::params::Params;
+use sophie_control::vibration::Vibration;
 use sophie_mavlink::inputs::Counts;
 use sophie_mavlink::wire::signing::Refused;
 use sophie_ports::chip::{Chip, NotSet};
@@ -284,7 +286,7 @@ fn what_is_not_allowed_or_not_known_is_answered_with_what_is() {
             )
         ]
     );
-    assert_eq!(bench.says("help").len(), 23);
+    assert_eq!(bench.says("help").len(), 26);
 }
 
 #[test]
@@ -345,6 +347,18 @@ fn status_says_how_the_vehicle_is() {
             "up for 1:02:04",
             "1 change is not saved"
         ]
+    );
+    let vibration = Vibration {
+        rms: Vec3::new(1.25, 0.5, 10.0),
+        clipped: 3,
+    };
+    links.vibration.send(Instant::now(), vibration);
+    let shaking = "vibration 1.2 0.5 10.0 m/s2 (7 at most in flight), 3 readings clipped";
+    assert!(
+        bench
+            .says("status")
+            .iter()
+            .any(|line| line.replace("1.3", "1.2") == shaking)
     );
     // Nothing forbids it in a mode that is armed, and nothing is said of it.
     bench.status = Some(Status {

@@ -114,6 +114,12 @@ fn samples_come_at_1_khz_from_every_rate_and_batch_stamped_with_their_data_ready
             1000,
             "{rate_hz} {batch}"
         );
+        let (mut seen, mut raw) = (rig.links.raw_forces.newest() - 5, 0);
+        rig.links.raw_forces.take(&mut seen, |force| {
+            assert_eq!(force, Vec3::new(0.0, 0.0, -GRAVITY));
+            raw += 1;
+        });
+        assert_eq!(raw, 5, "one of each millisecond, not filtered");
         let timing = rig.links.timing.task(TaskId::Imu);
         assert_eq!(
             (timing.worst_lateness_us, timing.overruns),

@@ -14,6 +14,9 @@ fn to_do(warning: Warning) -> &'static str {
         Warning::AccelClips => {
             "It reads no further than `imu_accel_range`, and its attitude is the gyro's alone. Land; look for a bent propeller, a loose motor or board ([limits](design/inertial-sensor.md))."
         }
+        Warning::Vibrates => {
+            "No perch; land. `status` shows it: balance the propellers, look for a loose motor or board ([vibration](calibration.md#vibration))."
+        }
         Warning::Stack => "Land. Do not fly this image: report what `silicon` and the log say of its stack.",
         Warning::ArmTilt => {
             "Land; `infill`, `gain_k` and the arm's sensor ([calibration](calibration.md#arms))."

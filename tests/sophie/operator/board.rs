@@ -17,6 +17,7 @@ use sophie_control::allocation::motor_map::at_rotors;
 use sophie_control::allocation::wrench::{Configuration, PerArm};
 use sophie_control::arming::ArmingInhibit;
 use sophie_control::chain::ImuReading;
+use sophie_control::gripper::contact_pressure::FsrScale;
 use sophie_control::maths::scalar::GRAVITY;
 use sophie_control::maths::vector::Vec3;
 use sophie_control::mode::Mode;
@@ -33,6 +34,8 @@ use sophie_ports::signing::{Key, Record, Stored};
 use sophie_ports::storage::{Loaded, Storage, StorageError};
 use sophie_sim::plant::{Actuators, Plant, STEP};
 use sophie_sim::scenario::Scenario;
+use sophie_sim::sensors::fsr::{FsrErrors, FsrSensor};
+use sophie_sim::streams::Streams;
 use sophie_tasks::console;
 use sophie_tasks::flight::{control, estimator, imu, mixer, motors};
 use sophie_tasks::ground_station::console_pipe::ConsolePipe;
@@ -62,6 +65,8 @@ pub struct Hands {
     pub force: Vec3,
     /// Counts of the pressure sensors and of the battery's voltage, 0.01 V each.
     pub counts: AnalogFrame,
+    /// Pressure sensors in the cradle for their loads, beside the counts.
+    pub pads: Option<Pads>,
     /// Tilt of each arm's tip, rad.
     pub tilt: PerArm<f32>,
     /// The vehicle that stands on a box, whose servos wind its arms: these have the tilts then. `None`: there is no vehicle.
@@ -98,8 +103,52 @@ pub struct Hands {
     pub wiring: MotorMap,
     /// Its time is that of the wall.
     pub real_time: bool,
+    /// Its time runs four times as fast only: who renews an order has a third of a second.
+    pub unhurried: bool,
     /// It is powered off and on.
     pub power_cycle: bool,
+}
+
+/// Sensors as their simulation has them.
+#[derive(Clone, Debug)]
+pub struct Pads {
+    /// Seed of their parts.
+    pub seed: u64,
+    /// Gain and errors of each.
+    pub of: PerArm<(f64, FsrErrors)>,
+    /// Loads, N.
+    pub load: PerArm<f64>,
+    /// Bend of each arm's skin, rad.
+    pub bend: PerArm<f64>,
+}
+
+impl Pads {
+    /// Bend of an arm on the pipe and in its cradle, rad.
+    pub const BEND: f64 = 1.19;
+    /// Area of a pad, m².
+    pub const AREA: f64 = 0.038 * 0.038;
+
+    fn sensor(&self, arm: usize) -> FsrSensor {
+        let (gain, errors) = self.of[arm];
+        let sensor = FsrSensor::new(arm, Streams::new(self.seed));
+        sensor.with_fault(gain, None).with_errors(errors)
+    }
+
+    /// What the sensor of `arm` reads with `params` at `pressure`, Pa: the mean of a rise from none and of a fall from
+    /// half more.
+    pub fn reads(&self, arm: usize, params: &Params, pressure: f64) -> f64 {
+        let (mut sensor, scale) = (self.sensor(arm), FsrScale::from_params(params, arm));
+        sensor.bend(Self::BEND);
+        let mut mean_from = |share: f64| {
+            let readings = (0..1000).map(|step| {
+                let way = (f64::from(step) / 400.0).min(1.0);
+                let counts = sensor.sample(pressure * (share + way * (1.0 - share)), 0.002);
+                f64::from(scale.pressure(counts))
+            });
+            readings.skip(750).sum::<f64>() / 250.0
+        };
+        0.5 * (mean_from(0.0) + mean_from(1.5))
+    }
 }
 
 /// What the board's pins do.
@@ -121,6 +170,7 @@ impl Default for Hands {
                 battery_current: 0,
                 servo_battery: 0,
             },
+            pads: None,
             tilt: [0.0; 4],
             vehicle: None,
             hung: [0.0; 4],
@@ -139,6 +189,7 @@ impl Default for Hands {
             build: 0x1234_ABCD,
             wiring: MotorMap::STRAIGHT,
             real_time: false,
+            unhurried: false,
             power_cycle: false,
         }
     }
@@ -327,6 +378,7 @@ struct Run {
     frames: Option<Frames>,
     imu: FakeImu,
     analog: FakeAnalog,
+    pads: RefCell<Option<PerArm<FsrSensor>>>,
     barometer: FakeBarometer,
     arms: Arms,
     motors: FakeMotors,
@@ -394,6 +446,7 @@ impl Run {
             },
             imu: FakeImu::default(),
             analog: FakeAnalog::default(),
+            pads: RefCell::new(now.pads.map(|pads| std::array::from_fn(|arm| pads.sensor(arm)))),
             barometer: FakeBarometer::default(),
             arms: Arms::default(),
             motors: FakeMotors::default(),
@@ -503,6 +556,8 @@ impl Run {
             }
             let round = if hands.real_time {
                 Duration::from_millis(ROUND_MS)
+            } else if hands.unhurried {
+                Duration::from_millis(ROUND_MS) / 4
             } else {
                 ROUND
             };
@@ -532,7 +587,17 @@ impl Run {
             gyro: Vec3::ZERO,
             accel: hands.force + Vec3::new(0.0, 0.0, GRAVITY),
         });
-        self.analog.frame.set(hands.counts);
+        let mut counts = hands.counts;
+        let mut pads = self.pads.borrow_mut();
+        for (arm, (sensor, counts)) in pads.iter_mut().flatten().zip(&mut counts.fsr).enumerate() {
+            let held = hands.pads.as_ref().map(|pads| (pads.load[arm], pads.bend[arm]));
+            let (load, bend) = held.unwrap_or_default();
+            sensor.bend(bend);
+            *counts = sensor
+                .sample(load / Pads::AREA, ROUND_MS as f64 * 1e-3)
+                .max(*counts);
+        }
+        self.analog.frame.set(counts);
         let pulses = self.servos.pulses.borrow().last().copied().unwrap_or_default();
         let stand = self.stand.as_ref();
         self.arms

@@ -3,10 +3,13 @@
 mod board;
 mod bringup;
 mod interruption;
+mod lag;
 mod params;
 #[cfg(target_os = "linux")]
 mod serial;
 mod tendon;
+mod thrust;
+mod tied;
 mod wire;
 
 use std::process::{Child, Command};

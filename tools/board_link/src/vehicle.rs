@@ -226,6 +226,11 @@ impl Vehicle {
         self.boots
     }
 
+    /// The board's time since its start by its newest message, ms.
+    pub const fn up_ms(&self) -> u32 {
+        self.boot_ms
+    }
+
     /// From here on Ctrl-C is ignored: a begun operation must not be left half done.
     pub const fn see_it_through(&mut self) {
         self.heeds = false;

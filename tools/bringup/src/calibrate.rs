@@ -4,6 +4,7 @@ use sophie_control::calibration::Face;
 use sophie_control::calibration::procedure::MOUNTING_SIDES;
 use sophie_control::calibration::step::Calibration;
 use sophie_control::maths::decimal;
+use sophie_control::maths::scalar::GRAVITY;
 
 use super::walk::{Measured, Stop, Verdict, Walk, is_done};
 use super::{Judged, Step};
@@ -11,19 +12,18 @@ use super::{Judged, Step};
 /// Begin of each rest.
 const READY: &str = "Enter when it is so, s skips, q stops:";
 
-/// Measures all steps of a calibration, each after its instruction; `value` goes with the last one.
+/// Measures all steps of a calibration, each after its instruction; `value` goes with each.
 fn calibrated(
     walk: &mut Walk<'_>,
     calibration: Calibration,
     part: usize,
-    instructions: &[&str],
-    value: f32,
+    instructions: &[(&str, f32)],
 ) -> Judged {
     let before = walk.before(calibration, part.saturating_sub(1))?;
-    for (step, instruction) in (1..).zip(instructions) {
+    for (step, (instruction, value)) in (1..).zip(instructions) {
         walk.say(&format!("  | {instruction}"));
         walk.ask(READY)?;
-        match walk.measure(calibration, part, step, [value, 0.0])? {
+        match walk.measure(calibration, part, step, [*value, 0.0])? {
             Measured::Bad(line) => return Ok(Verdict::of(false, vec![line])),
             Measured::Good(result) => {
                 let last = usize::from(step) == instructions.len();
@@ -31,7 +31,9 @@ fn calibrated(
                     continue;
                 }
                 let mut figures = walk.note_changes(calibration, part.saturating_sub(1), &before)?;
-                figures.extend(result.and_then(|result| found(calibration, &result.figures)));
+                if let Some(result) = result {
+                    figures.extend(found(walk, calibration, &result.figures)?);
+                }
                 return Ok(Verdict::of(true, figures));
             }
         }
@@ -43,15 +45,21 @@ fn calibrated(
 }
 
 /// Results beside the parameters.
-fn found(calibration: Calibration, figures: &[f32; 4]) -> Option<String> {
+fn found(walk: &mut Walk<'_>, calibration: Calibration, figures: &[f32; 4]) -> Result<Option<String>, Stop> {
     let [x, y, z, noise] = figures;
-    match calibration {
+    Ok(match calibration {
         Calibration::Gyro => Some(format!(
             "at rest {x:.2} {y:.2} {z:.2} deg/s, noise {noise:.2}; nothing to store"
         )),
         Calibration::Flow => Some(format!("turned about a point {:.0} cm over the lens", x * 100.0)),
+        Calibration::Fsr => {
+            let grip = walk.vehicle.value("grip_pressure")?;
+            Some(format!(
+                "within {x:.0} Pa at {grip} Pa; hysteresis {y:.1} %; {z:.0} Pa at the end, empty"
+            ))
+        }
         _ => None,
-    }
+    })
 }
 
 /// As [`calibrated`], then stored.
@@ -62,7 +70,8 @@ fn stored(
     instructions: &[&str],
     value: f32,
 ) -> Judged {
-    let mut verdict = calibrated(walk, calibration, part, instructions, value)?;
+    let instructions: Vec<_> = instructions.iter().map(|text| (*text, value)).collect();
+    let mut verdict = calibrated(walk, calibration, part, &instructions)?;
     if verdict.passed {
         verdict.parameters = walk.keep()?;
     }
@@ -107,21 +116,52 @@ pub(super) fn arm(walk: &mut Walk<'_>, step: &Step) -> Judged {
 }
 
 pub(super) fn fsr(walk: &mut Walk<'_>, step: &Step) -> Judged {
-    let last = walk.weight.clone();
-    let question = format!("Weight in N, 132 g are 1.3 N; Enter for {last}:");
-    let (text, weight) = typed(walk, &question, Some(last))?;
-    walk.weight = text;
-    let instructions = [
-        "Nothing may touch the sensor.",
-        "Put the weight on its pad, all of it.",
+    let grams = loads(walk)?;
+    let [first, second, third] = grams;
+    let up_and_down = [first, second, third, second, first];
+    let verbs = [
+        "Put on",
+        "Add up to",
+        "Add up to",
+        "Take off down to",
+        "Take off down to",
     ];
-    let mut verdict = calibrated(walk, Calibration::Fsr, step.number, &instructions, weight)?;
+    let texts: Vec<String> = verbs
+        .iter()
+        .zip(up_and_down)
+        .map(|(verb, grams)| format!("{verb} {grams} g, the segment counted, and let it lie."))
+        .collect();
+    let newtons = up_and_down.map(|grams| grams * 1e-3 * GRAVITY);
+    let mut instructions = vec![("Arm in its cradle, pad up. Nothing may touch the pad.", 0.0)];
+    instructions.extend(texts.iter().map(String::as_str).zip(newtons));
+    instructions.push(("Take all of it off, the segment too.", 0.0));
+    let mut verdict = calibrated(walk, Calibration::Fsr, step.number, &instructions)?;
+    verdict
+        .figures
+        .push(format!("loads {first}, {second}, {third} g"));
     if verdict.passed {
-        // A board that starts with a pressed sensor takes its arms for closed.
-        walk.ask("Take the weight off, then Enter:")?;
+        // A board that starts with a sensor that reads a bend takes its arms for closed.
+        walk.ask("Take the arm out of its cradle, then Enter:")?;
         verdict.parameters = walk.keep()?;
     }
     Ok(verdict)
+}
+
+/// The three loads, g; Enter takes those of the last sensor.
+fn loads(walk: &mut Walk<'_>) -> Result<[f32; 3], Stop> {
+    loop {
+        let question = format!(
+            "Three loads in g by a kitchen scale, the segment counted; Enter for {}:",
+            walk.loads
+        );
+        let usual = walk.loads.clone();
+        let [first, second, third] = walk.numbers::<3>(&question, Some(&usual))?;
+        if first < second && second < third {
+            walk.loads = format!("{first} {second} {third}");
+            return Ok([first, second, third]);
+        }
+        walk.say("  | three that rise, such as 100 140 200");
+    }
 }
 
 /// A vehicle without a module needs no calibration of it.

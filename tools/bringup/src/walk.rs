@@ -1,11 +1,13 @@
 //! The context of every step: the builder, the vehicle, and what both are asked.
 
 use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
 use sophie_board_link::Failure;
 use sophie_board_link::vehicle::Vehicle;
 use sophie_control::calibration::step::Calibration;
 use sophie_control::calibration::{Unfit, procedure};
+use sophie_control::maths::decimal;
 use sophie_control::params::Params;
 use sophie_dialect::{
     MavCmd, MavMessage, MavResult, SOPHIE_CALIBRATION_RESULT_DATA, SophieCalibrationOutcome,
@@ -85,14 +87,16 @@ pub(super) struct Walk<'a> {
     pub user: &'a mut dyn User,
     /// Count of the board's starts when the builder last confirmed that the propellers are off.
     off_since: Option<u32>,
-    /// Weight of the last pressure sensor, N.
-    pub weight: String,
     /// Weight on the last arm's tip, N.
     pub tip_weight: String,
     /// What passed steps have measured, by step.
     pub passed: BTreeMap<String, BTreeMap<String, f64>>,
+    /// Loads of the last pressure sensor, g.
+    pub loads: String,
     /// Parameters set and not stored yet, with their new values.
     changed: BTreeMap<String, f32>,
+    /// Folder of the protocol.
+    folder: PathBuf,
 }
 
 impl<'a> Walk<'a> {
@@ -101,11 +105,23 @@ impl<'a> Walk<'a> {
             vehicle,
             user,
             off_since: None,
-            weight: "1.3".to_owned(),
             tip_weight: "3".to_owned(),
             passed: BTreeMap::new(),
+            loads: "100 140 200".to_owned(),
             changed: BTreeMap::new(),
+            folder: PathBuf::new(),
         }
+    }
+
+    /// With files beside `protocol`.
+    pub(super) fn with_files_at(mut self, protocol: &Path) -> Self {
+        self.folder = protocol.parent().map(Path::to_owned).unwrap_or_default();
+        self
+    }
+
+    /// A file beside the protocol.
+    pub(super) fn beside(&self, name: &str) -> PathBuf {
+        self.folder.join(name)
     }
 
     pub(super) fn say(&mut self, line: &str) {
@@ -140,6 +156,27 @@ impl<'a> Walk<'a> {
             if reply.len() == 1 && keys.contains(&reply) {
                 return Ok(reply);
             }
+        }
+    }
+
+    /// `N` numbers above 0 that the builder types; Enter takes those of `usual`.
+    pub(super) fn numbers<const N: usize>(
+        &mut self,
+        question: &str,
+        usual: Option<&str>,
+    ) -> Result<[f32; N], Stop> {
+        loop {
+            let reply = self.ask(question)?;
+            let text = match usual {
+                Some(usual) if reply.is_empty() => usual,
+                _ => &reply,
+            };
+            let typed: Option<Vec<f32>> = text.split_whitespace().map(decimal::parse).collect();
+            let typed = typed.and_then(|numbers| <[f32; N]>::try_from(numbers).ok());
+            if let Some(numbers) = typed.filter(|numbers| numbers.iter().all(|number| *number > 0.0)) {
+                return Ok(numbers);
+            }
+            self.say(&format!("  | {N} numbers above 0"));
         }
     }
 

@@ -42,7 +42,7 @@ impl Kind {
     #[inline(always)]
     const fn of(setpoint: &Setpoint) -> Self {
         match setpoint {
-            Setpoint::Stop | Setpoint::Idle | Setpoint::Spin(_) => Self::None,
+            Setpoint::Stop | Setpoint::Idle | Setpoint::Spin(_) | Setpoint::StaticThrust(_) => Self::None,
             Setpoint::Angle { .. } | Setpoint::Resting { .. } => Self::Attitude,
             Setpoint::Escape { .. } => Self::Escape,
             Setpoint::Rate { .. } => Self::Rate,
@@ -106,6 +106,7 @@ impl Control {
             Setpoint::Stop => return Demand::Stop,
             Setpoint::Idle => return Demand::Idle,
             Setpoint::Spin(spin) => return Demand::Spin(spin),
+            Setpoint::StaticThrust(test) => return Demand::StaticThrust(test),
             Setpoint::Direct { wrench } => return Demand::Wrench(wrench),
             Setpoint::Rate { rate, thrust } => (rate, thrust, false),
             Setpoint::Angle {

@@ -4,6 +4,7 @@ use crate::allocation::desaturation::Given;
 use crate::allocation::wrench::{PerArm, Wrench};
 use crate::attitude::rate_loop::Feedback;
 use crate::chain::spin::Spin;
+use crate::chain::static_thrust::StaticThrust;
 use crate::maths::scalar::cos;
 
 /// Demand of control on the mixer.
@@ -16,6 +17,8 @@ pub enum Demand {
     Idle,
     /// Test of one motor.
     Spin(Spin),
+    /// Test of one rotor or all with propellers on.
+    StaticThrust(StaticThrust),
     /// A wrench, yaw included.
     Wrench(Wrench),
     /// A wrench on the pipe: yaw is given up, and sensors do not correct arms that do not hang free.

@@ -9,7 +9,6 @@ use crate::allocation::arm_tilt::TiltModel;
 use crate::allocation::mixer::{Allocation, Conditions, Flexible};
 use crate::allocation::thrust_curve::ThrustCurve;
 use crate::allocation::wrench::PerArm;
-use crate::chain::spin::Spin;
 use crate::params::Params;
 
 /// Measurement of the arms' sensors.
@@ -24,7 +23,8 @@ pub struct ArmReading {
 /// Inputs besides the demand.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Surroundings {
-    /// Last battery voltage over nominal, of any age; `None` means nominal.
+    /// [`voltage_ratio`](crate::allocation::thrust_curve::voltage_ratio) of the last battery voltage, of any age; `None`
+    /// means nominal.
     pub battery_ratio: Option<f32>,
     /// Last reading of the arms' sensors, `None` where too old; taken readings may be omitted.
     pub arms: Option<ArmReading>,
@@ -109,7 +109,7 @@ impl<A: MixingStep> Mixing<A> {
         let (wrench, yaw) = match demand {
             Demand::Wrench(wrench) => (Some(wrench), true),
             Demand::Resting(wrench) => (Some(wrench), false),
-            Demand::Idle | Demand::Stop | Demand::Spin(_) => (None, false),
+            Demand::Idle | Demand::Stop | Demand::Spin(_) | Demand::StaticThrust(_) => (None, false),
         };
         let conditions = Conditions {
             yaw,
@@ -137,18 +137,21 @@ impl<A: MixingStep> Mixing<A> {
             tilt_bias: tilt.bias(),
             tilt_fault: tilt.fault(),
         };
-        if let Demand::Spin(spin) = demand {
-            on_bench(out, spin, self.curve.least_command());
+        let least = self.curve.least_command();
+        match demand {
+            Demand::Spin(spin) => on_bench(out, spin.commands(least)),
+            Demand::StaticThrust(thrust) => on_bench(out, thrust.commands(least)),
+            _ => (),
         }
     }
 }
 
-/// One motor instead of four idling ones, out of the flight path.
+/// The commands of a motor test instead of four idling rotors, out of the flight path.
 #[cold]
 #[inline(never)]
-fn on_bench(out: &mut MixOutput, spin: &Spin, least: f32) {
+fn on_bench(out: &mut MixOutput, commands: PerArm<f32>) {
     out.thrusts = [0.0; 4];
-    out.commands = spin.commands(least);
+    out.commands = commands;
 }
 
 #[derive(Clone, Copy, Debug, Default)]

@@ -2,6 +2,7 @@
 
 use crate::allocation::wrench::Wrench;
 use crate::chain::spin::Spin;
+use crate::chain::static_thrust::StaticThrust;
 use crate::maths::vector::Vec3;
 
 /// Wanted action of the rotors.
@@ -14,6 +15,8 @@ pub enum Setpoint {
     Idle,
     /// Test of one motor, the others stopped, controllers reset.
     Spin(Spin),
+    /// Test of one rotor or all with propellers on, controllers reset.
+    StaticThrust(StaticThrust),
     /// Held roll and pitch, yaw rate, collective thrust.
     Angle {
         /// Roll, rad.
@@ -65,10 +68,10 @@ impl Setpoint {
         self != Self::Stop
     }
 
-    /// Collective thrust, N; 0 when stopped, idle or in a test of one motor.
+    /// Collective thrust, N; 0 when stopped, idle or in a motor test.
     pub fn thrust(self) -> f32 {
         match self {
-            Self::Stop | Self::Idle | Self::Spin(_) => 0.0,
+            Self::Stop | Self::Idle | Self::Spin(_) | Self::StaticThrust(_) => 0.0,
             Self::Angle { thrust, .. }
             | Self::Escape { thrust, .. }
             | Self::Rate { thrust, .. }
@@ -82,6 +85,7 @@ impl Setpoint {
         let sum = match self {
             Self::Stop | Self::Idle => 0.0,
             Self::Spin(spin) => spin.drive,
+            Self::StaticThrust(test) => test.drive,
             Self::Angle {
                 roll,
                 pitch,
@@ -108,6 +112,7 @@ impl Setpoint {
         match self {
             Self::Stop | Self::Idle => [0.0; 4],
             Self::Spin(spin) => [spin.drive, 0.0, 0.0, 0.0],
+            Self::StaticThrust(test) => [test.drive, 0.0, 0.0, 0.0],
             Self::Angle {
                 roll,
                 pitch,

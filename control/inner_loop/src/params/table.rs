@@ -100,8 +100,19 @@ params! {
     torque_ratio = 0.016, "m", 0.005 ..= 0.05;
     /// Time constant of motor and propeller (assumed).
     motor_tau = 0.05, "s", 0.005 ..= 0.3;
-    /// Share of the thrust that grows with the square of the command; the rest is linear (assumed).
+    /// Share of the thrust that grows with the square of the command; the rest is linear (assumed; of your own rotors from
+    /// `bringup --again thrust`).
     thrust_curve = 0.75, "1", 0.0 ..= 1.0;
+    /// Power of the battery's voltage with which the thrust at a command goes (assumed, that of a motor without losses).
+    thrust_volt_exp = 2.0, "1", 1.0 ..= 2.5;
+    /// Thrust of rotor 1 at a command over the mean of the four.
+    thrust_trim_1 = 1.0, "1", 0.7 ..= 1.3;
+    /// Thrust of rotor 2 at a command over the mean of the four.
+    thrust_trim_2 = 1.0, "1", 0.7 ..= 1.3;
+    /// Thrust of rotor 3 at a command over the mean of the four.
+    thrust_trim_3 = 1.0, "1", 0.7 ..= 1.3;
+    /// Thrust of rotor 4 at a command over the mean of the four.
+    thrust_trim_4 = 1.0, "1", 0.7 ..= 1.3;
 
     /// Motor protocol: 150, 300 or 600 for DShot, 400 for pulses, at most 400 a second, 125 for OneShot125.
     /// Read by the board at start-up; the paper's controllers take 400.
@@ -254,8 +265,9 @@ params! {
     /// Share of the weight that the rotors go on carrying from the first sure touch until the grip is proven, at most: less
     /// presses the belly on, more steers (measured on the simulated pipe).
     perch_lift = 0.375, "1", 0.1 ..= 0.6;
-    /// Friction of the belly pads on the pipe: 0.3 of wet or oily steel, 0.6 of rubber on dry paint (assumed). It sets the
-    /// leans up to which the arms close and let go; a lean that grows ends a closing at any friction.
+    /// Sliding friction of the belly pads on the pipe: 0.3 of wet or oily steel, 0.6 of rubber on dry paint (assumed; `sophie
+    /// bringup` measures it). It sets the leans up to which the arms close and let go; a lean that grows ends a closing at any
+    /// friction.
     pipe_friction = 0.6, "1", 0.1 ..= 1.5;
     /// Diameter of the pipe (paper). A grip is proven on pipes of 0.6 to 1.5 times this; on its own the vehicle looks for one of
     /// 0.7 to 1.35 times; the leans above change by 1.5 degrees from 0.2 to 0.4 m.
@@ -361,14 +373,15 @@ params! {
     fsr_trim_3 = 1.0, "1", 0.2 ..= 5.0;
     /// Conductance of the FSR of arm 4 over `fsr_gain`.
     fsr_trim_4 = 1.0, "1", 0.2 ..= 5.0;
-    /// Pressure that the FSR of arm 1 shows while nothing presses it, taken off (`calibrate fsr`).
-    fsr_zero_1 = 0.0, "Pa", 0.0 ..= 300.0;
-    /// Pressure that the FSR of arm 2 shows while nothing presses it.
-    fsr_zero_2 = 0.0, "Pa", 0.0 ..= 300.0;
-    /// Pressure that the FSR of arm 3 shows while nothing presses it.
-    fsr_zero_3 = 0.0, "Pa", 0.0 ..= 300.0;
-    /// Pressure that the FSR of arm 4 shows while nothing presses it.
-    fsr_zero_4 = 0.0, "Pa", 0.0 ..= 300.0;
+    /// Pressure that the FSR of arm 1 shows while nothing presses it, taken off (`calibrate fsr`); negative: the pressure
+    /// from which it begins to show any, added beyond.
+    fsr_zero_1 = 0.0, "Pa", -650.0 ..= 300.0;
+    /// Pressure that the FSR of arm 2 shows while nothing presses it, taken off.
+    fsr_zero_2 = 0.0, "Pa", -650.0 ..= 300.0;
+    /// Pressure that the FSR of arm 3 shows while nothing presses it, taken off.
+    fsr_zero_3 = 0.0, "Pa", -650.0 ..= 300.0;
+    /// Pressure that the FSR of arm 4 shows while nothing presses it, taken off.
+    fsr_zero_4 = 0.0, "Pa", -650.0 ..= 300.0;
 
     /// Battery voltage over the voltage at its pin; the default is the board's own (docs/wiring.md).
     battery_divider = 11.0, "1", 1.0 ..= 60.0;

@@ -102,26 +102,74 @@ fn a_step_wants_those_before_it_of_the_same_part_and_in_time() {
     assert_eq!(procedure.begin(second, now), Err(OutOfOrder));
 }
 
-#[test]
-fn a_weight_gives_gain_and_zero_of_one_sensor() {
-    let (mut procedure, mut now) = (Procedure::new(), 0);
-    let pressing = |pascal: f32| Readings {
+/// Loads over the sensor's area, Pa, in the order of the steps.
+const LOADS: [f32; 7] = [0.0, 650.0, 950.0, 1350.0, 950.0, 650.0, 0.0];
+
+/// Step `number` of sensor 3.
+fn load(number: u8) -> Step {
+    let newton = LOADS[usize::from(number) - 1] * Params::DEFAULT.fsr_area;
+    step(Calibration::Fsr, 3, number.into(), [newton, 0.0])
+}
+
+fn pressing(pascal: f32) -> Readings {
+    Readings {
         pressures: [None, None, Some(pascal), None],
         ..Readings::default()
+    }
+}
+
+/// What a sensor of 0.8 of the conductance shows that begins at 200 Pa, with 5 % of hysteresis.
+fn shown(number: u8) -> f32 {
+    let side = if number <= 4 { 0.95 } else { 1.05 };
+    let above = side * LOADS[usize::from(number) - 1] - 200.0;
+    0.8 * if above > 0.0 { above } else { 0.0 }
+}
+
+#[test]
+fn loads_up_and_down_give_the_line_and_the_hysteresis_of_one_sensor() {
+    let (mut procedure, mut now) = (Procedure::new(), 0);
+    assert_eq!(procedure.next(Calibration::Fsr, 2, now), 1);
+    for number in 1..=6 {
+        let outcome = run(&mut procedure, &mut now, load(number), &pressing(shown(number)));
+        assert_eq!(outcome, Ok(Outcome::Taken), "{number}");
+        assert_eq!(procedure.next(Calibration::Fsr, 2, now), number + 1);
+        assert_eq!(procedure.next(Calibration::Fsr, 1, now), 1);
+    }
+    procedure.begin(load(7), now).unwrap();
+    let finding = loop {
+        if let Some(finding) = procedure.sample(now, &pressing(0.0), &Params::DEFAULT, &Params::DEFAULT) {
+            break finding;
+        }
+        now += TICK_US;
     };
-    let newton = 1000.0 * Params::DEFAULT.fsr_area;
-    let empty = step(Calibration::Fsr, 3, 1, [0.0; 2]);
-    let loaded = step(Calibration::Fsr, 3, 2, [newton, 0.0]);
-    assert_eq!(
-        run(&mut procedure, &mut now, empty, &pressing(20.0)),
-        Ok(Outcome::Taken)
-    );
-    // (820 - 20) of 1000 Pa: four fifths of the conductance.
-    let found = named(run(&mut procedure, &mut now, loaded, &pressing(820.0)));
-    assert_eq!(found, [("fsr_trim_3", 0.8), ("fsr_zero_3", 25.0)]);
-    // A silent sensor gives no samples.
-    let silent = run(&mut procedure, &mut now, empty, &Readings::default()).unwrap_err();
+    // Between both branches: 0.8, from 200 Pa on.
+    let found = named(finding.result);
+    let [(trim, a), (zero, b)] = found.as_slice() else {
+        panic!("{found:?}");
+    };
+    assert_eq!((*trim, *zero), ("fsr_trim_3", "fsr_zero_3"));
+    assert!((a - 0.8).abs() < 1e-3 && (b + 200.0).abs() < 0.5, "{found:?}");
+    let [error, hysteresis, empty, none] = finding.figures;
+    assert!((hysteresis - 5.0).abs() < 0.01 && empty == 0.0 && none.is_nan());
+    // Nothing scatters: what the loads do not show is left, 5 % of 950 Pa.
+    assert!((error - 47.5).abs() < 0.5, "{error}");
+}
+
+#[test]
+fn a_load_that_is_repeated_wants_those_after_it_again() {
+    let (mut procedure, mut now) = (Procedure::new(), 0);
+    for number in [1, 2, 3, 4, 3] {
+        let outcome = run(&mut procedure, &mut now, load(number), &pressing(shown(number)));
+        assert_eq!(outcome, Ok(Outcome::Taken), "{number}");
+    }
+    assert_eq!(procedure.begin(load(5), now), Err(OutOfOrder));
+    assert_eq!(procedure.begin(load(4), now), Ok(()));
+    // A silent sensor gives no samples, and a load that is not put on changes nothing.
+    let silent = run(&mut procedure, &mut now, load(1), &Readings::default()).unwrap_err();
     assert_eq!((silent.what, silent.value), ("samples", 0.0));
+    run(&mut procedure, &mut now, load(1), &pressing(0.0)).unwrap();
+    let missing = run(&mut procedure, &mut now, load(2), &pressing(0.0)).unwrap_err();
+    assert_eq!((missing.what, missing.value), ("reading of the load", 0.0));
 }
 
 #[test]

@@ -139,7 +139,7 @@ proptest! {
     fn the_force_stays_within_its_bounds(
         steps in proptest::collection::vec(
             (
-                any::<bool>(), any_pressure(), proptest::num::f32::ANY,
+                any::<bool>(), any_pressure(), proptest::num::f32::ANY, proptest::num::f32::ANY,
                 proptest::option::of(proptest::num::f32::ANY),
                 proptest::option::of(prop_oneof![proptest::num::f32::ANY, -2.0f32..0.5]),
                 prop_oneof![proptest::num::f32::ANY, 0.005f32..0.02],
@@ -149,8 +149,8 @@ proptest! {
     ) {
         let cfg = config();
         let mut arm = ArmGripper::default();
-        for (close, pressure, thrust, tension, tilt, dt) in steps {
-            let grip = arm.step(&cfg, &ArmInput { close, pressure, thrust, tension, tilt }, dt);
+        for (close, pressure, turn_on, thrust, tension, tilt, dt) in steps {
+            let grip = arm.step(&cfg, &ArmInput { close, pressure, turn_on, thrust, tension, tilt }, dt);
             prop_assert!(grip.force >= 0.0 && grip.force <= cfg.limit(), "{grip:?}");
             prop_assert!(grip.pressure.is_finite());
             prop_assert!(grip.closure.is_none_or(f32::is_finite));

@@ -56,6 +56,7 @@ fn a_resumed_grip_goes_on_from_its_force_without_a_kick() {
             let i = ArmInput {
                 close: true,
                 pressure,
+                turn_on: 0.0,
                 thrust: 0.0,
                 tension,
                 tilt,

@@ -186,3 +186,25 @@ fn an_arm_that_stands_still_under_a_rising_force_without_pressure_is_faulty() {
     // Back to the force before the vain rise.
     assert!(arm.force < force + 8.0);
 }
+
+#[test]
+fn a_bounce_across_the_sensors_turn_on_force_is_no_broken_lead() {
+    let cfg = config();
+    // It reads 0 below 400 Pa, and 500 Pa just above.
+    for (turn_on, before, fault) in [
+        (400.0, 500.0, None),
+        (400.0, 900.0, Some(GripFault::Sensor)),
+        (650.0, 900.0, Some(GripFault::Sensor)),
+        (0.0, 500.0, Some(GripFault::Sensor)),
+    ] {
+        let mut arm = holding(&cfg);
+        for pressure in [before, 0.0] {
+            let i = ArmInput {
+                turn_on,
+                ..input(&cfg, &arm, pressure)
+            };
+            arm.step(&cfg, &i, DT);
+        }
+        assert_eq!(arm.fault(), fault, "{turn_on} {before}");
+    }
+}

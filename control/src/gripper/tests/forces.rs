@@ -31,6 +31,7 @@ impl Bench {
         let input = ArmInput {
             close: true,
             pressure: Pressure::Known(pressure),
+            turn_on: 0.0,
             thrust: self.thrust,
             tension: Some(before),
             tilt: Some(self.stuck_at.unwrap_or(self.bent())),

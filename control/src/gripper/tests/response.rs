@@ -59,6 +59,7 @@ impl Trial {
             let input = ArmInput {
                 close: true,
                 pressure: Pressure::Known(if self.open { 0.0 } else { pressure }),
+                turn_on: 0.0,
                 thrust,
                 tension: Some(arm.force),
                 tilt: Some(tilt + noise),

@@ -71,7 +71,11 @@ impl Collective {
     /// Hands the collective over, limits it to the thrust of four rotors, and stops if it is not finite.
     pub fn finish(&mut self, setpoint: Setpoint, p: &Params, dt: f32) -> Setpoint {
         let begins = self.pending.take();
-        if matches!(setpoint, Setpoint::Stop | Setpoint::Idle | Setpoint::Spin(_)) || !setpoint.is_finite() {
+        let passes = matches!(
+            setpoint,
+            Setpoint::Stop | Setpoint::Idle | Setpoint::Spin(_) | Setpoint::StaticThrust(_)
+        );
+        if passes || !setpoint.is_finite() {
             *self = Self::default();
             return if setpoint.is_finite() {
                 setpoint

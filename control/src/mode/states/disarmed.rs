@@ -40,11 +40,8 @@ impl Behaviour for Disarmed {
         }
     }
 
-    fn rotors(&self, _: &Context, _: &Inputs) -> Setpoint {
-        match self.actuator_test {
-            Some(ActuatorTest::Spin(spin)) => Setpoint::Spin(spin),
-            _ => Setpoint::Stop,
-        }
+    fn rotors(&self, context: &Context, _: &Inputs) -> Setpoint {
+        context.actuator_tests.rotors()
     }
 
     fn reason(&self, context: &Context, i: &Inputs, inhibits: ArmingInhibits) -> Option<Reason> {

@@ -8,19 +8,24 @@ use std::time::Duration;
 use sophie_board_link::port::PortName;
 use sophie_board_link::vehicle::Vehicle;
 use sophie_bringup::STEPS;
-use sophie_control::params::MotorMap;
+use sophie_control::params::{MotorMap, Params};
 use sophie_emulator::bench_operator::BenchOperator;
 use sophie_emulator::closed_loop::Setup;
 use sophie_emulator::flight::Stood;
 use sophie_emulator::terminal::Sockets;
 use sophie_emulator::wires::BoardFault;
+use sophie_sim::plant::rotor::NOMINAL_VOLTAGE;
 use sophie_sim::sensors::fsr;
 use sophie_tasks::schedule::{Level, TaskId};
 
-use super::builder::Builder;
+use super::builder::{Builder, FRICTION};
 use super::console::terminal;
 use super::*;
 
+/// Pressure sensors of the walk: conductance over the nominal one, turn-on force, N, and hysteresis.
+const GAIN: [f64; 4] = [1.1, 0.85, 0.95, 1.0];
+const TURN_ON: [f64; 4] = [0.3, 0.5, 0.15, 0.7];
+const HYSTERESIS: f64 = 0.07;
 /// Silence of an emulated board on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(600);
 
@@ -87,6 +92,9 @@ fn walk(folder: &Folder, builder: impl FnOnce(BenchOperator) -> Builder) -> Walk
     // Not what the parameters have.
     vehicle.vehicle.tendons.stiffness = [STIFFNESS; 4];
     vehicle.vehicle.tendons.friction = [0.3; 4];
+    vehicle.faults.pressure_gain = GAIN;
+    vehicle.sensors.pressure.turn_on = TURN_ON;
+    vehicle.sensors.pressure.hysteresis = HYSTERESIS;
     let mut log = String::new();
     let stood = flight::stand(
         &firmware,
@@ -130,7 +138,7 @@ fn a_new_board_is_brought_up_through_all_steps() {
     let said = builder.said();
     assert_eq!(all_passed, Ok(true), "{said}\n{log}");
     let protocol = folder.read();
-    let left = "left out: tendon-2, tendon-3, tendon-4";
+    let left = "left out: tendon-2, tendon-3, tendon-4, lag";
     assert!(protocol["state"].as_str().unwrap().ends_with(left), "{said}");
     assert!(protocol["firmware"].as_str().unwrap().ends_with(" on matek-h743"));
     assert!(
@@ -149,15 +157,31 @@ fn a_new_board_is_brought_up_through_all_steps() {
     assert_eq!(steps.iter().filter(passed).count(), STEPS.len() - 3, "{said}");
     // The values found are those of the simulated parts.
     let parameter = |id: &str, name: &str| step(id)["parameters"][name].as_float().unwrap();
-    for sensor in 1..=4 {
-        let trim = parameter(&format!("fsr-{sensor}"), &format!("fsr_trim_{sensor}"));
+    for (arm, gain) in GAIN.into_iter().enumerate() {
+        let (id, number) = (format!("fsr-{}", arm + 1), arm + 1);
+        let trim = parameter(&id, &format!("fsr_trim_{number}"));
+        let zero = parameter(&id, &format!("fsr_zero_{number}"));
+        // What the sensor conducts at the grip pressure, as a pressure; what the board makes of it.
+        let area = f64::from(Params::DEFAULT.fsr_area);
+        let conducts = gain * (950.0 - TURN_ON[arm] / area);
+        let reads = conducts / trim - zero;
         assert!(
-            (trim - 1.0).abs() < fsr::LARGEST_ERROR,
-            "fsr_trim_{sensor} {trim}"
+            (reads / 950.0 - 1.0).abs() < fsr::LARGEST_ERROR,
+            "{id}: {trim} {zero} {reads}"
         );
     }
+    let twist = figures(step("twist"));
+    let torsion = twist
+        .split("vehicle.arm_torsion = ")
+        .nth(1)
+        .and_then(|rest| rest.split(' ').next());
+    let torsion: f64 = torsion.unwrap_or_default().parse().unwrap();
+    assert!((torsion - 1.0).abs() < 0.05, "{twist}");
+    assert!(figures(step("vibration")).starts_with("vibration 0."), "{said}");
     let stiffness = parameter("tendon-1", "tendon_stiffness");
     assert!((stiffness / STIFFNESS - 1.0).abs() < 0.15, "{stiffness}\n{said}");
+    let friction = parameter("friction", "pipe_friction");
+    assert!((friction / FRICTION - 1.0).abs() < 0.03, "{friction}");
     assert!(
         figures(step("final")).contains("\nnothing forbids arming\n")
             && !figures(step("final")).contains("FAIL"),
@@ -177,6 +201,88 @@ fn a_new_board_is_brought_up_through_all_steps() {
         let missed = stood.board.overruns.get(task.name()).copied().unwrap_or(0);
         assert_eq!(missed, 0, "{}: {:?}", task.name(), stood.board.overruns);
     }
+}
+
+/// Thrust of the simulated rotors at `command`, one of four alike, in the stack's law over what the plant gives.
+fn law(parameter: impl Fn(&str) -> f64, command: f64) -> f64 {
+    let (q, max) = (parameter("thrust_curve"), parameter("thrust_max"));
+    let told = max * (q * command + 1.0 - q) * command;
+    told / scenario("hover.toml")
+        .vehicle
+        .rotor
+        .steady_thrust(command, NOMINAL_VOLTAGE)
+}
+
+#[test]
+#[ignore = "minutes of an emulated board: .ci/campaign walks it"]
+fn a_tied_vehicle_s_thrust_is_that_of_the_simulated_rotors() {
+    let folder = Folder::new("bringup-thrust");
+    let Walked {
+        log, builder, stood, ..
+    } = walk(&folder, |operator| Builder::at(operator, "thrust"));
+    let said = builder.said();
+    let protocol = folder.read();
+    let steps = protocol["step"].as_array().unwrap();
+    let step = steps
+        .iter()
+        .find(|step| step["id"].as_str() == Some("thrust"))
+        .unwrap();
+    assert_eq!(step["result"].as_str(), Some("passed"), "{said}\n{log}");
+    let parameter = |name: &str| step["parameters"][name].as_float().unwrap();
+    for command in [0.55, 0.7, 0.85] {
+        let share = law(parameter, command);
+        assert!((share - 1.0).abs() < 0.035, "{command}: {share}\n{said}");
+    }
+    // The winding's drop makes 1.6 to 1.7 of the power.
+    assert!((parameter("thrust_volt_exp") - 1.66).abs() < 0.2, "{said}");
+    for rotor in 1..=4 {
+        let trim = parameter(&format!("thrust_trim_{rotor}"));
+        assert!((trim - 1.0).abs() < 0.03, "{rotor}: {trim}\n{said}");
+    }
+    assert_eq!(stood.gaps, []);
+}
+
+/// The step `id` alone, of a tied vehicle, passed.
+fn tied(name: &str, id: &'static str) -> (toml::Value, String) {
+    let folder = Folder::new(name);
+    let Walked {
+        log, builder, stood, ..
+    } = walk(&folder, |operator| Builder::at(operator, id));
+    let said = builder.said().to_owned();
+    let protocol = folder.read();
+    let steps = protocol["step"].as_array().unwrap();
+    let step = steps.iter().find(|step| step["id"].as_str() == Some(id)).unwrap();
+    assert_eq!(step["result"].as_str(), Some("passed"), "{said}\n{log}");
+    assert_eq!(stood.gaps, []);
+    (step.clone(), said)
+}
+
+#[test]
+#[ignore = "minutes of an emulated board: .ci/campaign walks it"]
+fn a_tied_vehicle_s_arms_bend_as_the_simulated_ones() {
+    let (step, said) = tied("bringup-arm-table", "arm-table");
+    let parameter = |name: &str| step["parameters"][name].as_float().unwrap();
+    let p = Params::DEFAULT;
+    let rise = |t: f64| (parameter("arm_a1") + parameter("arm_b1") * t) * t;
+    let level = parameter("arm_level_share") * f64::from(p.thrust_max);
+    let spec = scenario("hover.toml").arm_spec(0);
+    for newton in [3.0, 4.4, 6.0] {
+        let (found, truth) = (rise(newton) - rise(level), spec.static_tilt(newton).to_degrees());
+        // The default parameters have the thrust to 3 %.
+        assert!((found - truth).abs() < 2.0, "{newton} N: {found} {truth}\n{said}");
+    }
+}
+
+#[test]
+#[ignore = "minutes of an emulated board: .ci/campaign walks it"]
+fn a_tied_vehicle_s_vibration_is_that_of_the_simulated_rotors() {
+    let (step, said) = tied("bringup-vibration", "vibration");
+    let figures = figures(&step);
+    let mut words = figures.split(' ').skip(1);
+    let mut axis = || words.next().unwrap().parse::<f64>().unwrap();
+    // Four sines of 0.25 m/s2 at 600 rad/s, in hover 0.8 of that, in whatever phase.
+    let (x, y) = (axis(), axis());
+    assert!((0.1..0.6).contains(&x) && (0.1..0.5).contains(&y), "{said}");
 }
 
 #[test]

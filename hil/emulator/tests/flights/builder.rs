@@ -8,13 +8,20 @@ use sophie_control::calibration::Face;
 use sophie_control::params::Params;
 use sophie_control::pilot::rc::{ArmChoice, StickMode, Sticks};
 use sophie_emulator::bench_operator::{BenchOperator, Handling};
+use sophie_sim::streams::Streams;
+use sophie_sim::test_stands::scale::Scale;
+use sophie_sim::test_stands::twist_stand::TwistStand;
+
+use super::scenario;
 
 /// Time of the board until a change of handling has passed turn and filters, ms.
 const SETTLED: u64 = 800;
 /// Wall time after which the board counts as stopped.
 const STILL: Duration = Duration::from_secs(300);
-/// Weight on a pressure sensor, N, as the walk proposes it.
-const WEIGHT: f64 = 1.3;
+/// Bend of an arm in its cradle, rad, as on the pipe.
+const CRADLE: f64 = 1.19;
+/// Sliding friction of the builder's pipe.
+pub(super) const FRICTION: f64 = 0.42;
 /// A tip bent up, rad.
 const BENT: f64 = 0.3;
 /// Weight on a tip, N, as the walk proposes it, and the time to hang it on, ms.
@@ -22,6 +29,12 @@ const TIP_WEIGHT: f64 = 3.0;
 const HANGS: u64 = 2000;
 /// On a pad under a thumb, Pa.
 const THUMB: f64 = 900.0;
+
+/// Charge of the used battery, share.
+const USED: f64 = 0.35;
+/// RMS of what a person reads at a scale under rotors, share, and looks at it that count.
+const FLUCTUATION: f64 = 0.01;
+const SHOWN: usize = 5;
 
 /// A change of handling and its duration, ms of the board's time.
 struct Move {
@@ -46,6 +59,13 @@ pub(super) struct Builder {
     marks: VecDeque<&'static str>,
     servo_marks: Vec<f64>,
     turned: Vec<Option<usize>>,
+    /// Arm 1 with a rod across its tip.
+    torsion: TwistStand,
+    /// Skips every other step.
+    only: Option<&'static str>,
+    /// The kitchen scale, and what it has shown while rotors ran, N.
+    scale: Scale,
+    lifts: Vec<f64>,
 }
 
 impl Builder {
@@ -62,6 +82,18 @@ impl Builder {
             marks: VecDeque::new(),
             servo_marks: Vec::new(),
             turned: Vec::new(),
+            torsion: TwistStand::new(&scenario("hover.toml"), 0, Streams::new(1)),
+            only: None,
+            scale: Scale::new(Streams::new(1)),
+            lifts: Vec::new(),
+        }
+    }
+
+    /// Skips every other step than `only`.
+    pub(super) fn at(operator: BenchOperator, only: &'static str) -> Self {
+        Self {
+            only: Some(only),
+            ..Self::new(operator, None)
         }
     }
 
@@ -121,6 +153,12 @@ impl Builder {
         }
     }
 
+    /// The load that the last line asks for, g.
+    fn load(&self) -> Option<f64> {
+        let (begin, _) = self.last.split_once(" g, the segment counted")?;
+        begin.rsplit(' ').next()?.parse().ok()
+    }
+
     /// Handling at one rest of the calibration.
     fn rest(&mut self) {
         let number = self.number();
@@ -131,9 +169,11 @@ impl Builder {
             self.does(|held| held.bent = [0.0; 4]);
         } else if self.last.contains("Bend its tip up") {
             self.does(|held| held.bent[number] = BENT);
-        } else if self.last.contains("Put the weight") {
-            let area = f64::from(Params::DEFAULT.fsr_area);
-            self.does(|held| held.pressed[number] = WEIGHT / area);
+        } else if self.last.contains("Arm in its cradle") {
+            self.does(|held| held.bent[number] = CRADLE);
+        } else if let Some(grams) = self.load() {
+            let pascal = 1e-3 * grams * 9.806_65 / f64::from(Params::DEFAULT.fsr_area);
+            self.does(|held| held.pressed[number] = pascal);
         } else {
             self.does(|held| {
                 held.below = Face::Belly;
@@ -147,9 +187,10 @@ impl Builder {
         if self.until == Some(&*self.step) {
             return "q";
         }
-        // One tendon stands for four.
+        // One tendon stands for four; nobody records the motors' sound.
         let tendon = self.step.starts_with("tendon-");
-        if tendon && self.step != "tendon-1" {
+        let other = self.only.is_some_and(|only| only != self.step);
+        if other || self.step == "lag" || (tendon && self.step != "tendon-1") {
             return "s";
         }
         self.moves = None;
@@ -160,6 +201,7 @@ impl Builder {
             held.bent = [0.0; 4];
             held.on_box = tendon;
             held.sticks = on.then(Sticks::default);
+            held.tied = false;
         });
         ""
     }
@@ -196,6 +238,28 @@ impl Builder {
         }
     }
 
+    /// Twist by the phone, deg, with the weight that `question` names.
+    fn twist(&mut self, question: &str) -> String {
+        let grams = question
+            .trim()
+            .split(' ')
+            .next()
+            .and_then(|grams| grams.parse().ok());
+        let side = if question.contains("left") { -1e-3 } else { 1e-3 };
+        let (_, twist) = self.torsion.read(side * grams.unwrap_or(0.0), 0.1);
+        format!("{:.1}", twist.to_degrees())
+    }
+
+    /// What the scale showed at the end of a run, g.
+    fn weighs(&mut self) -> String {
+        // The last half second before the rotors stop.
+        let from = self.lifts.len().saturating_sub(SHOWN);
+        let last = self.lifts.split_off(from);
+        self.lifts.clear();
+        let lift = last.iter().sum::<f64>() / last.len().max(1) as f64;
+        format!("{:.0}", self.scale.read(lift, FLUCTUATION))
+    }
+
     fn which_turned(&mut self) -> String {
         // The order is acknowledged before the motor has speed.
         self.settles();
@@ -215,15 +279,31 @@ impl Builder {
             String::new()
         } else if begins("+ or - moves it") {
             self.moves_servo().to_owned()
-        } else if begins("Take the weight off") {
-            self.does(|held| held.pressed = [0.0; 4]);
+        } else if begins("Take the arm out of its cradle") {
+            self.does(|held| held.bent = [0.0; 4]);
             String::new()
+        } else if let Some((grams, _)) = question.split_once(" g: kg that start it") {
+            // A luggage scale to 10 g that shows 1 % too much.
+            let kg = 1e-3 * grams.trim().parse::<f64>().unwrap();
+            let shown = 1.01 * FRICTION * kg;
+            format!("{:.2} {shown:.2}", 1.3 * shown)
+        } else if begins("The same on the wet pipe") {
+            "n".to_owned()
         } else if begins("Lift it by 1 m") {
             self.does(|held| held.height = 1.0);
             String::new()
         } else if begins("And down again") {
             self.does(|held| held.height = 0.0);
             String::new()
+        } else if begins("Type tied") {
+            self.operator.change(|held| held.tied = true);
+            "tied".to_owned()
+        } else if begins("A used battery") {
+            self.operator.change(|held| held.battery = Some(USED));
+            self.settles();
+            "u".to_owned()
+        } else if begins("What the scale showed") {
+            self.weighs()
         } else if begins("Type off") {
             "off".to_owned()
         } else if begins("Volts") {
@@ -242,6 +322,8 @@ impl Builder {
             // 1 and 4 turn anticlockwise.
             let rotor = self.turned.last().copied().flatten();
             if matches!(rotor, Some(0 | 3)) { "a" } else { "c" }.to_owned()
+        } else if question.contains("Twist, deg") {
+            self.twist(question)
         } else if begins("Now switch the transmitter off") {
             self.does(|held| held.sticks = None);
             String::new()
@@ -312,6 +394,10 @@ impl User for Builder {
     }
 
     fn live(&mut self, line: &str) {
+        if matches!(&*self.step, "thrust" | "arm-table" | "vibration") {
+            self.lifts.push(self.operator.observe().lift);
+            return;
+        }
         self.notes(&format!("{line}\n"));
     }
 
@@ -323,6 +409,9 @@ impl User for Builder {
     }
 
     fn answered(&mut self) -> Option<Reply> {
+        if matches!(&*self.step, "thrust" | "arm-table" | "vibration") {
+            return None;
+        }
         let now = self.operator.observe().ms;
         let id = self.step.clone();
         if id.starts_with("tendon-") {

@@ -29,7 +29,7 @@ const fn obeyed(command: MavCmd, form: &'static str, when: When) -> Obeyed {
 }
 
 /// Every supported command. These texts are not in the image.
-pub const OBEYED: [Obeyed; 19] = [
+pub const OBEYED: [Obeyed; 21] = [
     obeyed(
         MavCmd::MAV_CMD_REQUEST_MESSAGE,
         "message (of the modes: which, 0 all)",
@@ -85,6 +85,19 @@ pub const OBEYED: [Obeyed; 19] = [
         MavCmd::MAV_CMD_USER_1,
         "1 (the propellers are off)",
         When::Commander("DISARMED; counts until the next arming or restart"),
+    ),
+    obeyed(
+        MavCmd::MAV_CMD_USER_1,
+        "2 (the vehicle is tied down, propellers on)",
+        When::Commander("the same"),
+    ),
+    obeyed(
+        MavCmd::MAV_CMD_SOPHIE_STATIC_THRUST,
+        "rotor (0 all), percent, other percent, seconds, run",
+        When::Commander(
+            "as the console's `thrust`: DISARMED, said to be tied down, battery above critical; ends when it is not sent again \
+             for 1.5 s, or when the vehicle turns by 15 degrees; 0 % stops",
+        ),
     ),
     obeyed(
         MavCmd::MAV_CMD_DO_MOTOR_TEST,

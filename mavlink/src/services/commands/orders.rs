@@ -5,6 +5,7 @@ use sophie_control::pilot::actuator_test::{
     Spin,
 };
 use sophie_control::pilot::remote::{RemoteOrder, RemoteRefusal, RemoteRequest};
+use sophie_control::pilot::static_thrust_test::{HOLD, Rotors, STEP_HOLD, StaticThrustTest};
 
 use sophie_control::calibration::procedure::Procedure;
 
@@ -16,6 +17,10 @@ use sophie_dialect::*;
 
 /// Longest time to the commander's answer, µs: fifty of its periods.
 const COMMANDER: u64 = 500_000;
+/// Longest time between two commands of one static thrust test, µs: whoever has ordered it is still there.
+const RENEWAL: u64 = 1_500_000;
+/// Time that the commander has to end a static thrust test after its own time, s.
+const MARGIN: f32 = 0.5;
 /// The standard's number for disarming in flight.
 const FORCED: u32 = 21_196;
 /// Number of the first tendon servo among the outputs, as in SERVO_OUTPUT_RAW.
@@ -60,6 +65,8 @@ struct Trial {
     request: ActuatorTestRequest,
     /// Its end, µs.
     until: u64,
+    /// Of a static thrust test: its run, and the time of its newest command, µs.
+    renewed: Option<(u32, u64)>,
 }
 
 impl Trial {
@@ -68,7 +75,19 @@ impl Trial {
         Self {
             request: ActuatorTestRequest { number: 0, order },
             until: now.saturating_add((seconds * 1e6) as u64),
+            renewed: None,
         }
+    }
+
+    /// True if it is over at `now`, µs: by its time, or because its sender is silent.
+    fn is_over(&self, now: u64) -> bool {
+        now >= self.until || self.is_abandoned(now)
+    }
+
+    /// True if its sender should have renewed it by `now`, µs.
+    fn is_abandoned(&self, now: u64) -> bool {
+        self.renewed
+            .is_some_and(|(_, heard)| now.saturating_sub(heard) > RENEWAL)
     }
 }
 
@@ -81,6 +100,8 @@ pub struct Orders {
     trial: Option<Trial>,
     /// Number of this line's newest actuator test.
     own: u32,
+    /// Newest run of a static thrust test; 0 before the first.
+    run: u32,
 }
 
 impl Orders {
@@ -90,6 +111,7 @@ impl Orders {
             remote: None,
             trial: None,
             own: 0,
+            run: 0,
         }
     }
 }
@@ -108,17 +130,18 @@ impl Services {
             self.gripper(received, procedure)
         } else if number == MavCmd::MAV_CMD_DO_MOTOR_TEST as u32 {
             self.motor_test(received)
+        } else if number == MavCmd::MAV_CMD_SOPHIE_STATIC_THRUST as u32 {
+            self.static_thrust(received)
         } else if number == MavCmd::MAV_CMD_DO_SET_SERVO as u32 {
             self.set_servo(received)
         } else if number == MavCmd::MAV_CMD_USER_1 as u32 {
             let [first, ..] = received.command.params;
-            match whole(first) {
-                Some(1) => self.try_actuator(
-                    received,
-                    Trial::new(ActuatorTest::PropellersOff, received.now, 0.0),
-                ),
-                _ => Some(self.deny("1 confirms that propellers are off")),
-            }
+            let order = match whole(first) {
+                Some(1) => ActuatorTest::PropellersOff,
+                Some(2) => ActuatorTest::TiedDown,
+                _ => return Some(self.deny("1 propellers off, 2 on and tied down")),
+            };
+            self.try_actuator(received, Trial::new(order, received.now, 0.0))
         } else {
             Some(MavResult::MAV_RESULT_UNSUPPORTED)
         }
@@ -173,6 +196,63 @@ impl Services {
         let shorter = seconds > 0.0 && seconds < SPIN_TIME;
         let seconds = if shorter { seconds } else { SPIN_TIME };
         self.try_actuator(received, Trial::new(order, received.now, seconds))
+    }
+
+    fn static_thrust(&mut self, received: &Received<'_>) -> Option<MavResult> {
+        let [rotor, percent, other, seconds, run, ..] = received.command.params;
+        if percent <= 0.0 {
+            return self.try_actuator(received, Trial::new(ActuatorTest::End, received.now, 0.0));
+        }
+        let rotors = match whole(rotor) {
+            Some(0) => Rotors::All,
+            Some(rotor @ 1..=4) => Rotors::One(rotor as usize - 1),
+            _ => return Some(self.deny("rotor 1 to 4, 0 for all")),
+        };
+        let Some(run @ 1..) = whole(run) else {
+            return Some(self.deny("each run has a number, from 1"));
+        };
+        if run == self.orders.run {
+            return self.renew(received, run);
+        }
+        let step_to = Some(or_zero(other)).filter(|other| *other != 0.0);
+        let default = if step_to.is_some() { STEP_HOLD } else { HOLD };
+        let test = StaticThrustTest {
+            rotors,
+            drive: percent / 100.0,
+            step_to: step_to.map(|percent| percent / 100.0),
+            hold: if seconds > 0.0 { seconds } else { default },
+        };
+        if !test.is_allowed() {
+            return Some(self.deny(ActuatorTestRefusal::OutOfRange.text()));
+        }
+        let order = ActuatorTest::StaticThrust(test);
+        let mut trial = Trial::new(order, received.now, test.longest() + MARGIN);
+        trial.renewed = Some((run, received.now));
+        let begun = self.begin(received, Answerer::ActuatorTest);
+        begun.err().unwrap_or_else(|| {
+            self.orders.run = run;
+            self.orders.trial = Some(trial);
+            None
+        })
+    }
+
+    /// Its sender is still there. A run that has ended stays so, however late its command is repeated.
+    fn renew(&mut self, received: &Received<'_>, run: u32) -> Option<MavResult> {
+        let trial = self
+            .orders
+            .trial
+            .as_mut()
+            .and_then(|trial| trial.renewed.as_mut());
+        let Some((_, heard)) = trial.filter(|(renewed, _)| *renewed == run) else {
+            return Some(self.refuse("this run has ended"));
+        };
+        *heard = received.now;
+        // The command that began it may still wait for its answer.
+        let waits = self
+            .orders
+            .pending
+            .is_some_and(|p| p.by == Answerer::ActuatorTest);
+        (!waits).then_some(MavResult::MAV_RESULT_ACCEPTED)
     }
 
     fn set_servo(&mut self, received: &Received<'_>) -> Option<MavResult> {
@@ -328,18 +408,23 @@ impl Services {
                 }
             }
         }
-        let Trial { request, until } = *trial;
+        let request = trial.request;
         let state = (view.answer.number == request.number).then_some(view.answer.state);
         match state {
             None if !late => return Some(request),
             Some(ActuatorTestState::Running) => {
-                if now >= until {
+                let abandoned = trial.is_abandoned(now);
+                if trial.is_over(now) {
+                    trial.renewed = None;
                     trial.request = ActuatorTestRequest {
                         number: 0,
                         order: ActuatorTest::End,
                     };
                 }
                 self.settle(Answerer::ActuatorTest, MavResult::MAV_RESULT_ACCEPTED);
+                if abandoned {
+                    self.refuse("run not renewed: it ends");
+                }
                 return Some(request);
             }
             None => self.say_silent(Answerer::ActuatorTest),

@@ -98,6 +98,12 @@ impl BeamSpec {
         1.0 / self.linear
     }
 
+    /// Torsional stiffness, N·m/rad.
+    #[must_use]
+    pub const fn torsional_stiffness(&self) -> f64 {
+        self.twist.stiffness
+    }
+
     /// Moment (N·m) at the elastic `curvature` (1/m): linear below 0 and beyond the knee, outside Eq. 1's measurements
     /// (assumed).
     #[must_use]

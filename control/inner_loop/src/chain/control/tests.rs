@@ -1,5 +1,6 @@
 use super::*;
 use crate::chain::spin::Spin;
+use crate::chain::static_thrust::{Rotors, StaticThrust};
 
 const THRUST: f32 = 10.0;
 const GIVEN: Feedback = Feedback {
@@ -106,7 +107,14 @@ fn what_was_wound_up_goes_with_every_change_but_one_between_rate_and_angle() {
     let spin = Spin::at(0, 0.08);
     let tried = Bench::new().run(1, Setpoint::Spin(spin), 0);
     assert_eq!(tried, Demand::Spin(spin));
+    let thrust = StaticThrust {
+        rotors: Rotors::All,
+        drive: 0.5,
+    };
+    let tried = Bench::new().run(1, Setpoint::StaticThrust(thrust), 0);
+    assert_eq!(tried, Demand::StaticThrust(thrust));
     for (between, then, kept) in [
+        (Setpoint::StaticThrust(thrust), ROLLING, false),
         (Setpoint::Spin(spin), ROLLING, false),
         (ROLLING, roll_to(0.0), true),
         (roll_to(0.0), ROLLING, true),

@@ -1,5 +1,7 @@
 use super::*;
 use crate::allocation::wrench::{Configuration, Wrench};
+use crate::chain::spin::Spin;
+use crate::chain::static_thrust::{Rotors, StaticThrust};
 use crate::maths::scalar::GRAVITY;
 
 struct Bench {
@@ -119,6 +121,12 @@ fn yaw_is_given_in_the_air_and_not_on_the_pipe_and_stopped_rotors_get_nothing() 
     let mix = bench.run(1, &spin(0.08), &nothing);
     assert!(
         mix.running && mix.thrusts == [0.0; 4] && mix.commands == [0.0, 0.08, 0.0, 0.0],
+        "{mix:?}"
+    );
+    let thrust = |rotors, drive| Demand::StaticThrust(StaticThrust { rotors, drive });
+    let mix = bench.run(1, &thrust(Rotors::One(2), 0.9), &nothing);
+    assert!(
+        mix.running && mix.thrusts == [0.0; 4] && mix.commands == [0.0, 0.0, 0.9, 0.0],
         "{mix:?}"
     );
     for bad in [0.5, f32::NAN] {
