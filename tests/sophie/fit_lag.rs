@@ -42,5 +42,5 @@ fn what_is_no_train_of_steps_is_refused_in_one_line() {
     }
     let line = refused(&temp, &["fit-lag", "none.wav"]);
     assert!(line.starts_with("sophie: none.wav: cannot be read"), "{line}");
-    assert!(refused(&temp, &["fit-lag"]).contains("one WAV file"));
+    assert!(refused(&temp, &["fit-lag"]).contains("<SOUND.wav>"));
 }

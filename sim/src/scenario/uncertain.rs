@@ -259,7 +259,7 @@ pub const QUANTITIES: &[Quantity] = &[
         all: Some(Spread::Within(0.04, 0.10)),
         calibration: Some(Calibration {
             by: "`bringup`'s step `lag`, by sound ([lag](calibration.md#lag-of-the-motors)), the mean of rise and fall",
-            error: Spread::Times(0.9, 1.1),
+            error: Spread::Times(0.87, 1.13),
             apart: false,
             demanded: false,
         }),

@@ -97,7 +97,7 @@ fn thrust_of_a_strong_and_uneven_vehicle_is_found_on_a_scale() {
     builder.hears("thrust_max 8.3 -> ");
     builder.hears("storing");
     builder.hears("passed");
-    builder.at("(arm-table)", "q");
+    builder.at("(lag)", "q");
     let (status, said, complaint) = builder.ends();
     assert_eq!((status, &*complaint), (Some(1), ""), "{said}");
     let p = board.stored();
