@@ -63,7 +63,8 @@ impl Phone {
 
     /// Records a rotor that turns at `speed` for `dt` s; `full` is its full speed (both rad/s).
     pub fn hear(&mut self, speed: f64, full: f64, dt: f64) {
-        let loud = (speed / full).powi(2);
+        let share = speed / full;
+        let loud = share * share;
         self.rest += dt;
         while self.rest >= 1.0 / RATE {
             self.rest -= 1.0 / RATE;

@@ -142,7 +142,7 @@ mod tests {
         let one = stand.run(Rotors::One(2), 0.6);
         let expected = scenario.vehicle.rotor.steady_thrust(0.6, one.voltage);
         let tilt = scenario.arm_spec(2).static_tilt(expected);
-        let share = one.grams * 9.806_65e-3 / (expected * tilt.cos());
+        let share = one.grams * 9.806_65e-3 / (expected * libm::cos(tilt));
         assert!((share - 1.0).abs() < 0.04, "{share}");
         let before = stand.battery.voltage();
         let all = stand.run(Rotors::All, 0.6);

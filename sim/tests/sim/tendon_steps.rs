@@ -79,7 +79,7 @@ impl Bench {
                 for (arm, sum) in sum.iter_mut().enumerate() {
                     let force = DVec3::new(0.0, 0.0, -GRAVITY);
                     let g = self.sensors[arm].sample(DQuat::IDENTITY, tilt[arm], force);
-                    self.tilt[arm] = f64::from((SIDE[arm] * g.y).atan2(g.z));
+                    self.tilt[arm] = libm::atan2(f64::from(SIDE[arm] * g.y), f64::from(g.z));
                     *sum += self.tilt[arm];
                 }
                 count += 1.0;

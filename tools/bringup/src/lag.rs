@@ -6,13 +6,13 @@ use sophie_control::pilot::static_thrust_test::{Rotors, StaticThrustTest};
 use sophie_fit::motor_lag::{self, MotorLag};
 use sophie_fit::rotor_sound::{self, Sound};
 
-use super::walk::{Verdict, Walk};
+use super::walk::{Stop, Verdict, Walk};
 use super::{Judged, Step, tied};
 
 /// Drives of the train, share of full drive: about the hover, and far enough apart for the ear of a phone.
 const DRIVES: [f32; 2] = [0.3, 0.6];
 
-pub(super) fn lag(walk: &mut Walk<'_>, step: &Step) -> Judged {
+pub(super) fn lag(walk: &mut Walk<'_>, _: &Step) -> Judged {
     walk.ready()?;
     walk.say("  | As for static thrust: body screwed to its stand, nothing within 0.5 m of a disc.");
     walk.say(
@@ -22,26 +22,20 @@ pub(super) fn lag(walk: &mut Walk<'_>, step: &Step) -> Judged {
         return Ok(Verdict::of(false, vec![refused]));
     }
     let test = StaticThrustTest::train(Rotors::One(0), DRIVES[0], DRIVES[1]);
-    loop {
+    let found = loop {
         walk.ask("Does the phone record? Enter steps rotor 1 five times between 30 and 60 %, 12 s:")?;
         match tied::run_test(walk, &test, tied::number())? {
-            Ok(_) => break,
+            Ok(_) => {
+                if let Some(found) = recording(walk, &test)? {
+                    break found;
+                }
+            }
             Err(why) => {
                 walk.say(&format!("  | {why}"));
                 if let Some(refused) = tied::tied_down(walk)? {
                     return Ok(Verdict::of(false, vec![refused]));
                 }
             }
-        }
-    }
-    let found = loop {
-        let file = walk.ask("Stop the recording. Its file, on this computer (r: once more):")?;
-        if file == "r" {
-            return lag(walk, step);
-        }
-        match heard(Path::new(&file), &test) {
-            Ok(found) => break found,
-            Err(why) => walk.say(&format!("  | {why}")),
         }
     };
     let mut verdict = Verdict::of(
@@ -60,6 +54,20 @@ pub(super) fn lag(walk: &mut Walk<'_>, step: &Step) -> Judged {
     }
     verdict.parameters = walk.keep()?;
     Ok(verdict)
+}
+
+/// The lag in the recording that the builder names; `None` for another run.
+fn recording(walk: &mut Walk<'_>, test: &StaticThrustTest) -> Result<Option<MotorLag>, Stop> {
+    loop {
+        let file = walk.ask("Stop the recording. Its file, on this computer (r: once more):")?;
+        if file == "r" {
+            return Ok(None);
+        }
+        match heard(Path::new(&file), test) {
+            Ok(found) => return Ok(Some(found)),
+            Err(why) => walk.say(&format!("  | {why}")),
+        }
+    }
 }
 
 fn heard(file: &Path, test: &StaticThrustTest) -> Result<MotorLag, String> {
