@@ -15,7 +15,7 @@
 //! c = G / (g A), which is the pressure of a sensor without both, the pressure is p = c - z, z = (F_p - F_0) / A
 //! ([`SensorLine`]). Of a sensor with more turn-on than preload z is negative and all pressures from 0 to -z give c = 0:
 //! it reads 0 there, since an arm in the air must count as free. Just above, c is the noise of the converter, which must
-//! not read as -z either: so the missing pressure is added in proportion up to c = [`RAMP`], and in full from there on.
+//! not read as -z either: so the missing pressure is added in proportion up to c = `RAMP`, and in full from there on.
 
 use crate::allocation::wrench::PerArm;
 use crate::maths::scalar;

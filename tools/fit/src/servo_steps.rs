@@ -1,7 +1,7 @@
 //! A tendon from steps of its servo: stiffness, slack and friction by the tilt of a free arm, with and without a known
 //! weight on its tip.
 //!
-//! The arm is the scale ([`bench`] has the laws). The weight on the slack thread tilts the arm by its softness c; on the
+//! The arm is the scale ([`mod@bench`] has the laws). The weight on the slack thread tilts the arm by its softness c; on the
 //! taut one, at a servo that stands, by 1 + k h² c times less, whatever the servo's error. The loop of winding and easing
 //! gives μ, against the servo's play, which unlike friction does not grow with the tension; the angle at which the
 //! thread tightens gives the slack.
