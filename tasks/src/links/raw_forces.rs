@@ -1,7 +1,7 @@
 //! The newest raw readings of the accelerometer, for a reader below the flight level.
 //!
-//! The writer takes three stores and an index, no lock and no wake-up. A reading whose axes belong to two steps, should
-//! the reader be that late, costs a second's RMS nothing that shows.
+//! The writer takes three stores and an index, no lock and no wake-up. A reader that is more than 30 ms late may read axes of
+//! two steps; that is one reading of the thousand in a second's RMS.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 

@@ -4,11 +4,13 @@
 //! a step at t0 is ω(t) = ω1 + (ω0 - ω1) e^(-(t - t0)/τ), seen through the window of the track. A step's τ and t0 are
 //! fitted together, since controller and motor begin late; the interval is Student's over the steps of one direction.
 
+use sophie_control::pilot::static_thrust_test;
+
 use crate::least_squares::{quantile, solve};
 use crate::rotor_sound::{HOP, Track, WINDOW};
 
 /// Steps of a train, up and down in turn.
-const STEPS: usize = 10;
+const STEPS: usize = 2 * static_thrust_test::STEPS as usize;
 /// Lags that are looked for, s.
 pub const LAGS: (f64, f64) = (0.01, 0.35);
 /// Least ratio of the two speeds: 30 to 60 % drive make 1.8.

@@ -1,13 +1,16 @@
 //! The fit of four arms' tables on vehicles as builders have them: tied down, all rotors at once, thrust by the parameters
 //! of the step before, tilt by the arms' own sensors.
 
+mod drawn;
+
 use sophie_control::pilot::static_thrust_test::Rotors;
 use sophie_fit::arm_data::Point;
 use sophie_fit::arm_table::{self, ArmPoint, ArmsFit};
-use sophie_sim::scenario::draw;
-use sophie_sim::scenario::{Overrides, Scenario};
+use sophie_sim::scenario::Scenario;
 use sophie_sim::streams::Streams;
 use sophie_sim::test_stands::thrust_stand::ThrustStand;
+
+use drawn::vehicle;
 
 const VEHICLES: u64 = 100;
 /// As `sophie bringup` runs them, share of full drive.
@@ -15,17 +18,6 @@ const DRIVES: [f64; 5] = [0.3, 0.45, 0.6, 0.75, 0.9];
 const TABLE_1: [f64; 4] = [2.4387, -0.1997, -0.162, 0.0151];
 /// Largest error of the thrust that the step before leaves, share: the row `vehicle.thrust_max_n`, and the curve's.
 const THRUST_ERROR: f64 = 0.03;
-
-fn vehicle(seed: u64) -> Scenario {
-    let mut text = format!("seed = {seed}\n");
-    for drawn in draw::draw(Streams::new(seed)) {
-        let (table, key) = drawn.key.split_once('.').unwrap();
-        if matches!(table, "vehicle" | "world") && key != "pipe_flange_spacing_m" {
-            text += &format!("{}\n", drawn.line());
-        }
-    }
-    Scenario::parse(&text, "drawn", &Overrides::default()).unwrap()
-}
 
 fn session(scenario: &Scenario, seed: u64) -> ArmsFit {
     let streams = Streams::new(seed);

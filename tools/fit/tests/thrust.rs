@@ -1,14 +1,17 @@
 //! The fit of static thrust on vehicles as builders have them: drawn from the table of uncertain numbers, tied down on a
 //! scale with errors of its own, read as `sophie bringup` has it read.
 
+mod drawn;
+
 use sophie_control::pilot::static_thrust_test::Rotors;
 use sophie_fit::thrust::{self, ThrustFit};
 use sophie_fit::thrust_data::{GRAVITY, Reading};
 use sophie_sim::plant::rotor::{NOMINAL_VOLTAGE, Rotor};
-use sophie_sim::scenario::draw;
-use sophie_sim::scenario::{Overrides, Scenario};
+use sophie_sim::scenario::Scenario;
 use sophie_sim::streams::Streams;
 use sophie_sim::test_stands::thrust_stand::ThrustStand;
+
+use drawn::vehicle;
 
 const VEHICLES: u64 = 100;
 /// Commands of all four rotors together, and of each alone, share of full drive.
@@ -20,17 +23,6 @@ const REST: f64 = 20.0;
 const COOL: f64 = 180.0;
 /// Charge of the used battery.
 const USED: f64 = 0.35;
-
-fn vehicle(seed: u64) -> Scenario {
-    let mut text = format!("seed = {seed}\n");
-    for drawn in draw::draw(Streams::new(seed)) {
-        let (table, key) = drawn.key.split_once('.').unwrap();
-        if matches!(table, "vehicle" | "world") && key != "pipe_flange_spacing_m" {
-            text += &format!("{}\n", drawn.line());
-        }
-    }
-    Scenario::parse(&text, "drawn", &Overrides::default()).unwrap()
-}
 
 fn read(stand: &mut ThrustStand, rotor: Option<usize>, command: f64) -> Reading {
     let read = stand.run(rotor.map_or(Rotors::All, Rotors::One), command);

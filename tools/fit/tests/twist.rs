@@ -1,26 +1,18 @@
 //! The fit of torsion on vehicles as builders have them, with weights, ruler and phone that have errors of their own.
 
+mod drawn;
+
 use sophie_fit::twist::{self, Reading, TwistFit};
-use sophie_sim::scenario::draw;
-use sophie_sim::scenario::{Overrides, Scenario};
+use sophie_sim::scenario::Scenario;
 use sophie_sim::streams::Streams;
 use sophie_sim::test_stands::twist_stand::TwistStand;
+
+use drawn::vehicle;
 
 const VEHICLES: u64 = 300;
 /// As `sophie bringup` asks for them, kg and m.
 const MASSES: [f64; 7] = [0.0, 0.03, 0.06, 0.09, -0.03, -0.06, -0.09];
 const LEVER: f64 = 0.1;
-
-fn vehicle(seed: u64) -> Scenario {
-    let mut text = format!("seed = {seed}\n");
-    for drawn in draw::draw(Streams::new(seed)) {
-        let (table, key) = drawn.key.split_once('.').unwrap();
-        if matches!(table, "vehicle" | "world") && key != "pipe_flange_spacing_m" {
-            text += &format!("{}\n", drawn.line());
-        }
-    }
-    Scenario::parse(&text, "drawn", &Overrides::default()).unwrap()
-}
 
 fn session(scenario: &Scenario, seed: u64) -> TwistFit {
     let mut stand = TwistStand::new(scenario, 1, Streams::new(seed));
