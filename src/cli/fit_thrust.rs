@@ -8,10 +8,6 @@ use sophie_terminal::console::{self, Console};
 use super::PROGRAM;
 use super::args::FitThrustArgs;
 
-/// Scatter of a reading, and distance of one from the law, that ask for another look, share.
-const SCATTER: f64 = 0.03;
-const DISTANCE: f64 = 0.08;
-
 /// Fits the table and prints the parameters.
 pub fn run(args: &FitThrustArgs) -> Result<bool, String> {
     let file = console::one_line(&args.readings.display().to_string());
@@ -54,14 +50,14 @@ pub fn run(args: &FitThrustArgs) -> Result<bool, String> {
     }
     console.say("save");
     let (row, distance) = fit.worst;
-    if let Some(scatter) = fit.scatter.filter(|scatter| *scatter > SCATTER) {
+    if let Some(scatter) = fit.scatter.filter(|scatter| *scatter > thrust::SCATTER_MAX) {
         let line = format!(
             "a reading scatters by {:.1} %: 1 to 2 % are usual",
             100.0 * scatter
         );
         complain(PROGRAM, &format!("warning: {file}: {line}"));
     }
-    if distance.abs() > DISTANCE {
+    if distance.abs() > thrust::WORST_MAX {
         let line = format!("row {}: {:+.0} % beside the others", row + 1, 100.0 * distance);
         complain(PROGRAM, &format!("warning: {file}: {line}"));
     }

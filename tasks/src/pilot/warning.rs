@@ -14,7 +14,7 @@ use sophie_ports::retained::StartCause;
 pub enum Warning {
     /// The accelerometer is at its full scale.
     AccelClips,
-    /// The vehicle vibrates, or did when last it flew, more than its attitude is tested for.
+    /// The vehicle vibrates, or did when last it flew, more than a hold by flow bears.
     Vibrates,
     /// Less than a quarter of the stack is unused; an overflow stops the motors.
     Stack,

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 
 use sophie_control::params::Params;
 use sophie_control::pilot::static_thrust_test::HOLD;
-use sophie_fit::thrust::{self, ThrustFit};
+use sophie_fit::thrust::{self, SCATTER_MAX, ThrustFit, WORST_MAX};
 use sophie_fit::thrust_data::{GRAVITY, Reading};
 
 use super::tied::{self, Measured};
@@ -18,10 +18,6 @@ const TOGETHER: [f64; 5] = [45.0, 55.0, 70.0, 85.0, 100.0];
 const ALONE: [f64; 2] = [55.0, 85.0];
 /// Typed readings over what the parameters expect that are asked for once more.
 const USUAL: RangeInclusive<f64> = 0.5..=2.0;
-/// Largest plausible scatter of a reading, share: prop wash on a scale makes 1 %.
-const SCATTER_MAX: f64 = 0.03;
-/// Largest plausible distance of a reading from the law, share: the law's shape costs 3 %.
-const WORST_MAX: f64 = 0.08;
 /// Plausible factors of one rotor: 5 % are usual, 15 % are a damaged propeller, or one of another kind.
 const TRIMS: RangeInclusive<f64> = 0.85..=1.15;
 /// Least lift of four rotors over the weight.

@@ -15,6 +15,10 @@ use super::arm::Fitted;
 use super::least_squares::{quantile, solve};
 use super::thrust_data::Reading;
 
+/// Largest plausible scatter of a reading, share: prop wash on a scale makes 1 %.
+pub const SCATTER_MAX: f64 = 0.03;
+/// Largest plausible distance of a reading from the law, share: the law's shape costs 3 %.
+pub const WORST_MAX: f64 = 0.08;
 /// Half of the 95 % interval of a kitchen scale's gain, share.
 pub const SCALE: f64 = 0.003;
 /// The voltage's power where two voltages do not tell it: the stack's default.

@@ -187,7 +187,7 @@ impl Builder {
         if self.until == Some(&*self.step) {
             return "q";
         }
-        // One tendon stands for four; nobody records the motors' sound.
+        // One tendon stands for four; the lag has no recording here.
         let tendon = self.step.starts_with("tendon-");
         let other = self.only.is_some_and(|only| only != self.step);
         if other || self.step == "lag" || (tendon && self.step != "tendon-1") {
