@@ -5,7 +5,7 @@ use sophie_emulator::chain::Window;
 use super::*;
 
 /// Most instructions of a step, from sensor transfer to motor frame.
-const MOST: u64 = 4800;
+const MOST: u64 = 4860;
 /// The F405's core lacks float minimum and selection.
 const MOST_SMALL: u64 = 5200;
 const STEPS: usize = 40;
