@@ -299,18 +299,7 @@ impl Plant {
         &self.base.state.pose
     }
 
-    /// Ties the body down, level and `height` m above the ground: what a stand would hold it with. Called after each step.
-    pub fn tie(&mut self, height: f64) {
-        let pose = &mut self.base.state.pose;
-        *pose = Pose {
-            position: DVec3::new(pose.position.x, pose.position.y, -height),
-            attitude: DQuat::IDENTITY,
-            velocity: DVec3::ZERO,
-            omega: DVec3::ZERO,
-        };
-    }
-
-    /// Force of the rotors along the body's thrust axis, N: what a scale under a vehicle that is tied down loses.
+    /// Force of the rotors along the body's thrust axis, N: what a scale under a vehicle on a stand loses.
     #[must_use]
     pub fn lift(&self) -> f64 {
         let arms = self.thrust().into_iter().zip(self.tilt());

@@ -43,13 +43,13 @@ pub struct Handling {
     pub sticks: Option<Sticks>,
     /// Rotor that each motor output is wired to.
     pub wiring: MotorMap,
-    /// The body is tied down on a scale.
+    /// The body is tied down on a stand with a scale; arms hang free.
     pub tied: bool,
     /// Charge of a battery that he puts in, 0 to 1; `None`: the one that is in.
     pub battery: Option<f64>,
 }
 
-/// What the operator observes: time, rotors, servo pulses, and the battery voltage by multimeter.
+/// What the operator observes: time, rotors, servo pulses, arms, and the battery voltage by multimeter.
 #[derive(Clone, Debug, Default)]
 pub struct Observation {
     /// Time since power-on, ms.
@@ -64,6 +64,8 @@ pub struct Observation {
     pub servos: PerArm<f64>,
     /// What the scale under the tied vehicle loses, N.
     pub lift: f64,
+    /// Tilt of each arm without his hands, tip up, rad.
+    pub tilts: PerArm<f64>,
 }
 
 struct Table {
@@ -139,12 +141,14 @@ impl BenchOperator {
             volts: plant.battery_voltage(),
             servos: pins.servos,
             lift: plant.lift(),
+            tilts: plant.tilt(),
         };
         let held = table.held.clone();
         table.held.battery = None;
         drop(table);
-        if plant.stands() != held.on_box {
-            plant.stand(held.on_box);
+        let fixed = held.on_box || held.tied;
+        if plant.stands() != fixed {
+            plant.stand(fixed);
         }
         for (arm, (now, to)) in self.hung.iter_mut().zip(held.hung).enumerate() {
             *now += (to - *now).clamp(-HANG, HANG);
@@ -161,7 +165,6 @@ impl BenchOperator {
             bent: held.bent,
             height: held.height,
             sticks: held.sticks,
-            tied: held.tied,
             battery: held.battery,
         }
     }
@@ -189,8 +192,6 @@ pub struct HandledVehicle {
     /// Height above the table, m.
     pub height: f64,
     sticks: Option<Sticks>,
-    /// Tied down on a scale.
-    pub(crate) tied: bool,
     /// Charge of a battery that he puts in now.
     pub(crate) battery: Option<f64>,
 }

@@ -35,8 +35,6 @@ use crate::wires::{BoardFault, Digest, FarEnd, Pins, Run, Wires};
 
 /// Arms hang free from this height on, m.
 const AIRBORNE: f64 = 0.3;
-/// Height of a vehicle that is tied down on a scale, m: what it blows misses the scale, and no ground carries it.
-const STAND: f64 = 1.0;
 
 /// A vehicle with the emulated board.
 pub struct ClosedLoop<'a> {
@@ -302,13 +300,8 @@ impl Aircraft for ClosedLoop<'_> {
             let words = frame.iter().map(|byte| on_line(RcProtocol::Crsf, *byte));
             self.plan.radio(words, &mut self.wires.receiver);
         }
-        if let Some(held) = &held {
-            if held.tied {
-                plant.tie(STAND);
-            }
-            if let Some(charge) = held.battery {
-                plant.change_battery(charge);
-            }
+        if let Some(charge) = held.as_ref().and_then(|held| held.battery) {
+            plant.change_battery(charge);
         }
         self.sensors
             .step(plant, &actuators, held.as_ref(), &mut self.wires);

@@ -145,6 +145,15 @@ impl Builder {
         }
     }
 
+    /// Holds arm `number`, 0 to 3, alone at the `tilt`, rad.
+    fn bends(&self, number: usize, tilt: f64) {
+        let rest = self.operator.observe().tilts;
+        self.does(|held| {
+            held.bent = [0.0; 4];
+            held.bent[number] = tilt - rest[number];
+        });
+    }
+
     fn settles(&self) {
         let (begun, from) = (Instant::now(), self.operator.observe().ms);
         while self.operator.observe().ms < from + SETTLED {
@@ -166,9 +175,9 @@ impl Builder {
         if let Some(side) = side {
             self.does(|held| held.below = side);
         } else if self.last.contains("Hold the arm straight") {
-            self.does(|held| held.bent = [0.0; 4]);
+            self.bends(number, 0.0);
         } else if self.last.contains("Bend its tip up") {
-            self.does(|held| held.bent[number] = BENT);
+            self.bends(number, BENT);
         } else if self.last.contains("Arm in its cradle") {
             self.does(|held| held.bent[number] = CRADLE);
         } else if let Some(grams) = self.load() {
