@@ -20,6 +20,10 @@ const SPEED_GAIN: f64 = 3.6;
 /// Speed error to the wind trim, 1/s², and the distance within which it is learned, m.
 const WIND_GAIN: f64 = 0.2;
 const WIND_NEAR: f64 = 0.7;
+/// Way that the vehicle makes towards a spot farther away, m, in a time, s. With less, the pilot learns the trim there too:
+/// a strong wind holds it off before he has leaned enough.
+const WAY: f64 = 0.3;
+const WAY_TIME: f64 = 2.0;
 /// Largest wind trim, m/s².
 const WIND_MAX: f64 = 1.5;
 /// Largest acceleration asked for, m/s² (14° of lean).
@@ -76,6 +80,8 @@ pub struct Guidance {
     /// See [`Guidance::strength`].
     strength: f64,
     wind: DVec2,
+    /// Distance from the spot when [`WAY_TIME`] last began, m, how long that is ago, s, and no way made before it.
+    way: (f64, f64, bool),
     throttle: f64,
     foresight: Foresight,
     /// Predicted state at the time when the sticks act: position and velocity, NED.
@@ -92,6 +98,7 @@ impl Guidance {
             hover,
             strength: Self::strength_of(params),
             wind: DVec2::ZERO,
+            way: (0.0, 0.0, false),
             throttle: 0.0,
             foresight: Foresight::new(delay),
             ahead: Default::default(),
@@ -140,7 +147,7 @@ impl Guidance {
         let away = course.target - position.truncate();
         let speed = (away * POSITION_GAIN).clamp_length_max(SPEED_MAX);
         let error = speed - velocity.truncate();
-        if away.length() < WIND_NEAR {
+        if self.learns(away.length(), dt) {
             self.wind = (self.wind + error * (WIND_GAIN * dt)).clamp_length_max(WIND_MAX);
         }
         let horizontal = (error * SPEED_GAIN + self.wind).clamp_length_max(ACCELERATION_MAX);
@@ -153,6 +160,23 @@ impl Guidance {
             throttle: self.climb(course.vertical, libm::cos(roll) * libm::cos(pitch), dt),
             ..Default::default()
         }
+    }
+
+    /// Whether the speed error at the distance `away`, m, is that of the trim and not of the way.
+    fn learns(&mut self, away: f64, dt: f64) -> bool {
+        let (from, time, stands) = &mut self.way;
+        if away < WIND_NEAR {
+            (*time, *stands) = (0.0, false);
+            return true;
+        }
+        if *time <= 0.0 {
+            *from = away;
+        }
+        *time += dt;
+        if *time > WAY_TIME {
+            (*stands, *time) = (*from - away < WAY, 0.0);
+        }
+        *stands
     }
 
     /// Roll and pitch stick that hold the vehicle still in the air, against the wind and the error of the vehicle's

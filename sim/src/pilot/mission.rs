@@ -119,6 +119,8 @@ pub struct Mission {
     /// Point to hold: north, east, m; height at the step's beginning.
     pub(super) spot: DVec2,
     pub(super) height: f64,
+    /// Time of all approaches, s.
+    pub(super) approached: f64,
     /// Throttle set by hand when not flying.
     pub(super) throttle: f64,
     /// Number of failed touches.
@@ -151,6 +153,7 @@ impl Mission {
             held: 0.0,
             spot: DVec2::ZERO,
             height: 0.0,
+            approached: 0.0,
             throttle: 0.0,
             missed: 0,
             trouble: None,

@@ -16,12 +16,23 @@ const OVER_AGAIN: f64 = 0.4;
 const SETTLED: f64 = 0.20;
 const SETTLED_SPEED: f64 = 0.20;
 const SETTLED_TIME: f64 = 1.5;
+/// Time after which distance and speed may be larger, in proportion to the time, and how often as large at most: in gusts
+/// he descends from where he gets to.
+const SETTLING: f64 = 12.0;
+const UNSETTLED: f64 = 2.0;
 /// Rates of descent, m/s: to the gate over the pipe, and from there onto it.
 const DESCENT: f64 = 0.15;
 const LAST_DESCENT: f64 = 0.25;
 /// Height of the centre of mass over the pipe's top at the gate, where the pilot waits until he is over the
 /// crown, and the height at which the belly touches, m.
 const GATE: f64 = 0.11;
+/// Height by which he waits higher after each [`PATIENCE`] without a touch, and the highest, m: within a rotor's radius of
+/// the pipe its ground effect pushes the vehicle off the crown faster than eyes and sticks bring it back; a rotor's
+/// diameter above, a sixth of that is left.
+const HIGHER: f64 = 0.06;
+const HIGHEST: f64 = 0.29;
+/// What he accepts there more than at [`GATE`], share of the tolerances: he risks a try.
+const RISKED: f64 = 1.0;
 const BELLY: f64 = 0.05;
 /// Share of the tolerances that applies at the gate at first, and the time, s, over which it grows to 1.
 const STRICT: f64 = 0.6;
@@ -100,19 +111,21 @@ impl Mission {
 
     pub(super) fn fly_to_pipe(&mut self, v: &View<'_>, dt: f64) -> Progress {
         let target = self.go_to(v, self.pipe, self.pipe_top + OVER, dt);
-        if self.settled(v, dt) {
+        let share = (self.step_time / SETTLING).clamp(1.0, UNSETTLED);
+        if self.settled(v, share, dt) {
             Progress::Done(target)
         } else {
             Progress::Going(target)
         }
     }
 
-    fn settled(&mut self, v: &View<'_>, dt: f64) -> bool {
+    /// Whether the vehicle is over the pipe, within `share` of the distance and speed.
+    fn settled(&mut self, v: &View<'_>, share: f64, dt: f64) -> bool {
         let off = libm::hypot(
             (v.seen.position.truncate() - self.pipe).length(),
             v.height() - self.pipe_top - OVER,
         );
-        let there = off < SETTLED && v.seen.velocity.length() < SETTLED_SPEED;
+        let there = off < share * SETTLED && v.seen.velocity.length() < share * SETTLED_SPEED;
         self.held_for(there, SETTLED_TIME, dt)
     }
 
@@ -136,6 +149,8 @@ impl Mission {
     fn approach(&mut self, v: &View<'_>, throttle: f64, dt: f64) -> (StickTarget, bool) {
         let over = v.height() - self.pipe_top;
         let off = v.seen.position.truncate() - self.pipe;
+        self.approached += dt;
+        let gate = (GATE + HIGHER * (self.approached / PATIENCE).floor()).min(HIGHEST);
         if self.phase == Phase::GoAround {
             let target = self.go_to(v, self.pipe, self.pipe_top + OVER_AGAIN, dt);
             if over > 0.75 * OVER_AGAIN && off.length() < BACK {
@@ -153,10 +168,12 @@ impl Mission {
             self.missed += u32::from(self.phase == Phase::Plant || over < -MISSED);
             self.enter(Phase::GoAround);
         }
+        let risk = 1.0 + RISKED * (gate - GATE) / (HIGHEST - GATE);
         match self.phase {
             Phase::Commit => {
+                let accepted = risk * COMMITTED;
                 let outside =
-                    away.y.abs() > COMMITTED * self.within || velocity.y.abs() > COMMITTED * self.drift;
+                    away.y.abs() > accepted * self.within || velocity.y.abs() > accepted * self.drift;
                 if outside && over_ahead > BELLY + 0.02 {
                     self.enter(Phase::Descend);
                 } else if over_ahead < BELLY {
@@ -171,18 +188,18 @@ impl Mission {
                 if self.phase != Phase::Descend {
                     self.enter(Phase::Descend);
                 }
-                let share = (STRICT + (1.0 - STRICT) * self.phase_time / PATIENCE).min(1.0);
+                let share = risk * (STRICT + (1.0 - STRICT) * self.phase_time / PATIENCE).min(1.0);
                 let (within, drift) = (share * self.within, share * self.drift);
                 let centred = away.y.abs() < within
                     && (away.y + LAST_TIME * velocity.y).abs() < within
                     && velocity.y.abs() < drift
                     && away.x.abs() < ALONG
                     && velocity.x.abs() < 2.0 * drift;
-                let at_gate = over_ahead < 1.5 * GATE;
+                let at_gate = over_ahead < 1.5 * gate;
                 if self.held_for(at_gate && centred, CENTRED_TIME, dt) {
                     self.enter(Phase::Commit);
                 }
-                let rate = (1.5 * (GATE - over_ahead)).clamp(-DESCENT, DESCENT);
+                let rate = (1.5 * (gate - over_ahead)).clamp(-DESCENT, DESCENT);
                 (self.climb_over(v, self.pipe, rate, dt), false)
             }
         }

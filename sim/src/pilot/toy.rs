@@ -29,6 +29,8 @@ pub struct Toy {
     pub sticks: Option<Sticks>,
     /// Steady force of the wind, N.
     pub wind: DVec3,
+    /// Acceleration off the crown per distance from it, 0.2 m at most, 1/s², on the pipe; it falls with the height over it, by 0.15 m.
+    pub push_off: f64,
     /// Grip pressure that the closing reaches, Pa.
     pub pressure: f32,
     /// Thrust of the real rotors over the nominal ones.
@@ -61,6 +63,7 @@ impl Toy {
             out: Outputs::default(),
             sticks: None,
             wind: DVec3::ZERO,
+            push_off: 0.0,
             pressure: 950.0,
             strength: 1.0,
             battery: 15.5,
@@ -195,6 +198,9 @@ impl Toy {
         let up = libm::cos(s.roll) * libm::cos(s.pitch);
         let mut force = self.thrust * lean.extend(-up) + self.gust.force() + self.wind;
         force.z += mass * f64::from(GRAVITY);
+        let over = -s.position.z - BELLY - self.scenario.world.pipe_top;
+        let beside = s.position.y - self.scenario.world.pipe_position[1];
+        force.y += mass * self.push_off * beside.clamp(-0.2, 0.2) * libm::exp(-over.max(0.0) / 0.15);
         let depth = floor(&self.scenario, s.position) + BELLY + s.position.z;
         if depth > 0.0 {
             let normal = (4000.0 * depth + 120.0 * s.velocity.z).max(0.0);
