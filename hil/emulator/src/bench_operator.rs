@@ -11,6 +11,8 @@ use sophie_control::params::MotorMap;
 use sophie_control::pilot::rc::Sticks;
 use sophie_sim::devices::crsf;
 use sophie_sim::plant::Plant;
+use sophie_sim::streams::Streams;
+use sophie_sim::test_stands::phone::Phone;
 
 use crate::wires::Pins;
 
@@ -21,6 +23,8 @@ const STEP: f64 = 1e-3;
 const FRAME_MS: u64 = 20;
 /// Weight that the operator hangs on or takes off in a step, N: 3 N in a second.
 const HANG: f64 = 3e-3;
+/// Rotor speed at which the phone records its loudest tones, rad/s: full drive of the default rotor.
+const LOUDEST: f64 = 740.0;
 /// Lowest rotor speed that the operator notices, rad/s.
 const TURNS: f64 = 20.0;
 
@@ -47,6 +51,8 @@ pub struct Handling {
     pub tied: bool,
     /// Charge of a battery that he puts in, 0 to 1; `None`: the one that is in.
     pub battery: Option<f64>,
+    /// A phone beside rotor 1 records; a new recording begins where it was off.
+    pub records: bool,
 }
 
 /// What the operator observes: time, rotors, servo pulses, arms, and the battery voltage by multimeter.
@@ -71,6 +77,9 @@ pub struct Observation {
 struct Table {
     held: Handling,
     seen: Observation,
+    /// The last recording.
+    phone: Option<Phone>,
+    recorded: bool,
 }
 
 /// The operator, shared by the test that directs him and the board that he handles.
@@ -95,12 +104,32 @@ impl Default for BenchOperator {
             wiring: MotorMap::STRAIGHT,
             tied: false,
             battery: None,
+            records: false,
         };
         let seen = Observation::default();
         Self {
-            table: Arc::new(Mutex::new(Table { held, seen })),
+            table: Arc::new(Mutex::new(Table {
+                held,
+                seen,
+                phone: None,
+                recorded: false,
+            })),
             attitude: DQuat::IDENTITY,
             hung: [0.0; 4],
+        }
+    }
+}
+
+impl Table {
+    /// Passes the sound of the rotor at `speed`, rad/s, to the phone for a step.
+    fn records(&mut self, speed: f64) {
+        let began = self.held.records && !self.recorded;
+        self.recorded = self.held.records;
+        if began {
+            self.phone = Some(Phone::new(Streams::new(1)));
+        }
+        if let Some(phone) = self.phone.as_mut().filter(|_| self.recorded) {
+            phone.hear(speed, LOUDEST, STEP);
         }
     }
 }
@@ -119,6 +148,12 @@ impl BenchOperator {
     #[must_use]
     pub fn observe(&self) -> Observation {
         self.table().seen.clone()
+    }
+
+    /// The last recording as a WAV file.
+    #[must_use]
+    pub fn recording(&self) -> Option<Vec<u8>> {
+        self.table().phone.as_ref().map(Phone::wav)
     }
 
     /// Commands in rotor order, from commands in output order.
@@ -145,6 +180,7 @@ impl BenchOperator {
         };
         let held = table.held.clone();
         table.held.battery = None;
+        table.records(rotors[0]);
         drop(table);
         let fixed = held.on_box || held.tied;
         if plant.stands() != fixed {

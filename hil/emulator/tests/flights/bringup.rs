@@ -29,6 +29,8 @@ const HYSTERESIS: f64 = 0.07;
 /// Silence of an emulated board on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(600);
 
+/// Lag of the vehicle's motors, s.
+const LAG: f64 = 0.08;
 /// Stiffness of the vehicle's tendons, N/m.
 const STIFFNESS: f64 = 4000.0;
 
@@ -92,6 +94,7 @@ fn walk(folder: &Folder, builder: impl FnOnce(BenchOperator) -> Builder) -> Walk
     // Not what the parameters have.
     vehicle.vehicle.tendons.stiffness = [STIFFNESS; 4];
     vehicle.vehicle.tendons.friction = [0.3; 4];
+    vehicle.vehicle.rotor.spin.up = LAG;
     vehicle.faults.pressure_gain = GAIN;
     vehicle.sensors.pressure.turn_on = TURN_ON;
     vehicle.sensors.pressure.hysteresis = HYSTERESIS;
@@ -138,7 +141,7 @@ fn a_new_board_is_brought_up_through_all_steps() {
     let said = builder.said();
     assert_eq!(all_passed, Ok(true), "{said}\n{log}");
     let protocol = folder.read();
-    let left = "left out: tendon-2, tendon-3, tendon-4, lag";
+    let left = "left out: tendon-2, tendon-3, tendon-4";
     assert!(protocol["state"].as_str().unwrap().ends_with(left), "{said}");
     assert!(protocol["firmware"].as_str().unwrap().ends_with(" on matek-h743"));
     assert!(
@@ -180,6 +183,8 @@ fn a_new_board_is_brought_up_through_all_steps() {
     assert!(figures(step("vibration")).starts_with("vibration 0."), "{said}");
     let stiffness = parameter("tendon-1", "tendon_stiffness");
     assert!((stiffness / STIFFNESS - 1.0).abs() < 0.15, "{stiffness}\n{said}");
+    let lag = parameter("lag", "motor_tau");
+    assert!((lag / LAG - 1.0).abs() < 0.15, "{lag}");
     let friction = parameter("friction", "pipe_friction");
     assert!((friction / FRICTION - 1.0).abs() < 0.03, "{friction}");
     assert!(
@@ -271,6 +276,14 @@ fn a_tied_vehicle_s_arms_bend_as_the_simulated_ones() {
         // The default parameters have the thrust to 3 %.
         assert!((found - truth).abs() < 2.0, "{newton} N: {found} {truth}\n{said}");
     }
+}
+
+#[test]
+#[ignore = "minutes of an emulated board: .ci/campaign walks it"]
+fn a_tied_vehicle_s_motors_sound_as_slow_as_they_are() {
+    let (step, said) = tied("bringup-lag", "lag");
+    let lag = step["parameters"]["motor_tau"].as_float().unwrap();
+    assert!((lag / LAG - 1.0).abs() < 0.15, "{lag}\n{said}");
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! The scripted builder whom `sophie bringup` leads: replies, and the handling of the vehicle before each.
 
 use std::collections::VecDeque;
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use sophie_bringup::{Reply, User};
@@ -66,6 +67,16 @@ pub(super) struct Builder {
     /// The kitchen scale, and what it has shown while rotors ran, N.
     scale: Scale,
     lifts: Vec<f64>,
+    recording: Option<Recording>,
+}
+
+/// The phone's file, which ends with the walk.
+struct Recording(PathBuf);
+
+impl Drop for Recording {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_file(&self.0);
+    }
 }
 
 impl Builder {
@@ -86,6 +97,7 @@ impl Builder {
             only: None,
             scale: Scale::new(Streams::new(1)),
             lifts: Vec::new(),
+            recording: None,
         }
     }
 
@@ -162,6 +174,11 @@ impl Builder {
         }
     }
 
+    /// Rotors of the tied vehicle run in the present step: hands are off.
+    fn runs_rotors(&self) -> bool {
+        matches!(&*self.step, "thrust" | "lag" | "arm-table" | "vibration")
+    }
+
     /// The load that the last line asks for, g.
     fn load(&self) -> Option<f64> {
         let (begin, _) = self.last.split_once(" g, the segment counted")?;
@@ -196,10 +213,10 @@ impl Builder {
         if self.until == Some(&*self.step) {
             return "q";
         }
-        // One tendon stands for four; the lag has no recording here.
+        // One tendon stands for four.
         let tendon = self.step.starts_with("tendon-");
         let other = self.only.is_some_and(|only| only != self.step);
-        if other || self.step == "lag" || (tendon && self.step != "tendon-1") {
+        if other || (tendon && self.step != "tendon-1") {
             return "s";
         }
         self.moves = None;
@@ -269,6 +286,17 @@ impl Builder {
         format!("{:.0}", self.scale.read(lift, FLUCTUATION))
     }
 
+    /// File of the phone's recording.
+    fn stops_recording(&mut self) -> String {
+        self.settles();
+        self.operator.change(|held| held.records = false);
+        let file = std::env::temp_dir().join(format!("sophie-{}-steps.wav", std::process::id()));
+        std::fs::write(&file, self.operator.recording().unwrap()).unwrap();
+        let name = file.to_str().unwrap().to_owned();
+        self.recording = Some(Recording(file));
+        name
+    }
+
     fn which_turned(&mut self) -> String {
         // The order is acknowledged before the motor has speed.
         self.settles();
@@ -307,6 +335,12 @@ impl Builder {
         } else if begins("Type tied") {
             self.operator.change(|held| held.tied = true);
             "tied".to_owned()
+        } else if begins("Does the phone record") {
+            self.operator.change(|held| held.records = true);
+            self.settles();
+            String::new()
+        } else if begins("Stop the recording") {
+            self.stops_recording()
         } else if begins("A used battery") {
             self.operator.change(|held| held.battery = Some(USED));
             self.settles();
@@ -403,7 +437,7 @@ impl User for Builder {
     }
 
     fn live(&mut self, line: &str) {
-        if matches!(&*self.step, "thrust" | "arm-table" | "vibration") {
+        if self.runs_rotors() {
             self.lifts.push(self.operator.observe().lift);
             return;
         }
@@ -418,7 +452,7 @@ impl User for Builder {
     }
 
     fn answered(&mut self) -> Option<Reply> {
-        if matches!(&*self.step, "thrust" | "arm-table" | "vibration") {
+        if self.runs_rotors() {
             return None;
         }
         let now = self.operator.observe().ms;
