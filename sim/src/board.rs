@@ -212,8 +212,9 @@ impl Board {
             sensors.arm_clock -= 1.0;
             let (attitude, force, tilt) = (plant.pose().attitude, plant.specific_force(), plant.tilt());
             let mut gravity = self.arm_gravity.get();
-            for ((g, arm), tilt) in gravity.iter_mut().zip(&mut sensors.arms).zip(tilt) {
-                let sent = arm.sample(attitude, tilt, force);
+            let tips = tilt.into_iter().zip(plant.rotor_speed());
+            for ((g, arm), (tilt, rotor)) in gravity.iter_mut().zip(&mut sensors.arms).zip(tips) {
+                let sent = arm.sample(attitude, tilt, force, rotor);
                 *g = (arm.broken() != Some(TiltBreak::Silent)).then_some(sent);
             }
             self.arm_gravity.set(gravity);

@@ -113,8 +113,9 @@ impl Sensors {
             for (tilt, bent) in tilt.iter_mut().zip(operator.map_or([0.0; 4], |held| held.bent)) {
                 *tilt += bent;
             }
-            for ((g, arm), tilt) in self.gravity.iter_mut().zip(&mut self.arms).zip(tilt) {
-                *g = arm.sample(attitude, tilt, force);
+            let tips = tilt.into_iter().zip(plant.rotor_speed());
+            for ((g, arm), (tilt, rotor)) in self.gravity.iter_mut().zip(&mut self.arms).zip(tips) {
+                *g = arm.sample(attitude, tilt, force, rotor);
             }
         }
         wires.arms = self.gravity.map(|g| g.to_array().map(f64::from));

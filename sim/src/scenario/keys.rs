@@ -925,6 +925,11 @@ pub const KEYS: &[Key] = &[
         sensors.tilt.step
     ),
     number!(
+        "sensors.tilt_vibration_m_s2",
+        Range::new(0.0, 60.0, "m/s2"),
+        sensors.tilt.vibration
+    ),
+    number!(
         "sensors.sbus_slots",
         Range::new(0.0, sbus::SLOTS as f64, "sensors"),
         sensors.sbus_slots

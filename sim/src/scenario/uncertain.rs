@@ -821,6 +821,14 @@ pub const QUANTITIES: &[Quantity] = &[
         ..FIXED
     },
     Quantity {
+        key: "sensors.tilt_vibration_m_s2",
+        all: Some(Spread::Within(1.0, 9.0)),
+        source: "at an arm's tip, by its rotor's imbalance at 600 rad/s: 8.6 by 0.3 mm at 12 g (estimated)",
+        truth: |s| vec![s.sensors.tilt.vibration],
+        assumed: |_| vec![0.0],
+        ..FIXED
+    },
+    Quantity {
         key: "sensors.flow_x_m",
         calibration: Some(RULER),
         exact: true,

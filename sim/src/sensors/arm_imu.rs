@@ -1,12 +1,14 @@
 //! Sensor at an arm's tip: the BNO055's fused gravity vector, after its datasheet.
 //!
 //! [`TiltErrors`] adds those that users report, off by default: a fusion that stands still while the sensor turns slowly,
-//! and steps of the running calibration.
+//! steps of the running calibration, and the vibration of the arm's rotor.
 
+mod shaken;
 mod steps;
 mod still;
 
 use std::collections::VecDeque;
+use std::f64::consts::TAU;
 
 use glam::{DQuat, DVec3};
 use rand::distr::Distribution;
@@ -14,6 +16,7 @@ use rand_pcg::Pcg64Mcg;
 use sophie_control::allocation::wrench::SIDE;
 use sophie_control::maths::vector::Vec3;
 
+use self::shaken::Shaken;
 use self::steps::Steps;
 use self::still::Still;
 use crate::normal::StandardNormal;
@@ -39,6 +42,8 @@ pub struct TiltErrors {
     pub dead_zone: f64,
     /// Largest error that a step of the running calibration leaves, rad.
     pub step: f64,
+    /// Amplitude of the tip by its rotor's imbalance at 600 rad/s, m/s².
+    pub vibration: f64,
 }
 
 /// A fault of a sensor.
@@ -58,6 +63,7 @@ pub struct ArmImu {
     leaked: DVec3,
     still: Still,
     calibration: Steps,
+    shaken: Shaken,
     pipeline: VecDeque<Vec3>,
     rng: Pcg64Mcg,
     /// Fault to come, and the number of fusion steps until it begins.
@@ -77,6 +83,7 @@ impl ArmImu {
             leaked: DVec3::ZERO,
             still: Still::new(0.0),
             calibration: Steps::new(0.0, streams.of(&format!("{name}.calibration"))),
+            shaken: Shaken::new(0.0, TAU * streams.unit(&format!("{name}.imbalance"))),
             pipeline: VecDeque::with_capacity(LATENCY + 1),
             rng: streams.of(&name),
             breaks: None,
@@ -99,6 +106,7 @@ impl ArmImu {
         Self {
             still: Still::new(errors.dead_zone),
             calibration: self.calibration.up_to(errors.step),
+            shaken: self.shaken.with(errors.vibration),
             ..self
         }
     }
@@ -110,17 +118,17 @@ impl ArmImu {
         (self.steps > at).then_some(broken)
     }
 
-    /// A fusion step at tilt `tilt` rad, body at `attitude` under `specific_force` (m/s², body); returns delayed
-    /// gravity, m/s², arm axes.
-    pub fn sample(&mut self, attitude: DQuat, tilt: f64, specific_force: DVec3) -> Vec3 {
+    /// A fusion step at tilt `tilt` rad, body at `attitude` under `specific_force` (m/s², body), the arm's rotor at `rotor`
+    /// rad/s; returns delayed gravity, m/s², arm axes.
+    pub fn sample(&mut self, attitude: DQuat, tilt: f64, specific_force: DVec3, rotor: f64) -> Vec3 {
         self.steps += 1;
         if self.broken().is_none() {
-            self.last = self.fuse(attitude, tilt, specific_force);
+            self.last = self.fuse(attitude, tilt, specific_force, rotor);
         }
         self.last
     }
 
-    fn fuse(&mut self, attitude: DQuat, tilt: f64, specific_force: DVec3) -> Vec3 {
+    fn fuse(&mut self, attitude: DQuat, tilt: f64, specific_force: DVec3, rotor: f64) -> Vec3 {
         let down = attitude.conjugate() * DVec3::new(0.0, 0.0, 9.806_65);
         let motion = -specific_force - down;
         self.leaked += (motion * LEAK.0 - self.leaked) * (1.0 / (RATE_HZ * LEAK.1));
@@ -130,6 +138,7 @@ impl ArmImu {
             Some(fused) => fused + arm.conjugate() * self.leaked,
             None => arm.conjugate() * (down + self.leaked),
         };
+        let seen = seen + self.shaken.step(arm.conjugate() * down, rotor);
         let mut axis = |x: f64| {
             let n: f64 = StandardNormal.sample(&mut self.rng);
             (((x + n * NOISE) / LSB).round() * LSB) as f32
@@ -153,12 +162,12 @@ mod tests {
         let mut imu = ArmImu::new(0, Streams::new(5));
         let rest = DVec3::new(0.0, 0.0, -9.806_65);
         for _ in 0..10 {
-            imu.sample(DQuat::IDENTITY, 0.0, rest);
+            imu.sample(DQuat::IDENTITY, 0.0, rest, 0.0);
         }
-        let old = imu.sample(DQuat::IDENTITY, 0.5, rest);
+        let old = imu.sample(DQuat::IDENTITY, 0.5, rest, 0.0);
         assert!(old.y.abs() < 0.25, "{old:?}");
-        imu.sample(DQuat::IDENTITY, 0.5, rest);
-        let new = imu.sample(DQuat::IDENTITY, 0.5, rest);
+        imu.sample(DQuat::IDENTITY, 0.5, rest, 0.0);
+        let new = imu.sample(DQuat::IDENTITY, 0.5, rest, 0.0);
         // Left arm, tip up: +0.5 rad about x, so y = g sin 0.5.
         assert!(
             (f64::from(new.y) - 9.806_65 * libm::sin(0.5f64)).abs() < 0.25,
@@ -178,7 +187,7 @@ mod tests {
             let steps = (RATE_HZ / rate) as u32;
             (0..steps).fold(0.0_f64, |most, step| {
                 let tilt = f64::from(step) * rate / RATE_HZ;
-                let seen = imu.sample(DQuat::IDENTITY, tilt, rest);
+                let seen = imu.sample(DQuat::IDENTITY, tilt, rest, 0.0);
                 most.max(tilt - libm::atan2(f64::from(seen.y), seen.z.into()))
             })
         };
@@ -191,7 +200,9 @@ mod tests {
     fn a_stuck_sensor_sends_its_last_vector_from_when_it_breaks() {
         let mut imu = ArmImu::new(1, Streams::new(5)).with_fault(0.0, Some((TiltBreak::Stuck, 0.1)));
         let rest = DVec3::new(0.0, 0.0, -9.806_65);
-        let sent: Vec<Vec3> = (0..30).map(|_| imu.sample(DQuat::IDENTITY, 0.2, rest)).collect();
+        let sent: Vec<Vec3> = (0..30)
+            .map(|_| imu.sample(DQuat::IDENTITY, 0.2, rest, 0.0))
+            .collect();
         let changes = sent.windows(2).filter(|pair| pair[0] != pair[1]).count();
         assert!((5..=9).contains(&changes), "{changes}");
         assert!(sent[10..].iter().all(|v| *v == sent[9]));

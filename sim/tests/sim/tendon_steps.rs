@@ -78,7 +78,7 @@ impl Bench {
                 let tilt = self.plant.tilt();
                 for (arm, sum) in sum.iter_mut().enumerate() {
                     let force = DVec3::new(0.0, 0.0, -GRAVITY);
-                    let g = self.sensors[arm].sample(DQuat::IDENTITY, tilt[arm], force);
+                    let g = self.sensors[arm].sample(DQuat::IDENTITY, tilt[arm], force, 0.0);
                     self.tilt[arm] = libm::atan2(f64::from(SIDE[arm] * g.y), f64::from(g.z));
                     *sum += self.tilt[arm];
                 }
