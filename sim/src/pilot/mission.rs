@@ -119,7 +119,7 @@ pub struct Mission {
     /// Point to hold: north, east, m; height at the step's beginning.
     pub(super) spot: DVec2,
     pub(super) height: f64,
-    /// Time of all approaches, s.
+    /// Time of the step's approaches, s.
     pub(super) approached: f64,
     /// Throttle set by hand when not flying.
     pub(super) throttle: f64,
@@ -172,6 +172,7 @@ impl Mission {
         self.enter(Phase::Start);
         self.step_time = 0.0;
         self.missed = 0;
+        self.approached = 0.0;
         self.height = -seen.position.z;
     }
 

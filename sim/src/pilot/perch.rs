@@ -31,8 +31,6 @@ const GATE: f64 = 0.11;
 /// diameter above, a sixth of that is left.
 const HIGHER: f64 = 0.06;
 const HIGHEST: f64 = 0.29;
-/// What he accepts there more than at [`GATE`], share of the tolerances: he risks a try.
-const RISKED: f64 = 1.0;
 const BELLY: f64 = 0.05;
 /// Share of the tolerances that applies at the gate at first, and the time, s, over which it grows to 1.
 const STRICT: f64 = 0.6;
@@ -168,12 +166,10 @@ impl Mission {
             self.missed += u32::from(self.phase == Phase::Plant || over < -MISSED);
             self.enter(Phase::GoAround);
         }
-        let risk = 1.0 + RISKED * (gate - GATE) / (HIGHEST - GATE);
         match self.phase {
             Phase::Commit => {
-                let accepted = risk * COMMITTED;
                 let outside =
-                    away.y.abs() > accepted * self.within || velocity.y.abs() > accepted * self.drift;
+                    away.y.abs() > COMMITTED * self.within || velocity.y.abs() > COMMITTED * self.drift;
                 if outside && over_ahead > BELLY + 0.02 {
                     self.enter(Phase::Descend);
                 } else if over_ahead < BELLY {
@@ -188,7 +184,7 @@ impl Mission {
                 if self.phase != Phase::Descend {
                     self.enter(Phase::Descend);
                 }
-                let share = risk * (STRICT + (1.0 - STRICT) * self.phase_time / PATIENCE).min(1.0);
+                let share = (STRICT + (1.0 - STRICT) * self.phase_time / PATIENCE).min(1.0);
                 let (within, drift) = (share * self.within, share * self.drift);
                 let centred = away.y.abs() < within
                     && (away.y + LAST_TIME * velocity.y).abs() < within

@@ -701,7 +701,7 @@ pub const QUANTITIES: &[Quantity] = &[
         key: "vehicle.vibration_m_s2",
         all: Some(Spread::Within(0.5, 4.0)),
         source: "up to 15 m/s² of all rotors on three axes are normal (ArduPilot, measuring vibration; 3DR's Iris); `bringup`'s step \
-                 `vibration` passes all of these: its mark is at 6",
+                 `vibration` passes all of these: its mark is at 7",
         truth: |s| vec![s.vehicle.vibration.once],
         ..FIXED
     },
