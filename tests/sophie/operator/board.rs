@@ -103,7 +103,7 @@ pub struct Hands {
     pub wiring: MotorMap,
     /// Its time is that of the wall.
     pub real_time: bool,
-    /// Its time runs four times as fast only: who renews an order has a third of a second.
+    /// Its time runs twice as fast only: who renews an order has two thirds of a second.
     pub unhurried: bool,
     /// It is powered off and on.
     pub power_cycle: bool,
@@ -557,7 +557,7 @@ impl Run {
             let round = if hands.real_time {
                 Duration::from_millis(ROUND_MS)
             } else if hands.unhurried {
-                Duration::from_millis(ROUND_MS) / 4
+                Duration::from_millis(ROUND_MS) / 2
             } else {
                 ROUND
             };
