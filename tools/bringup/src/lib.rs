@@ -429,12 +429,7 @@ fn one(walk: &mut Walk<'_>, protocol: &mut Protocol, step: &Step) -> Result<bool
     for line in &verdict.figures {
         walk.say(&format!("    {line}"));
     }
-    walk.say(match ended {
-        Ended::Passed => "  passed",
-        Ended::Failed => "  FAILED",
-        Ended::Skipped => "  skipped",
-        Ended::LeftOut => "  left out",
-    });
+    // The result is said once the protocol has it.
     protocol.put(Entry {
         id: step.id.to_owned(),
         title: step.title.to_owned(),
@@ -445,6 +440,12 @@ fn one(walk: &mut Walk<'_>, protocol: &mut Protocol, step: &Step) -> Result<bool
         measured: verdict.measured,
         build: protocol.build().to_owned(),
     })?;
+    walk.say(match ended {
+        Ended::Passed => "  passed",
+        Ended::Failed => "  FAILED",
+        Ended::Skipped => "  skipped",
+        Ended::LeftOut => "  left out",
+    });
     if ended != Ended::Failed {
         return Ok(true);
     }
