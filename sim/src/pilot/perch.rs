@@ -26,12 +26,12 @@ const LAST_DESCENT: f64 = 0.25;
 /// Height of the centre of mass over the pipe's top at the gate, where the pilot waits until he is over the
 /// crown, and the height at which the belly touches, m.
 const GATE: f64 = 0.11;
+const BELLY: f64 = 0.05;
 /// Height by which he waits higher after each [`PATIENCE`] without a touch, and the highest, m: within a rotor's radius of
 /// the pipe its ground effect pushes the vehicle off the crown faster than eyes and sticks bring it back; a rotor's
-/// diameter above, a sixth of that is left.
+/// diameter above, a seventh of that is left.
 const HIGHER: f64 = 0.06;
 const HIGHEST: f64 = 0.29;
-const BELLY: f64 = 0.05;
 /// Share of the tolerances that applies at the gate at first, and the time, s, over which it grows to 1.
 const STRICT: f64 = 0.6;
 const PATIENCE: f64 = 25.0;
