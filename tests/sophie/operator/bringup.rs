@@ -44,8 +44,13 @@ pub(super) struct Builder {
 impl Builder {
     /// With `more` arguments.
     pub(super) fn begins(temp: &Temp, board: &Board, more: &[&str]) -> Self {
+        Self::patient(temp, board, "5", more)
+    }
+
+    /// With a patience of `seconds` and `more` arguments.
+    fn patient(temp: &Temp, board: &Board, seconds: &str, more: &[&str]) -> Self {
         let name = board.name();
-        let args = [&["bringup", "--port", &name, "--patience", "5"], more].concat();
+        let args = [&["bringup", "--port", &name, "--patience", seconds], more].concat();
         let mut child = command(&temp.0, &args)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
@@ -505,6 +510,26 @@ fn a_barometer_that_a_board_carries_is_missed() {
     builder.at("And down again", "");
     builder.hears("barometer fell silent while it was lifted");
     builder.at("Enter tries it again", "q");
+    assert_eq!(builder.ends().0, Some(1));
+}
+
+#[test]
+fn a_slow_board_s_barometer_is_not_silent_for_being_late() {
+    let temp = Temp::new("bringup-late");
+    let board = Board::new(Hands {
+        board: "matek-h743",
+        ..Hands::default()
+    });
+    let mut builder = Builder::patient(&temp, &board, "100", &[]);
+    for id in ["chip", "setup", "selftest"] {
+        builder.at(&format!("({id})"), "s");
+    }
+    builder.step("live-air");
+    builder.hears("Leave it at rest");
+    // Longer than the silence of a board that keeps up, which is 3 s.
+    std::thread::sleep(Duration::from_secs_f32(3.5));
+    board.hands(|hands| hands.air = Some(101_325.0));
+    builder.at("Lift it by 1 m", "q");
     assert_eq!(builder.ends().0, Some(1));
 }
 

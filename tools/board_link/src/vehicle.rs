@@ -27,7 +27,8 @@ use crate::station::{Heard, Line, STATION, STATION_COMPONENT};
 /// Least time from the first attempt at a request to the second; each further one waits half as long again, which makes
 /// six in ten seconds.
 const ATTEMPT: Duration = Duration::from_millis(500);
-/// Share of the patience that the first attempt waits: a board that is slow gets no order twice.
+/// Share of the patience that a slow board is given in each wait: it gets no order twice, and its parts are not silent
+/// for being late.
 const SHARE: u32 = 20;
 /// Silence that ends a list of parameters, and a look at a line that says nothing.
 const QUIET: Duration = Duration::from_secs(1);
@@ -350,7 +351,13 @@ impl Vehicle {
 
     /// Time from the first attempt at a request to the second.
     fn attempt(&self) -> Duration {
-        ATTEMPT.max(self.patience / SHARE).min(self.patience)
+        self.silence(ATTEMPT).min(self.patience)
+    }
+
+    /// Silence of a message after which its source counts as missing: `least`, and more where the patience is long, as
+    /// with an emulated board on a busy machine.
+    pub fn silence(&self, least: Duration) -> Duration {
+        least.max(self.patience / SHARE)
     }
 
     fn silent(&self, what: &str) -> Failure {

@@ -48,9 +48,10 @@ pub(super) fn air(walk: &mut Walk<'_>, _: &Step) -> Judged {
 fn pressures(walk: &mut Walk<'_>, count: usize) -> Result<Option<Vec<f64>>, Stop> {
     let id = [SCALED_PRESSURE_DATA::ID];
     walk.vehicle.stream(&id, PERIOD_US)?;
+    let silence = walk.vehicle.silence(SILENCE);
     let mut found = Vec::new();
     while found.len() < count {
-        let sample = walk.vehicle.wait(SILENCE, |message| match message {
+        let sample = walk.vehicle.wait(silence, |message| match message {
             MavMessage::SCALED_PRESSURE(air) => Some((air.press_abs, air.temperature)),
             _ => None,
         })?;

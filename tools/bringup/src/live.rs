@@ -14,7 +14,7 @@ const ROWS: usize = 5;
 /// Time for the board to notice that the transmitter was switched off or on.
 const NOTICED: Duration = Duration::from_secs(10);
 
-/// Time between two rows, and age up to which a number counts as fresh.
+/// Time between two rows, and least age of a number that counts as missing.
 const ROW: Duration = Duration::from_millis(200);
 const FRESH: Duration = Duration::from_secs(3);
 /// Period of the messages that are watched, µs.
@@ -127,6 +127,8 @@ struct Seen {
     most: f32,
     /// The newest number, and when it came.
     last: Option<(f32, Instant)>,
+    /// Age up to which it counts as fresh.
+    fresh: Duration,
 }
 
 /// Rolled and pitched by hand, deg.
@@ -215,12 +217,13 @@ const STICKS: [Moved; 8] = [
 ];
 
 impl Seen {
-    fn new(name: &str) -> Self {
+    fn new(name: &str, fresh: Duration) -> Self {
         Self {
             name: name.to_owned(),
             least: f32::INFINITY,
             most: f32::NEG_INFINITY,
             last: None,
+            fresh,
         }
     }
 
@@ -239,7 +242,7 @@ impl Seen {
     }
 
     fn is_fresh(&self) -> bool {
-        self.last.is_some_and(|(_, at)| at.elapsed() < FRESH)
+        self.last.is_some_and(|(_, at)| at.elapsed() < self.fresh)
     }
 
     /// The newest number as a column.
@@ -307,7 +310,8 @@ fn watch(walk: &mut Walk<'_>, group: &Group) -> Result<Vec<Seen>, Stop> {
         .map(|name| format!("{name:>WIDTH$}"))
         .collect();
     walk.say(&names);
-    let mut seen: Vec<Seen> = group.columns.iter().map(|name| Seen::new(name)).collect();
+    let fresh = walk.vehicle.silence(FRESH);
+    let mut seen: Vec<Seen> = group.columns.iter().map(|name| Seen::new(name, fresh)).collect();
     let mut rows = 0;
     let ended = loop {
         let row = walk.vehicle.wait(ROW, |message| {
@@ -342,7 +346,8 @@ fn watch(walk: &mut Walk<'_>, group: &Group) -> Result<Vec<Seen>, Stop> {
 /// Voltage of the flight battery, V; `None` if it is not measured.
 pub(super) fn battery(walk: &mut Walk<'_>) -> Result<Option<f32>, Stop> {
     walk.vehicle.catch_up()?;
-    let volts = walk.vehicle.wait(MESSAGE, |message| match message {
+    let silence = walk.vehicle.silence(MESSAGE);
+    let volts = walk.vehicle.wait(silence, |message| match message {
         MavMessage::BATTERY_STATUS(battery) if battery.id == 0 => Some(battery.voltages[0]),
         _ => None,
     })?;
@@ -377,13 +382,13 @@ pub(super) fn radio(walk: &mut Walk<'_>, _: &Step) -> Judged {
 
 /// Waits until the receiver gives frames, or none; false if it does not come to that.
 fn receiver(walk: &mut Walk<'_>, there: bool) -> Result<bool, Stop> {
-    let begun = Instant::now();
+    let (begun, noticed) = (Instant::now(), walk.vehicle.silence(NOTICED));
     loop {
         let failing = walk.vehicle.arming()?;
         if failing.contains(&ArmingInhibit::RcLost) != there {
             return Ok(true);
         }
-        if begun.elapsed() > NOTICED {
+        if begun.elapsed() > noticed {
             return Ok(false);
         }
         walk.vehicle.wait(ROW, |_| None::<()>)?;
@@ -397,7 +402,7 @@ mod tests {
     #[test]
     fn a_column_is_judged_by_what_it_has_shown() {
         let seen = |numbers: &[f32]| {
-            let mut seen = Seen::new("roll");
+            let mut seen = Seen::new("roll", FRESH);
             numbers.iter().for_each(|number| seen.see(*number, 2));
             seen
         };

@@ -231,7 +231,8 @@ impl Bench<'_, '_> {
     /// The next tilt and angle of the reel, rad.
     fn seen(&mut self) -> Result<(f64, f64), End> {
         let arm = self.arm;
-        let seen = self.walk.vehicle.wait(SILENT, |message| match message {
+        let silence = self.walk.vehicle.silence(SILENT);
+        let seen = self.walk.vehicle.wait(silence, |message| match message {
             MavMessage::SOPHIE_ARMS(arms) => {
                 let of = |all: &[f32; 4]| all.get(arm).copied().map_or(f64::NAN, f64::from);
                 Some((of(&arms.tilt), of(&arms.reel)))

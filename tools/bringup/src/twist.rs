@@ -80,9 +80,10 @@ fn reading(mass: f32, lever: f32, twist: f32) -> Reading {
 fn slope(walk: &mut Walk<'_>, arm: usize) -> Result<Option<f64>, Stop> {
     let id = [SOPHIE_ARMS_DATA::ID];
     walk.vehicle.stream(&id, PERIOD_US)?;
+    let silence = walk.vehicle.silence(SILENCE);
     let (mut sum, mut count) = (0.0, 0);
     while count < SAMPLES {
-        let tilt = walk.vehicle.wait(SILENCE, |message| match message {
+        let tilt = walk.vehicle.wait(silence, |message| match message {
             MavMessage::SOPHIE_ARMS(arms) => arms.tilt.get(arm).copied(),
             _ => None,
         })?;
