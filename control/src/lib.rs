@@ -25,6 +25,7 @@ pub mod contact;
 pub mod gripper;
 pub mod mode;
 pub mod navigation;
+pub mod oscillation;
 pub mod pilot;
 pub mod position_hold;
 pub mod vibration;

@@ -4,13 +4,14 @@
 //! Vertical: a cascade with disturbance feed-forward. Without a position it stays level against the learnt wind, and
 //! keeps the height by the inertial sensor for as long as the estimate's age allows.
 
-mod gains;
+pub mod gains;
 mod height;
 mod lag;
+mod riccati;
 #[cfg(test)]
 mod tests;
 
-use self::gains::GAINS;
+use self::gains::Gains;
 use self::height::Height;
 use self::lag::Lag;
 use crate::chain::setpoint::Setpoint;
@@ -28,8 +29,8 @@ pub const CLIMB_MAX: f32 = 0.7;
 const SPEED_SLEW: f32 = 1.0;
 /// Largest acceleration asked for, the wind's included, m/s²: 17° of tilt, 5.4 N of wind.
 pub const ACCELERATION_MAX: f32 = 3.0;
-/// Time constant of each of the two stages of the held point's velocity, s: together they match the lag from setpoint
-/// to tilt.
+/// Time constant of each of the two stages of the held point's velocity, s, with loops at full pace: together they match
+/// the lag from setpoint to tilt.
 const COURSE_STAGE: f32 = 0.2;
 /// Time constant of learning the wind, s.
 const WIND_TIME: f32 = 4.0;
@@ -62,8 +63,10 @@ pub struct BodyMotion {
 
 /// Reference model of the held point: the commanded velocity passes two stages that match the lag from tilt setpoint
 /// to tilt. With a direct command the vehicle would overtake the point at each turn.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Course {
+    /// Time constant of each stage, s.
+    stage: f32,
     /// Commanded velocity within [`SPEED_SLEW`], the same behind one stage, and that of the held point, m/s.
     commanded: Vec3,
     between: Vec3,
@@ -75,6 +78,20 @@ struct Course {
 }
 
 impl Course {
+    /// At rest, with loops of the `pace`.
+    fn at(pace: f32) -> Self {
+        let rest = Vec3::ZERO;
+        Self {
+            stage: COURSE_STAGE / pace,
+            commanded: rest,
+            between: rest,
+            speed: rest,
+            asked: rest,
+            turning: rest,
+            gained: rest,
+        }
+    }
+
     fn step(&mut self, commanded: Vec3, dt: f32) {
         let slew = |from: f32, to: f32| scalar::slew(from, to, SPEED_SLEW * dt);
         let before = self.commanded;
@@ -86,7 +103,7 @@ impl Course {
         let horizontal = |v: Vec3| Vec3::new(v.x, v.y, 0.0);
         let per_second = if dt > 0.0 { 1.0 / dt } else { 0.0 };
         self.asked = (self.commanded - before) * per_second;
-        let per = 1.0 / (COURSE_STAGE + dt);
+        let per = 1.0 / (self.stage + dt);
         self.turning = horizontal(self.commanded - self.between) * per;
         self.between += self.turning * dt;
         self.gained = horizontal(self.between - self.speed) * per;
@@ -98,7 +115,7 @@ impl Course {
     /// Distance by which the held point is behind, m.
     fn behind(&self) -> Vec3 {
         let both = self.between + self.speed;
-        Vec3::new(both.x, both.y, 0.0) * COURSE_STAGE
+        Vec3::new(both.x, both.y, 0.0) * self.stage
     }
 }
 
@@ -106,6 +123,7 @@ impl Course {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PositionHold {
     mass: f32,
+    gains: Gains,
     thrust: (f32, f32),
     lag: Lag,
     height: Height,
@@ -119,25 +137,31 @@ pub struct PositionHold {
 
 impl PositionHold {
     /// A controller that holds the present position.
-    pub fn begin(p: &Params, e: &Estimate, motion: &BodyMotion) -> Self {
+    pub fn begin(p: &Params, gains: &Gains, e: &Estimate, motion: &BodyMotion) -> Self {
         let weight = p.mass * GRAVITY;
         let full = 4.0 * p.thrust_max;
         Self {
             mass: p.mass,
+            gains: *gains,
             thrust: (0.4 * weight, scalar::clamp(1.6 * weight, weight, 0.95 * full)),
             lag: Lag::at(p, tilt(motion.q)),
             height: Height::default(),
             anchor: e.position,
-            course: Course::default(),
+            course: Course::at(gains.pace),
             wind: Vec3::new(e.disturbance.x, e.disturbance.y, 0.0),
             reset_count: e.reset_count,
         }
     }
 
+    /// Goes on with other gains.
+    pub fn change(&mut self, gains: &Gains) {
+        self.gains = *gains;
+    }
+
     /// Moves the held point to the present position; the learnt wind and trim stay.
     pub fn anchor_at(&mut self, e: &Estimate) {
         self.anchor = e.position;
-        self.course = Course::default();
+        self.course = Course::at(self.gains.pace);
         self.reset_count = e.reset_count;
     }
 
@@ -256,7 +280,7 @@ impl PositionHold {
                 at(first, i) + wind - under_way,
                 at(&d, i) - wind,
             ];
-            let fed: f32 = GAINS.iter().zip(state).map(|(k, x)| k * x).sum();
+            let fed: f32 = self.gains.state.iter().zip(state).map(|(k, x)| k * x).sum();
             asked - fed - wind
         })
     }

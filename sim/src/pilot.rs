@@ -14,6 +14,7 @@ mod perception;
 mod perch;
 mod radio;
 mod referee;
+mod response;
 mod stick_dynamics;
 mod takeoff_landing;
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 pub mod attitude_loop;
 pub mod estimator;
+pub mod gains;
 pub mod imu_filter;
 pub mod messages;
 pub mod motion;

@@ -19,11 +19,14 @@ use crate::gripper::clamp_command::ClampCommand;
 use crate::gripper::retained_grip::GripMemory;
 use crate::maths::hold_timer::HoldTimer;
 use crate::maths::scalar::clamp;
+use crate::navigation::estimate::Estimate;
 use crate::navigation::vertical_fallback::VerticalFallback;
+use crate::oscillation::Oscillation;
 use crate::params::Params;
 use crate::pilot::rc::Sticks;
 use crate::pilot::remote::RemoteOrder;
-use crate::position_hold;
+use crate::position_hold::gains::Gains;
+use crate::position_hold::{self, PositionHold};
 
 /// Time constant of learning gravity at rest, s, and bounds, m/s²: a part's bias of some 40 mg.
 const GRAVITY_TIME: f32 = 0.5;
@@ -61,10 +64,21 @@ impl PerchSwitch {
     }
 }
 
+/// Gains of a hold, and those for a vehicle that swings with them.
+#[derive(Clone, Copy, Debug)]
+struct HoldGains {
+    usual: Gains,
+    gentle: Gains,
+}
+
 /// State that outlives a mode.
 #[derive(Clone, Debug)]
 pub struct Context {
     pub params: Params,
+    hold_gains: HoldGains,
+    pub oscillation: Oscillation,
+    /// The vehicle has swung in a hold since it left the ground: it holds gently.
+    pub has_swung: bool,
     /// Time in this mode, s.
     pub since: f32,
     pub contact_force: ContactForce,
@@ -104,6 +118,12 @@ impl Context {
     pub fn new(params: &Params) -> Self {
         Self {
             params: *params,
+            hold_gains: HoldGains {
+                usual: Gains::of(params),
+                gentle: Gains::gentle(params),
+            },
+            oscillation: Oscillation::default(),
+            has_swung: false,
             since: 0.0,
             contact_force: ContactForce::new(params),
             dangers: Dangers::default(),
@@ -172,6 +192,16 @@ impl Context {
         self.lean
             .step(i.motion, &self.contact_force, self.collective.now(), dt);
         self.dangers.step(i, &self.params, dt);
+        self.oscillation.step(i.motion.map(|m| m.rate), dt);
+        self.has_swung &= !at_rest;
+    }
+
+    fn hold_gains(&self) -> &Gains {
+        if self.has_swung {
+            &self.hold_gains.gentle
+        } else {
+            &self.hold_gains.usual
+        }
     }
 
     /// Sets the gesture that `order` stands for.
@@ -325,6 +355,23 @@ impl Step<'_> {
             q: motion.q,
             rate: motion.rate,
             carried: self.context.contact_force.resting(),
+        }
+    }
+
+    /// A position hold at the present position.
+    pub fn position_hold(&mut self, estimate: &Estimate) -> PositionHold {
+        self.context.oscillation.forget();
+        let (motion, context) = (self.body_motion(), &self.context);
+        PositionHold::begin(&context.params, context.hold_gains(), estimate, &motion)
+    }
+
+    /// Goes on gently with a `hold` in which the vehicle swings, and says so.
+    pub fn calm(&mut self, hold: &mut PositionHold) {
+        if self.context.oscillation.swings() {
+            self.context.oscillation.forget();
+            self.context.has_swung = true;
+            self.context.note(Some(Reason::Swings));
+            hold.change(self.context.hold_gains());
         }
     }
 

@@ -56,6 +56,8 @@ reasons! {
     PositionStale = "dead reckoning: steer it",
     /// The hold has ended.
     PositionLost = "position lost: throttle to hover",
+    /// The vehicle swings in the hold: motors slower than the parameter, softer arms, or gains too high.
+    Swings = "swings: check motor_tau and gains",
     /// Autonomous perching requires centred sticks, so that the pilot ends it by moving one.
     SticksNotCentred = "centre the sticks to perch",
     /// Autonomous perching requires a fresh range, or a known position of the pipe.

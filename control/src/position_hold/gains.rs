@@ -1,8 +1,121 @@
-//! Gains of the lateral feedback, from the steady solution of a Riccati equation (docs/design/position-hold.md).
+//! Gains of the lateral feedback: the steady solution of a Riccati equation for the loops in force
+//! (docs/design/position-hold.md).
 
-/// On position (1/s²), velocity (1/s), acceleration of the tilt (1), its rate (s), its second derivative (s²), second and
-/// first stage of the setpoint's filter (1), disturbance (1). For the default loops at 100 Hz; the test computes them.
-pub const GAINS: [f32; 8] = [12.19, 10.08, 1.908, 0.1771, 0.008159, 0.6091, 0.4892, 3.241];
+use super::riccati::{self, Square};
+use crate::attitude::gains::Gains as LoopGains;
+use crate::maths::scalar;
+use crate::params::Params;
+
+/// Number of states: position, velocity, acceleration of the tilt, its rate, its second derivative, second and first
+/// stage of the setpoint's filter, disturbance.
+pub const STATES: usize = 8;
+/// Period of the law, s.
+const PERIOD: f32 = 0.01;
+/// Deviations that weigh alike, of loops at full pace: m, m/s, m/s² of acceleration beyond what holds against the
+/// disturbance. Slower loops get larger ones, so that a margin of 1.6 is left on what a tilt gives.
+const POSITION: f32 = 0.08;
+const VELOCITY: f32 = 0.5;
+const EFFORT: f32 = 1.0;
+/// Times as large, and its root, where the vehicle swings: half the pace, which leaves a margin of 2.4.
+const GENTLE: (f32, f32) = (4.0, 2.0);
+/// Correlation time of the gusts, s.
+const GUST: f32 = 1.0;
+/// Size of each state and of the input: single precision solves the equation of states of about one.
+const SIZES: [f32; STATES + 1] = [0.08, 0.5, 1.0, 5.0, 30.0, 1.0, 1.0, 1.0, 1.0];
+
+/// Gains of the lateral feedback.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gains {
+    /// On position (1/s²), velocity (1/s), acceleration of the tilt (1), its rate (s), its second derivative (s²), second
+    /// and first stage of the setpoint's filter (1), disturbance (1).
+    pub state: [f32; STATES],
+    /// Pace of the loops below, 0 to 1.
+    pub pace: f32,
+}
+
+impl Gains {
+    /// Gains for the loops of `p`: some 60,000 instructions, once at start-up. Zero, which holds no position, for loops
+    /// that do not turn the vehicle.
+    pub fn of(p: &Params) -> Self {
+        Self::weighed(p, POSITION, VELOCITY)
+    }
+
+    /// Gains of a hold that is half as fast, for a vehicle that swings in the other.
+    pub fn gentle(p: &Params) -> Self {
+        Self::weighed(p, GENTLE.0 * POSITION, GENTLE.1 * VELOCITY)
+    }
+
+    fn weighed(p: &Params, off: f32, moving: f32) -> Self {
+        let pace = LoopGains::of(p).pace;
+        let (a, b) = sampled(p);
+        let per = |size: f32, weight: f32| (size / weight) * (size / weight);
+        let [position, velocity, ..] = SIZES;
+        let mut weights = [0.0; STATES];
+        let [on_position, on_velocity, ..] = &mut weights;
+        *on_position = per(position, off / pace);
+        *on_velocity = per(velocity, moving * scalar::inv_sqrt(pace));
+        let mut state = riccati::gains(&a, &b, &weights, EFFORT.recip() * EFFORT.recip());
+        for (gain, size) in state.iter_mut().zip(SIZES) {
+            *gain /= size;
+        }
+        // The input that the equation sees is u + d.
+        let [.., disturbance] = &mut state;
+        *disturbance += 1.0;
+        let finite = state.iter().all(|gain| gain.is_finite());
+        Self {
+            state: if finite && p.rate_p > 0.0 {
+                state
+            } else {
+                [0.0; STATES]
+            },
+            pace,
+        }
+    }
+}
+
+/// The discrete model in units of [`SIZES`], with u = v - d.
+fn sampled(p: &Params) -> (Square<STATES>, [f32; STATES]) {
+    let whole = riccati::exponential(&continuous(p), PERIOD);
+    let mut a = [[0.0; STATES]; STATES];
+    let mut b = [0.0; STATES];
+    for ((to, input), from) in a.iter_mut().zip(&mut b).zip(&whole) {
+        to.iter_mut().zip(from).for_each(|(to, from)| *to = *from);
+        *input = from.last().copied().unwrap_or_default();
+        let [.., disturbance] = to;
+        *disturbance -= *input;
+    }
+    (a, b)
+}
+
+/// The continuous model with its input, of the whole state, in units of [`SIZES`].
+fn continuous(p: &Params) -> Square<{ STATES + 1 }> {
+    let LoopGains {
+        attitude_p,
+        setpoint_cutoff: filter,
+        rate_p,
+        lag,
+        ..
+    } = LoopGains::of(p);
+    let motor = 1.0 / lag;
+    let rate = motor * rate_p;
+    let angle = rate * attitude_p;
+    let gust = 1.0 / GUST;
+    let mut rows = [
+        [0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+        [0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0],
+        [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+        [0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0],
+        [0.0, 0.0, -angle, -rate, -motor, angle, 0.0, 0.0, 0.0],
+        [0.0, 0.0, 0.0, 0.0, 0.0, -filter, filter, 0.0, 0.0],
+        [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -filter, 0.0, filter],
+        [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -gust, 0.0],
+        [0.0; STATES + 1],
+    ];
+    for (row, own) in rows.iter_mut().zip(SIZES) {
+        row.iter_mut().zip(SIZES).for_each(|(x, size)| *x *= size / own);
+    }
+    rows
+}
 
 #[cfg(test)]
 mod tests {
@@ -15,14 +128,7 @@ mod tests {
     type Matrix = Vec<Vec<f64>>;
 
     /// Period of the law, s.
-    const DT: f64 = 0.01;
-    /// Deviations that weigh alike: m, m/s, m/s² of acceleration asked for beyond the wind's.
-    const POSITION: f64 = 0.08;
-    const VELOCITY: f64 = 0.5;
-    const EFFORT: f64 = 1.0;
-    /// Correlation time of the gusts, s.
-    const GUST: f64 = 1.0;
-    const STATES: usize = 8;
+    const DT: f64 = PERIOD as f64;
 
     fn zeros(n: usize, m: usize) -> Matrix {
         std::vec![std::vec![0.0; m]; n]
@@ -43,10 +149,11 @@ mod tests {
     }
 
     /// Position, velocity, tilt, its rate, its second derivative, both stages, disturbance; then the input.
-    fn continuous(p: &Params) -> Matrix {
-        let filter = std::f64::consts::TAU * f64::from(p.setpoint_lpf_hz);
-        let (angle, rate) = (f64::from(p.attitude_p), f64::from(p.rate_p));
-        let motor = 1.0 / f64::from(p.motor_tau);
+    fn model(p: &Params) -> Matrix {
+        let loops = LoopGains::of(p);
+        let filter = f64::from(loops.setpoint_cutoff);
+        let (angle, rate) = (f64::from(loops.attitude_p), f64::from(loops.rate_p));
+        let motor = 1.0 / f64::from(loops.lag);
         let mut m = zeros(STATES + 1, STATES + 1);
         m[0][1] = 1.0;
         (m[1][2], m[1][7]) = (1.0, 1.0);
@@ -56,12 +163,12 @@ mod tests {
         (m[4][3], m[4][4]) = (-motor * rate, -motor);
         (m[5][6], m[5][5]) = (filter, -filter);
         (m[6][8], m[6][6]) = (filter, -filter);
-        m[7][7] = -1.0 / GUST;
+        m[7][7] = -1.0 / f64::from(GUST);
         m
     }
 
     /// exp(m dt) by the series of dt/1024, squared ten times.
-    fn exponential(m: &Matrix, dt: f64) -> Matrix {
+    fn exponential_of(m: &Matrix, dt: f64) -> Matrix {
         let n = m.len();
         let small: Matrix = m
             .iter()
@@ -83,12 +190,8 @@ mod tests {
     }
 
     /// Discrete model: A and B.
-    fn discrete(p: &Params) -> (Matrix, Matrix) {
-        sampled(&continuous(p))
-    }
-
-    fn sampled(m: &Matrix) -> (Matrix, Matrix) {
-        let e = exponential(m, DT);
+    fn discrete(m: &Matrix) -> (Matrix, Matrix) {
+        let e = exponential_of(m, DT);
         let rows = || e.iter().take(STATES);
         (
             rows().map(|row| row[..STATES].to_vec()).collect(),
@@ -96,13 +199,15 @@ mod tests {
         )
     }
 
-    fn riccati(p: &Params) -> Vec<f64> {
-        let (a, b) = discrete(p);
+    /// The equation iterated to rest in double precision, with the cost of u + d as it stands.
+    fn iterated(p: &Params) -> Vec<f64> {
+        let (a, b) = discrete(&model(p));
+        let pace = f64::from(LoopGains::of(p).pace);
         let mut q = zeros(STATES, STATES);
-        q[0][0] = POSITION.powi(-2);
-        q[1][1] = VELOCITY.powi(-2);
+        q[0][0] = (pace / f64::from(POSITION)).powi(2);
+        q[1][1] = pace / f64::from(VELOCITY).powi(2);
         // (input + disturbance)²: what holds against a gust costs nothing.
-        let effort = EFFORT.powi(-2);
+        let effort = f64::from(EFFORT).powi(-2);
         q[7][7] = effort;
         let mut cost = q.clone();
         let mut gains = Vec::new();
@@ -129,29 +234,21 @@ mod tests {
         gains
     }
 
-    /// Largest share of the state's length left after 30 s.
-    fn left(p: &Params) -> f64 {
-        left_with(p, 1.0)
-    }
-
-    /// The same where a tilt gives `share` of its acceleration.
-    fn left_with(p: &Params, share: f64) -> f64 {
+    /// Largest share of the state's length left after 90 s where a tilt gives `share` of its acceleration.
+    fn left(p: &Params, share: f64) -> f64 {
         left_leaning(p, share, 0.0)
     }
 
     /// The same where the arms push by `arms` s² of the tilt's second derivative, which the law takes for a disturbance.
     fn left_leaning(p: &Params, share: f64, arms: f64) -> f64 {
-        let mut m = continuous(p);
+        let gains = Gains::of(p).state.map(f64::from);
+        let mut m = model(p);
         (m[1][2], m[1][4]) = (share, arms);
-        let (a, b) = sampled(&m);
+        let (a, b) = discrete(&m);
         let step = |x: &Vec<f64>| -> Vec<f64> {
             let mut seen = x.clone();
             seen[7] += arms * x[4];
-            let u: f64 = -GAINS
-                .iter()
-                .zip(&seen)
-                .map(|(k, x)| f64::from(*k) * x)
-                .sum::<f64>();
+            let u: f64 = -gains.iter().zip(&seen).map(|(k, x)| k * x).sum::<f64>();
             let row = |(row, b): (&Vec<f64>, &Vec<f64>)| {
                 row.iter().zip(x).map(|(a, x)| a * x).sum::<f64>() + b[0] * u
             };
@@ -161,7 +258,7 @@ mod tests {
             .map(|i| {
                 let mut x = std::vec![0.0; STATES];
                 x[i] = 1.0;
-                for _ in 0..3000 {
+                for _ in 0..9000 {
                     x = step(&x);
                 }
                 x.iter().map(|x| x * x).sum::<f64>().sqrt()
@@ -169,19 +266,10 @@ mod tests {
             .fold(0.0, f64::max)
     }
 
-    #[test]
-    fn the_gains_are_the_riccati_equations() {
-        let computed = riccati(&Params::DEFAULT);
-        for (k, wanted) in GAINS.iter().zip(&computed) {
-            assert!((f64::from(*k) / wanted - 1.0).abs() < 2e-3, "{computed:?}");
-        }
-    }
-
-    #[test]
-    fn loops_that_are_tuned_or_lag_otherwise_stay_stable() {
+    /// Parameters that a builder may set.
+    fn others() -> [Params; 8] {
         let p = Params::DEFAULT;
-        let others = [
-            p,
+        [
             Params { attitude_p: 3.0, ..p },
             Params { attitude_p: 8.0, ..p },
             Params { rate_p: 7.0, ..p },
@@ -190,7 +278,7 @@ mod tests {
                 motor_tau: 0.025,
                 ..p
             },
-            Params { motor_tau: 0.09, ..p },
+            Params { motor_tau: 0.12, ..p },
             Params {
                 setpoint_lpf_hz: 1.1,
                 ..p
@@ -199,14 +287,58 @@ mod tests {
                 setpoint_lpf_hz: 5.0,
                 ..p
             },
-        ];
-        for other in others {
-            assert!(left(&other) < 1e-3, "{}: {other:?}", left(&other));
+        ]
+    }
+
+    #[test]
+    fn the_gains_solve_the_equation_to_a_thousandth() {
+        for p in [&[Params::DEFAULT][..], &others()].concat() {
+            let (found, wanted) = (Gains::of(&p), iterated(&p));
+            for (k, wanted) in found.state.iter().zip(&wanted) {
+                assert!(
+                    (f64::from(*k) / wanted - 1.0).abs() < 1e-3,
+                    "{found:?} {wanted:?}"
+                );
+            }
         }
-        // At 9 rad/s the arms' twist makes 1.26 of it.
-        assert!(left_with(&p, 1.6) < 1e-3, "{}", left_with(&p, 1.6));
-        // The attitude far too slow: the law cannot know.
-        assert!(left(&Params { attitude_p: 0.7, ..p }) > 1.0);
+    }
+
+    #[test]
+    fn loops_of_any_parameters_give_finite_gains() {
+        for attitude_p in [0.5, 12.0] {
+            for rate_p in [0.0, 0.1, 40.0] {
+                for motor_tau in [0.005, 0.3] {
+                    for setpoint_lpf_hz in [0.15, 16.0] {
+                        let p = Params {
+                            attitude_p,
+                            rate_p,
+                            motor_tau,
+                            setpoint_lpf_hz,
+                            ..Params::DEFAULT
+                        };
+                        let gains = Gains::of(&p);
+                        assert!(gains.state.iter().all(|k| k.is_finite()), "{p:?} {gains:?}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn loops_that_are_tuned_or_lag_otherwise_are_held() {
+        for p in others() {
+            // At 9 rad/s the arms' twist makes 1.26 of what a tilt gives.
+            for share in [1.0, 1.3] {
+                assert!(left(&p, share) < 1e-3, "{share}: {} {p:?}", left(&p, share));
+            }
+        }
+        for motor_tau in [0.025, 0.05, 0.07, 0.09, 0.12] {
+            let p = Params {
+                motor_tau,
+                ..Params::DEFAULT
+            };
+            assert!(left(&p, 1.6) < 0.5, "{motor_tau}: {}", left(&p, 1.6));
+        }
     }
 
     /// A roll acceleration bends the arms of the two sides apart, and their thrusts lean to the side of the roll: I φ'' = 4 d δ

@@ -1,5 +1,6 @@
 //! Model of the unmeasured lag from setpoint to tilt: the setpoint's filter, and the motors.
 
+use crate::attitude::gains::Gains;
 use crate::maths::filter::LowPass;
 use crate::maths::scalar;
 use crate::params::Params;
@@ -28,14 +29,15 @@ pub struct Lag {
 impl Lag {
     /// At rest at the tilt `a`, m/s².
     pub fn at(p: &Params, a: [f32; 2]) -> Self {
+        let gains = Gains::of(p);
         Self {
             first: a,
             second: a,
             turning: [0.0; 2],
-            cutoff: core::f32::consts::TAU * p.setpoint_lpf_hz,
-            attitude_p: p.attitude_p,
-            rate_p: p.rate_p,
-            motor_tau: p.motor_tau,
+            cutoff: gains.setpoint_cutoff,
+            attitude_p: gains.attitude_p,
+            rate_p: gains.rate_p,
+            motor_tau: gains.lag,
         }
     }
 

@@ -2,6 +2,7 @@
 
 extern crate std;
 use super::*;
+use crate::attitude::gains::Gains as LoopGains;
 
 const DT: f32 = 0.01;
 const UNDER: u8 = 10;
@@ -10,6 +11,9 @@ const UNDER: u8 = 10;
 struct World {
     law: PositionHold,
     e: Estimate,
+    /// What the law knows, and the motors' true lag, s.
+    params: Params,
+    lag: f32,
     /// Tilt forward and right, its rate and second derivative; the filter's stages.
     tilt: [[f32; 3]; 2],
     stages: [[f32; 2]; 2],
@@ -22,6 +26,10 @@ struct World {
 
 impl World {
     fn new(yaw: f32, yaw_offset: f32) -> Self {
+        Self::of(&Params::DEFAULT, Params::DEFAULT.motor_tau, yaw, yaw_offset)
+    }
+
+    fn of(params: &Params, lag: f32, yaw: f32, yaw_offset: f32) -> Self {
         let e = Estimate {
             yaw_offset,
             ..Estimate::default()
@@ -32,8 +40,11 @@ impl World {
             carried: false,
         };
         Self {
-            law: PositionHold::begin(&Params::DEFAULT, &e, &motion),
+            law: PositionHold::begin(params, &gains::Gains::of(params), &e, &motion),
             e,
+            params: *params,
+            // The lead is the same with the true motors behind it.
+            lag: lag / (1.0 + LoopGains::of(params).lead),
             tilt: [[0.0; 3]; 2],
             stages: [[0.0; 2]; 2],
             wind: Vec3::ZERO,
@@ -55,7 +66,7 @@ impl World {
     }
 
     fn step(&mut self) {
-        let p = Params::DEFAULT;
+        let p = LoopGains::of(&self.params);
         self.out = self
             .law
             .step(&self.e, &self.motion(), &self.command, self.known, DT);
@@ -66,19 +77,19 @@ impl World {
             panic!("{:?}", self.out)
         };
         let aim = [-GRAVITY * pitch.sin(), GRAVITY * roll.sin() * pitch.cos()];
-        let lag = core::f32::consts::TAU * p.setpoint_lpf_hz;
+        let lag = p.setpoint_cutoff;
         let dt = DT / f32::from(UNDER);
         for _ in 0..UNDER {
             for ((t, s), u) in self.tilt.iter_mut().zip(&mut self.stages).zip(aim) {
                 s[0] += lag * (u - s[0]) * dt;
                 s[1] += lag * (s[0] - s[1]) * dt;
                 let asked = p.rate_p * (p.attitude_p * (s[1] - t[0]) - t[1]);
-                t[2] += (asked - t[2]) / p.motor_tau * dt;
+                t[2] += (asked - t[2]) / self.lag * dt;
                 t[1] += t[2] * dt;
                 t[0] += t[1] * dt;
             }
             let [[f, ..], [r, ..]] = self.tilt;
-            let up = thrust / p.mass - GRAVITY;
+            let up = thrust / self.params.mass - GRAVITY;
             let horizontal = about_down(Vec3::new(f, r, 0.0), self.yaw + self.e.yaw_offset);
             let a = horizontal + self.wind - Vec3::new(0.0, 0.0, up);
             self.e.velocity += a * dt;
@@ -112,6 +123,33 @@ fn a_displaced_vehicle_returns_with_little_overshoot_whatever_its_heading() {
             w.e.position
         );
         assert!(over < 0.05, "{yaw} {yaw_offset}: {over}");
+    }
+}
+
+#[test]
+fn slow_motors_are_held_known_or_not() {
+    for (told, lag) in [
+        (0.12, 0.12),
+        (0.09, 0.09),
+        (0.09, 0.12),
+        (0.09, 0.06),
+        (0.05, 0.09),
+        (0.05, 0.03),
+    ] {
+        let params = Params {
+            motor_tau: told,
+            ..Params::DEFAULT
+        };
+        let mut w = World::of(&params, lag, 1.2, 0.7);
+        w.e.position = Vec3::new(0.3, -0.2, 0.1);
+        let start = w.e.position;
+        let mut over = 0.0f32;
+        for _ in 0..1500 {
+            w.step();
+            over = over.max(-w.e.position.dot(start) / start.norm());
+        }
+        assert!(w.e.position.norm() < 0.02, "{told} {lag}: {:?}", w.e.position);
+        assert!(over < 0.1, "{told} {lag}: {over}");
     }
 }
 

@@ -8,8 +8,10 @@ use sophie_control::params::Params;
 
 use super::VisibleState;
 use super::perception::Foresight;
+use super::response::StickResponse;
 use super::stick_dynamics::StickTarget;
 use crate::plant::GRAVITY;
+use crate::scenario::Scenario;
 
 /// Distance to speed, 1/s.
 const POSITION_GAIN: f64 = 0.7;
@@ -83,14 +85,17 @@ pub struct Guidance {
     /// Distance from the spot when [`WAY_TIME`] last began, m, how long that is ago, s, and no way made before it.
     way: (f64, f64, bool),
     throttle: f64,
+    /// Share of the gains for a vehicle that leans as slowly as this one: its foresight makes up for half of the lag.
+    boldness: f64,
     foresight: Foresight,
     /// Predicted state at the time when the sticks act: position and velocity, NED.
     ahead: (DVec3, DVec3),
 }
 
 impl Guidance {
-    /// A pilot who knows the weight and the stick travels, and sees `delay` s late.
-    pub fn new(params: &Params, delay: f64) -> Self {
+    /// A pilot who knows the weight, the stick travels and how the vehicle follows them.
+    pub fn new(scenario: &Scenario) -> Self {
+        let (params, response) = (&scenario.params, StickResponse::of(scenario));
         let hover = hover(params);
         Self {
             stick_angle: f64::from(params.stick_angle),
@@ -100,7 +105,8 @@ impl Guidance {
             wind: DVec2::ZERO,
             way: (0.0, 0.0, false),
             throttle: 0.0,
-            foresight: Foresight::new(delay),
+            boldness: response.pace().sqrt(),
+            foresight: Foresight::new(scenario.pilot.delay, response),
             ahead: Default::default(),
         }
     }
@@ -145,12 +151,14 @@ impl Guidance {
     pub fn steer(&mut self, seen: &VisibleState, course: &Course, dt: f64) -> StickTarget {
         let (position, velocity) = self.ahead;
         let away = course.target - position.truncate();
-        let speed = (away * POSITION_GAIN).clamp_length_max(SPEED_MAX);
+        let speed = (away * (POSITION_GAIN * self.boldness)).clamp_length_max(SPEED_MAX);
         let error = speed - velocity.truncate();
         if self.learns(away.length(), dt) {
-            self.wind = (self.wind + error * (WIND_GAIN * dt)).clamp_length_max(WIND_MAX);
+            self.wind = (self.wind + error * (WIND_GAIN * self.boldness * self.boldness * dt))
+                .clamp_length_max(WIND_MAX);
         }
-        let horizontal = (error * SPEED_GAIN + self.wind).clamp_length_max(ACCELERATION_MAX);
+        let horizontal =
+            (error * (SPEED_GAIN * self.boldness) + self.wind).clamp_length_max(ACCELERATION_MAX);
         let body = DVec2::from_angle(-seen.yaw).rotate(horizontal);
         let (pitch, roll) = (-libm::atan(body.x / GRAVITY), libm::atan(body.y / GRAVITY));
         StickTarget {

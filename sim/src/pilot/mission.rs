@@ -119,8 +119,6 @@ pub struct Mission {
     /// Point to hold: north, east, m; height at the step's beginning.
     pub(super) spot: DVec2,
     pub(super) height: f64,
-    /// Time of the step's approaches, s.
-    pub(super) approached: f64,
     /// Throttle set by hand when not flying.
     pub(super) throttle: f64,
     /// Number of failed touches.
@@ -134,7 +132,7 @@ impl Mission {
     pub fn new(scenario: &Scenario) -> Self {
         let pipe = scenario.pilot.assumed.pipe(&scenario.world);
         Self {
-            guidance: Guidance::new(&scenario.params, scenario.pilot.delay),
+            guidance: Guidance::new(scenario),
             pipe: DVec2::from_array(pipe.position),
             pipe_top: pipe.top,
             pipe_radius: 0.5 * pipe.diameter,
@@ -153,7 +151,6 @@ impl Mission {
             held: 0.0,
             spot: DVec2::ZERO,
             height: 0.0,
-            approached: 0.0,
             throttle: 0.0,
             missed: 0,
             trouble: None,
@@ -172,7 +169,6 @@ impl Mission {
         self.enter(Phase::Start);
         self.step_time = 0.0;
         self.missed = 0;
-        self.approached = 0.0;
         self.height = -seen.position.z;
     }
 

@@ -7,6 +7,7 @@ use rand::distr::Distribution;
 use rand_pcg::Pcg64Mcg;
 
 use super::VisibleState;
+use super::response::StickResponse;
 use crate::normal::StandardNormal;
 use crate::streams::Streams;
 
@@ -71,6 +72,7 @@ impl Perception {
 #[derive(Clone, Debug)]
 pub struct Foresight {
     delay: f64,
+    response: StickResponse,
     /// Accelerations over the last `delay`: (time, north-east, down), m/s².
     past: VecDeque<(f64, DVec2, f64)>,
     /// Present acceleration, which follows the sticks with a lag.
@@ -78,18 +80,16 @@ pub struct Foresight {
     down: f64,
 }
 
-/// Lag of the lean and of the thrust, s, as the pilot knows them.
-const LEAN_TIME: f64 = 0.35;
-const THRUST_TIME: f64 = 0.08;
-/// Prediction ahead of the present, s: lag of the sticks and half of the lean.
+/// Prediction ahead of the present, s: lag of the sticks and half of the lean's, of the default loops and motors.
 const AHEAD_HORIZONTAL: f64 = 0.25;
 const AHEAD_DOWN: f64 = 0.12;
 
 impl Foresight {
-    /// Foresight over `delay` s.
-    pub fn new(delay: f64) -> Self {
+    /// Foresight over `delay` s of a vehicle with this `response`.
+    pub fn new(delay: f64, response: StickResponse) -> Self {
         Self {
             delay,
+            response,
             past: VecDeque::new(),
             horizontal: DVec2::ZERO,
             down: 0.0,
@@ -98,8 +98,8 @@ impl Foresight {
 
     /// Records the accelerations commanded by the sticks, m/s², without the trims against wind and weight.
     pub fn note(&mut self, t: f64, horizontal: DVec2, down: f64, dt: f64) {
-        self.horizontal += (horizontal - self.horizontal) * (dt / (dt + LEAN_TIME));
-        self.down += (down - self.down) * (dt / (dt + THRUST_TIME));
+        self.horizontal += (horizontal - self.horizontal) * (dt / (dt + self.response.lean_time));
+        self.down += (down - self.down) * (dt / (dt + self.response.thrust_time));
         self.past.push_back((t, self.horizontal, self.down));
         while self.past.front().is_some_and(|p| p.0 <= t - self.delay) {
             self.past.pop_front();
@@ -108,7 +108,7 @@ impl Foresight {
 
     /// Clears the record: the vehicle stood, and the sticks did not move it.
     pub fn forget(&mut self) {
-        *self = Self::new(self.delay);
+        *self = Self::new(self.delay, self.response);
     }
 
     /// Position and velocity, NED, predicted for when the sticks act.
@@ -120,7 +120,9 @@ impl Foresight {
         }
         // Constant velocity for the part of the delay without a record.
         position += velocity * (self.delay - self.past.len() as f64 * dt).max(0.0);
-        velocity += (self.horizontal * AHEAD_HORIZONTAL).extend(self.down * AHEAD_DOWN);
+        let level = AHEAD_HORIZONTAL / self.response.pace();
+        let down = AHEAD_DOWN + self.response.thrust_beyond();
+        velocity += (self.horizontal * level).extend(self.down * down);
         (position, velocity)
     }
 }

@@ -27,11 +27,6 @@ const LAST_DESCENT: f64 = 0.25;
 /// crown, and the height at which the belly touches, m.
 const GATE: f64 = 0.11;
 const BELLY: f64 = 0.05;
-/// Height by which he waits higher after each [`PATIENCE`] without a touch, and the highest, m: within a rotor's radius of
-/// the pipe its ground effect pushes the vehicle off the crown faster than eyes and sticks bring it back; a rotor's
-/// diameter above, a seventh of that is left.
-const HIGHER: f64 = 0.06;
-const HIGHEST: f64 = 0.29;
 /// Share of the tolerances that applies at the gate at first, and the time, s, over which it grows to 1.
 const STRICT: f64 = 0.6;
 const PATIENCE: f64 = 25.0;
@@ -147,8 +142,6 @@ impl Mission {
     fn approach(&mut self, v: &View<'_>, throttle: f64, dt: f64) -> (StickTarget, bool) {
         let over = v.height() - self.pipe_top;
         let off = v.seen.position.truncate() - self.pipe;
-        self.approached += dt;
-        let gate = (GATE + HIGHER * (self.approached / PATIENCE).floor()).min(HIGHEST);
         if self.phase == Phase::GoAround {
             let target = self.go_to(v, self.pipe, self.pipe_top + OVER_AGAIN, dt);
             if over > 0.75 * OVER_AGAIN && off.length() < BACK {
@@ -191,11 +184,11 @@ impl Mission {
                     && velocity.y.abs() < drift
                     && away.x.abs() < ALONG
                     && velocity.x.abs() < 2.0 * drift;
-                let at_gate = over_ahead < 1.5 * gate;
+                let at_gate = over_ahead < 1.5 * GATE;
                 if self.held_for(at_gate && centred, CENTRED_TIME, dt) {
                     self.enter(Phase::Commit);
                 }
-                let rate = (1.5 * (gate - over_ahead)).clamp(-DESCENT, DESCENT);
+                let rate = (1.5 * (GATE - over_ahead)).clamp(-DESCENT, DESCENT);
                 (self.climb_over(v, self.pipe, rate, dt), false)
             }
         }

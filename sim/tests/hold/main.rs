@@ -8,6 +8,7 @@ mod lever;
 mod pose;
 mod radio;
 mod scaled;
+mod swings;
 
 use std::f64::consts::TAU;
 

@@ -6,8 +6,7 @@
 //! A setpoint becomes a direction at the sticks' rate, to save each step a sine. One that is not finite keeps the tilt
 //! target and stops the turn in yaw.
 
-use core::f32::consts::TAU;
-
+use super::gains::Gains;
 use crate::maths::filter::LowPass;
 use crate::maths::scalar;
 use crate::maths::vector::{Quat, Vec3};
@@ -85,10 +84,11 @@ pub struct AttitudeLoop {
 impl AttitudeLoop {
     /// A loop that holds level.
     pub fn new(p: &Params) -> Self {
+        let gains = Gains::of(p);
         Self {
-            p: p.attitude_p,
+            p: gains.attitude_p,
             yaw_p: p.attitude_yaw_p,
-            cutoff: TAU * p.setpoint_lpf_hz,
+            cutoff: gains.setpoint_cutoff,
             rate_max: p.rate_max,
             yaw_rate_max: p.yaw_slew,
             wanted: LEVEL,

@@ -1,10 +1,12 @@
 //! Rate control, 1 kHz: PID on the body rates, with gains in 1/s, independent of the inertia.
 //!
 //! The derivative acts on the filtered measured rate. Integrators stop where the mixer could not give the demand,
-//! unless they unwind. Yaw passes a notch at the arms' bending mode.
+//! unless they unwind. Yaw passes a notch at the arms' bending mode, roll and pitch a lead where the motors are slow
+//! ([`super::gains`]).
 
 use core::f32::consts::TAU;
 
+use super::gains::Gains;
 use crate::maths::filter::{Biquad, Coefficients, LowPass};
 use crate::maths::scalar;
 use crate::maths::vector::Vec3;
@@ -48,14 +50,19 @@ pub struct RateLoop {
     integral: Vec3,
     derivative: [LowPass; 3],
     notch: Biquad,
+    /// Amplification of fast moments about roll and pitch, less 1; remaining lag of the motors, s; slow part of each.
+    lead: f32,
+    lag: f32,
+    slow: [LowPass; 2],
 }
 
 impl RateLoop {
     /// A loop at rest for steps at `rate_hz` (Hz, > 0).
     pub fn new(p: &Params, rate_hz: f32) -> Self {
+        let gains = Gains::of(p);
         Self {
-            p: Vec3::new(p.rate_p, p.rate_p, p.rate_yaw_p),
-            i: Vec3::new(p.rate_i, p.rate_i, p.rate_yaw_i),
+            p: Vec3::new(gains.rate_p, gains.rate_p, p.rate_yaw_p),
+            i: Vec3::new(gains.rate_i, gains.rate_i, p.rate_yaw_i),
             d: Vec3::new(p.rate_d, p.rate_d, 0.0),
             d_rate: TAU * p.rate_d_cutoff,
             inertia: Vec3::new(p.inertia_roll, p.inertia_pitch, p.inertia_yaw),
@@ -63,6 +70,9 @@ impl RateLoop {
             derivative: [LowPass::default(); 3],
             last: Vec3::ZERO,
             started: false,
+            lead: gains.lead,
+            lag: gains.lag,
+            slow: [LowPass::default(); 2],
             notch: Biquad::new(Coefficients::notch(
                 p.notch_hz,
                 p.notch_zeta_zero,
@@ -78,6 +88,7 @@ impl RateLoop {
         self.derivative = [LowPass::default(); 3];
         self.last = Vec3::ZERO;
         self.started = false;
+        self.slow = [LowPass::default(); 2];
         self.notch.reset(0.0);
     }
 
@@ -112,7 +123,13 @@ impl RateLoop {
             add(yaw_integral, step.z, INTEGRAL_MAX.z, yaw_given),
         );
         let acceleration = error.scale_by(self.p) + self.integral - slope.scale_by(self.d);
-        let moment = acceleration.scale_by(self.inertia);
+        let mut moment = acceleration.scale_by(self.inertia);
+        if self.lead > 0.0 {
+            let gain = LowPass::gain(1.0 / self.lag, dt);
+            let [slow_x, slow_y] = &mut self.slow;
+            moment.x += self.lead * (moment.x - slow_x.blend(moment.x, gain));
+            moment.y += self.lead * (moment.y - slow_y.blend(moment.y, gain));
+        }
         let yaw = self.notch.step(moment.z);
         let moment = Vec3::new(moment.x, moment.y, if free { yaw } else { 0.0 });
         if !free {

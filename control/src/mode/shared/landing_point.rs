@@ -92,7 +92,7 @@ impl LandingPoint {
 
     fn from_here(aside: Option<Aside>, step: &mut Step<'_>) -> Option<Self> {
         let estimate = step.inputs.position.filter(|_| step.inputs.position_fresh())?;
-        let position_hold = PositionHold::begin(&step.context.params, &estimate, &step.body_motion());
+        let position_hold = step.position_hold(&estimate);
         Some(Self::begin(CoastingHold::new(position_hold), aside, step))
     }
 

@@ -83,8 +83,7 @@ impl Approach {
         planner: impl Fn(&Step<'_>, &View, &Estimate) -> ApproachPlanner,
     ) -> Self {
         let estimate = step.inputs.position.unwrap_or_default();
-        let position_hold = position_hold
-            .unwrap_or_else(|| PositionHold::begin(&step.context.params, &estimate, &step.body_motion()));
+        let position_hold = position_hold.unwrap_or_else(|| step.position_hold(&estimate));
         let planner = planner(step, &view(&position_hold, &estimate, step), &estimate);
         let mut approach = Self {
             position_hold,
@@ -227,6 +226,7 @@ impl Behaviour for Approach {
     fn advance(&mut self, step: &mut Step<'_>) {
         // A silent inertial sensor stops the rotors within some steps; until then the last setpoint stands.
         if let (Some(estimate), Some(_)) = (step.inputs.position, step.inputs.motion) {
+            step.calm(&mut self.position_hold);
             self.step(&estimate, step);
         }
     }

@@ -27,7 +27,7 @@ impl Hold {
     /// Holds the present position.
     pub fn here(step: &mut Step<'_>) -> Self {
         let estimate = step.inputs.position.unwrap_or_default();
-        let position_hold = PositionHold::begin(&step.context.params, &estimate, &step.body_motion());
+        let position_hold = step.position_hold(&estimate);
         Self::begin(position_hold, false, step)
     }
 
@@ -35,9 +35,9 @@ impl Hold {
     /// centred.
     pub fn after(position_hold: Option<PositionHold>, step: &mut Step<'_>) -> Self {
         let estimate = step.inputs.position.unwrap_or_default();
-        let mut position_hold = position_hold
-            .unwrap_or_else(|| PositionHold::begin(&step.context.params, &estimate, &step.body_motion()));
+        let mut position_hold = position_hold.unwrap_or_else(|| step.position_hold(&estimate));
         position_hold.anchor_at(&estimate);
+        step.calm(&mut position_hold);
         Self::begin(position_hold, true, step)
     }
 
@@ -72,6 +72,7 @@ impl Behaviour for Hold {
     fn advance(&mut self, step: &mut Step<'_>) {
         // A silent inertial sensor stops the rotors within some steps; until then the last setpoint stands.
         if let (Some(estimate), Some(_)) = (step.inputs.position, step.inputs.motion) {
+            step.calm(&mut self.place.position_hold);
             self.step(&estimate, step);
         }
         if approach::asked(step)

@@ -68,6 +68,8 @@ guards! {
     POSITION_FRESH = "position known", |_, s| s.inputs.position_fresh();
     POSITION_LOST = "position lost for too long", |_, s| s.inputs.position_lost();
 
+    SWINGS = "swings", |_, s| s.context.oscillation.swings();
+    HAS_SWUNG = "has swung before", |_, s| s.context.has_swung;
     POSITION_ADRIFT = "position stale", |_, s| s.inputs.position_adrift();
 
     ASKED_TO_PERCH = "perch switch turned on", |_, s| approach::asked(s);

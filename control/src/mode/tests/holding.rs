@@ -255,3 +255,38 @@ fn what_ends_a_flight_ends_a_hold() {
     r.carried = true;
     assert!(matches!(r.run(6.0), Mode::Landed | Mode::Disarmed));
 }
+
+/// Pitch rates of a swing of 40 deg at 1.3 Hz for `seconds`.
+fn swing(r: &mut Rig, seconds: f32) {
+    for i in 0..(seconds / super::rig::DT) as u32 {
+        let rate = 2.7 * (8.2 * super::rig::DT * i as f32).sin();
+        if let Some(motion) = &mut r.inputs.motion {
+            motion.rate = Vec3::new(0.0, rate, 0.0);
+        }
+        r.step();
+    }
+    if let Some(motion) = &mut r.inputs.motion {
+        motion.rate = Vec3::ZERO;
+    }
+}
+
+#[test]
+fn a_swing_is_held_gently_and_one_that_goes_on_is_handed_back() {
+    let mut r = holding();
+    swing(&mut r, 3.0);
+    assert_eq!((r.out.mode, r.out.reason), (Mode::Hold, Some(Reason::Swings)));
+    r.expect(2.0, Mode::Hold);
+    swing(&mut r, 3.0);
+    assert_eq!((r.out.mode, r.out.reason), (Mode::Flight, Some(Reason::Swings)));
+}
+
+#[test]
+fn a_swing_by_hand_before_the_hold_does_not_count() {
+    let mut r = placed(0.02);
+    swing(&mut r, 3.0);
+    r.sticks().hold_switch = true;
+    r.step();
+    r.sticks().throttle = 0.5;
+    r.expect(2.0, Mode::Hold);
+    assert_eq!(r.out.reason, None);
+}

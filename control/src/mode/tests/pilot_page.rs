@@ -52,6 +52,9 @@ fn on_reason(reason: Reason) -> &'static str {
         Reason::PerchSwitchNotOff => "Perch off, then on.",
         Reason::HoldSwitchNotOff => "Hold off, then on.",
         Reason::NoPosition => "Fly on by hand; look at what measures the pose.",
+        Reason::Swings => {
+            "It holds gently; if it goes on, fly by hand. `motor_tau`, then [tuning](tuning.md)."
+        }
         Reason::PositionStale => {
             "Steer by tilt, or hold off: it keeps only height and lean against the wind."
         }

@@ -14,6 +14,7 @@ use sophie_control::navigation::flow_range_sample::{Flow, GroundView, Range};
 use sophie_control::navigation::inertial::Inertial;
 use sophie_control::navigation::position_estimator::PositionEstimator;
 use sophie_control::params::Params;
+use sophie_control::position_hold::gains::Gains;
 use sophie_control::position_hold::{BodyMotion, PositionHold, VelocityCommand};
 use sophie_drivers::ground_module::GroundModule;
 use sophie_drivers::msp::Message;
@@ -158,7 +159,7 @@ pub fn run(print: &mut dyn FnMut(Arguments<'_>), overhead: u32) {
                 carried: false,
             };
             let law = law.get_or_insert_with(|| Hold {
-                law: PositionHold::begin(&p, &found, &motion),
+                law: PositionHold::begin(&p, &Gains::of(&p), &found, &motion),
                 estimate: found,
                 out: sophie_control::chain::setpoint::Setpoint::Idle,
             });

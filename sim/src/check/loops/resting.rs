@@ -6,6 +6,7 @@
 //! points through the axis. Without an integral the loop's stiffness is K = g p_att p I, with the doubled gain g: a slide
 //! grows as long as K < W H, and no faster than the larger root of J s² + g p I s + K - W H.
 
+use sophie_control::attitude::gains::Gains;
 use sophie_control::chain::{CONTROL_RATE_HZ, RESTING_ROLL_GAIN};
 use sophie_control::params::Params;
 
@@ -60,8 +61,9 @@ pub fn slide(scenario: &Scenario, diameter: f64) -> (f64, f64) {
         .sqrt()
         + BELLY_Z;
     let inertia = body.inertia[ROLL] + body.mass * lever * lever;
-    let damping = f64::from(RESTING_ROLL_GAIN * p.rate_p * p.inertia_roll);
-    let stiffness = f64::from(p.attitude_p) * damping - body.mass * GRAVITY * lever;
+    let gains = Gains::of(p);
+    let damping = f64::from(RESTING_ROLL_GAIN * gains.rate_p * p.inertia_roll);
+    let stiffness = f64::from(gains.attitude_p) * damping - body.mass * GRAVITY * lever;
     let growth = |c: f64, k: f64| {
         let root = (c * c - 4.0 * inertia * k).max(0.0).sqrt();
         ((root - c) / (2.0 * inertia)).max(0.0)
