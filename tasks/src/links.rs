@@ -44,6 +44,7 @@ use sophie_control::navigation::position_estimator::Fault;
 use sophie_control::params::Params;
 use sophie_control::pilot::actuator_test::{ActuatorTestAnswer, ActuatorTestRequest, ActuatorTestView};
 use sophie_control::pilot::remote::{RemoteAnswer, RemoteRequest};
+use sophie_control::position_hold::gains::HoldGains;
 use sophie_control::vibration::Vibration;
 use sophie_ports::external_pose::ExternalPose;
 use sophie_ports::receiver::RcState;
@@ -86,6 +87,9 @@ macro_rules! links {
         pub struct Links {
             /// Parameters, fixed while armed.
             pub params: Params,
+            /// Gains of HOLD for these parameters, solved before the tasks run: the commander's first step would be
+            /// late with them.
+            pub hold_gains: HoldGains,
             /// Cause of the start and retained state of the previous run, fixed. start-up -> every task that resumes
             /// from it.
             pub start: Start,
@@ -114,8 +118,9 @@ macro_rules! links {
             }),*];
 
             /// Links without messages after this start.
-            pub const fn starting(params: Params, start: Start) -> Self {
+            pub fn starting(params: Params, start: Start) -> Self {
                 Self {
+                    hold_gains: HoldGains::of(&params),
                     params,
                     start,
                     $($name: Link::new(Duration::from_millis($stale)),)*
@@ -199,7 +204,7 @@ links! {
 
 impl Links {
     /// Links without messages, after power-on.
-    pub const fn new(params: Params) -> Self {
+    pub fn new(params: Params) -> Self {
         Self::starting(params, Start::COLD)
     }
 

@@ -25,7 +25,7 @@ use crate::oscillation::Oscillation;
 use crate::params::Params;
 use crate::pilot::rc::Sticks;
 use crate::pilot::remote::RemoteOrder;
-use crate::position_hold::gains::Gains;
+use crate::position_hold::gains::{Gains, HoldGains};
 use crate::position_hold::{self, PositionHold};
 
 /// Time constant of learning gravity at rest, s, and bounds, m/s²: a part's bias of some 40 mg.
@@ -62,13 +62,6 @@ impl PerchSwitch {
         self.seen_off &= !changed;
         self.seen_on &= !changed;
     }
-}
-
-/// Gains of a hold, and those for a vehicle that swings with them.
-#[derive(Clone, Copy, Debug)]
-struct HoldGains {
-    usual: Gains,
-    gentle: Gains,
 }
 
 /// State that outlives a mode.
@@ -115,13 +108,10 @@ pub struct Context {
 }
 
 impl Context {
-    pub fn new(params: &Params) -> Self {
+    pub fn new(params: &Params, hold_gains: &HoldGains) -> Self {
         Self {
             params: *params,
-            hold_gains: HoldGains {
-                usual: Gains::of(params),
-                gentle: Gains::gentle(params),
-            },
+            hold_gains: *hold_gains,
             oscillation: Oscillation::default(),
             has_swung: false,
             since: 0.0,

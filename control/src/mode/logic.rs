@@ -14,6 +14,7 @@ use crate::gripper::retained_grip::GripMemory;
 use crate::maths::scalar::clamp;
 use crate::params::Params;
 use crate::pilot::remote::{RemoteOrder, RemoteRefusal, RemoteRequest};
+use crate::position_hold::gains::HoldGains;
 
 /// Longest step accepted, s: a stall of the commander must not end a timer.
 const STEP_MAX: f32 = 0.05;
@@ -28,13 +29,13 @@ pub struct ModeLogic {
 impl ModeLogic {
     /// A vehicle just powered up: it first checks whether its arms are closed.
     pub fn new(params: &Params) -> Self {
-        Self::resume(params, GripMemory::Unknown)
+        Self::resume(params, &HoldGains::of(params), GripMemory::Unknown)
     }
 
-    /// A vehicle restarted with this grip. The rotors wait for the pilot in either case.
-    pub fn resume(params: &Params, grip_memory: GripMemory) -> Self {
+    /// A vehicle restarted with this grip, and the gains for its parameters. The rotors wait for the pilot in either case.
+    pub fn resume(params: &Params, hold_gains: &HoldGains, grip_memory: GripMemory) -> Self {
         Self {
-            context: Context::new(params),
+            context: Context::new(params, hold_gains),
             state: State::Calibrating(Calibrating { grip_memory }),
         }
     }

@@ -33,6 +33,25 @@ pub struct Gains {
     pub pace: f32,
 }
 
+/// Gains of a hold, and those for a vehicle that swings with them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HoldGains {
+    /// Those of a vehicle that does not swing.
+    pub usual: Gains,
+    /// Those of a hold at half the pace.
+    pub gentle: Gains,
+}
+
+impl HoldGains {
+    /// Both for the loops of `p`: 1 ms of a processor at 168 MHz, before the tasks run.
+    pub fn of(p: &Params) -> Self {
+        Self {
+            usual: Gains::of(p),
+            gentle: Gains::gentle(p),
+        }
+    }
+}
+
 impl Gains {
     /// Gains for the loops of `p`: some 60,000 instructions, once at start-up. Zero, which holds no position, for loops
     /// that do not turn the vehicle.

@@ -4,6 +4,7 @@
 
 use embassy_time::{Duration, Instant};
 use sophie_control::attitude::motion::Motion;
+use sophie_control::gripper::retained_grip::GripMemory;
 use sophie_control::gripper::tendon::ForceLimit;
 use sophie_control::maths::scalar::GRAVITY;
 use sophie_control::mode::{Inputs, Mode, ModeLogic, Outputs};
@@ -25,10 +26,11 @@ const LATE_MAX: u32 = 10;
 
 /// Steps the mode logic; never returns.
 pub async fn run(links: &Links) -> ! {
-    let mut logic = match links.start.retained {
-        Some(retained) => ModeLogic::resume(&links.params, retained.grip_memory),
-        None => ModeLogic::new(&links.params),
-    };
+    let grip_memory = links
+        .start
+        .retained
+        .map_or(GripMemory::Unknown, |retained| retained.grip_memory);
+    let mut logic = ModeLogic::resume(&links.params, &links.hold_gains, grip_memory);
     let mut late = Lateness::new();
     let mut flow_limit = FlowLimit::default();
     let mut vibration = Shaking::new(links);

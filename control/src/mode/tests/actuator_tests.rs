@@ -201,7 +201,7 @@ fn orders_are_for_disarmed_alone_and_not_for_arms_that_hold_or_may() {
         (GripMemory::Unknown, ActuatorTestRefusal::GripUnknown),
     ] {
         let mut r = Rig::on_the_table();
-        r.logic = ModeLogic::resume(&r.params, grip_memory);
+        r.restart(grip_memory);
         r.inputs.grip = None;
         r.expect(0.5, Mode::Disarmed);
         assert_eq!(r.order(ActuatorTest::PropellersOff), ActuatorTestState::Done);
@@ -426,7 +426,7 @@ fn a_static_thrust_test_needs_its_sender_and_disarmed() {
         }
     }
     let mut r = Rig::on_the_table();
-    r.logic = ModeLogic::resume(&r.params, GripMemory::Controlled(ArmChoice::All));
+    r.restart(GripMemory::Controlled(ArmChoice::All));
     r.inputs.grip = None;
     r.expect(0.5, Mode::Disarmed);
     assert_eq!(r.order(ActuatorTest::TiedDown), ActuatorTestState::Done);

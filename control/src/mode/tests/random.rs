@@ -197,7 +197,7 @@ proptest! {
                 let mut r = Rig::new();
                 let grasps = [GripMemory::Controlled(ArmChoice::All), GripMemory::HeldByGears(ArmChoice::Front), GripMemory::Open];
                 let grip_memory = grasps.into_iter().nth(usize::from(start) - 4).unwrap_or_default();
-                r.logic = ModeLogic::resume(&r.params, grip_memory);
+                r.restart(grip_memory);
                 r
             }
         };

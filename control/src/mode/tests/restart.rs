@@ -18,7 +18,7 @@ impl Rig {
     /// Restarted with this grip, the switches as on the pipe.
     pub(super) fn restarted(grip_memory: GripMemory) -> Self {
         let mut r = Self::new();
-        r.logic = ModeLogic::resume(&r.params, grip_memory);
+        r.restart(grip_memory);
         *r.sticks() = Sticks {
             arm_switch: true,
             perch_switch: true,
@@ -117,7 +117,7 @@ fn the_perch_switch_that_was_left_on_opens_nothing_when_it_is_turned_off() {
             r.sticks().perch_switch = true;
             if !calibrated {
                 // Off and on so far; the next off is a wish.
-                r.logic = ModeLogic::resume(&r.params, grip_memory);
+                r.restart(grip_memory);
             }
         }
         r.sticks().perch_switch = true;

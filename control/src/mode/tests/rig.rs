@@ -4,6 +4,7 @@ use crate::attitude::motion::Motion;
 use crate::chain::setpoint::Setpoint;
 use crate::gripper::clamp_command::ClampCommand;
 use crate::gripper::grip::{ArmGrip, ArmState, GripState};
+use crate::gripper::retained_grip::GripMemory;
 use crate::maths::scalar::GRAVITY;
 use crate::maths::vector::Vec3;
 use crate::mode::shared::on_pipe::SPOOL_DOWN_TIME;
@@ -12,6 +13,7 @@ use crate::mode::states::contact::CONTACT_TIME;
 use crate::mode::*;
 use crate::params::Params;
 use crate::pilot::rc::{ArmChoice, Sticks};
+use crate::position_hold::gains::HoldGains;
 
 pub(super) const DT: f32 = 0.01;
 
@@ -50,6 +52,11 @@ impl Rig {
             out: Outputs::default(),
             params,
         }
+    }
+
+    /// Restarts the board with this grip retained.
+    pub(super) fn restart(&mut self, grip_memory: GripMemory) {
+        self.logic = ModeLogic::resume(&self.params, &HoldGains::of(&self.params), grip_memory);
     }
 
     pub(super) fn sticks(&mut self) -> &mut Sticks {
