@@ -1,13 +1,14 @@
 //! How the vehicle follows the sticks, as the pilot has learned it on earlier flights.
 
 use sophie_control::attitude::gains::Gains;
-use sophie_control::params::Params;
 
 use crate::scenario::Scenario;
 
-/// Lag of the lean and of the thrust behind the sticks, s, of the default loops and motors.
+/// Lag of the lean and of the thrust behind the sticks, s, of the default loops and usual motors.
 const LEAN_TIME: f64 = 0.35;
 const THRUST_TIME: f64 = 0.08;
+/// Lag of these motors, s.
+const MOTOR_TIME: f32 = 0.05;
 
 /// The vehicle's response to the sticks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,7 +26,7 @@ impl StickResponse {
         let beyond = |lag: f32| f64::from(scenario.vehicle.rotor.spin.up as f32 - lag);
         Self {
             lean_time: LEAN_TIME / pace + beyond(scenario.params.motor_tau),
-            thrust_time: THRUST_TIME + beyond(Params::DEFAULT.motor_tau),
+            thrust_time: THRUST_TIME + beyond(MOTOR_TIME),
         }
     }
 
@@ -34,7 +35,7 @@ impl StickResponse {
         LEAN_TIME / self.lean_time
     }
 
-    /// Lag of the thrust beyond that of the default motors, s.
+    /// Lag of the thrust beyond that of the usual motors, s.
     pub fn thrust_beyond(&self) -> f64 {
         self.thrust_time - THRUST_TIME
     }
@@ -52,7 +53,7 @@ mod tests {
     }
 
     #[test]
-    fn the_default_vehicle_is_what_the_gains_are_meant_for() {
+    fn the_usual_vehicle_is_what_the_gains_are_meant_for() {
         let found = response(0.05, 0.05);
         assert!(found.pace() == 1.0 && found.thrust_beyond() == 0.0, "{found:?}");
     }

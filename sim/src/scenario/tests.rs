@@ -37,7 +37,8 @@ fn the_default_mission_states_the_defaults() {
         Params {
             infill: 6.9,
             gain_k: 7.75,
-            // Found by a calibration.
+            // Found by calibrations.
+            motor_tau: 0.05,
             servo_marks: ServoMarks::S1234,
             ..Params::default()
         }

@@ -6,6 +6,7 @@ use sophie_control::allocation::wrench::Wrench;
 use sophie_control::chain::setpoint::Setpoint;
 use sophie_control::chain::{Attitude, Demand, MixOutput};
 use sophie_control::maths::vector::{Quat, Vec3};
+use sophie_control::params::Params;
 use sophie_tasks::flight::control;
 use sophie_tasks::links::Links;
 
@@ -48,7 +49,11 @@ fn all_given() -> MixOutput {
 
 impl Bench {
     fn new() -> Self {
-        let rig = Rig::new();
+        // Motors that need no lead.
+        let rig = Rig::with(Params {
+            motor_tau: 0.05,
+            ..Params::DEFAULT
+        });
         rig.time.spawn(control::run(rig.links));
         Self {
             rig,

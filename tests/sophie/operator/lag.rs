@@ -46,7 +46,7 @@ fn the_lag_is_stored_from_a_recording_of_the_boards_own_steps() {
     builder.hears("no.wav: cannot be read");
     builder.at("Its file", "steps.wav");
     builder.hears("gains speed in 0.0");
-    builder.hears("motor_tau 0.05 -> ");
+    builder.hears("motor_tau 0.1 -> ");
     builder.hears("passed");
     builder.at("(", "q");
     let (_, said, _) = builder.ends();

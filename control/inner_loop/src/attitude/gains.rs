@@ -1,8 +1,7 @@
 //! Gains of attitude and rate loop in force: those of the parameters, with a lead that makes up for motors that lag more than
-//! the default ones, and slower where the lead would be too large.
+//! 0.05 s, and slower where the lead would be too large.
 //!
-//! A moment that passes (motor_tau s + 1) / (T s + 1) before motors of motor_tau comes as by motors of T, the default lag:
-//! loops, hold and pilot have one vehicle to deal with. The lead amplifies the gyro's noise, and steps towards the
+//! A moment that passes (motor_tau s + 1) / (T s + 1) before motors of motor_tau comes as by motors of T, 0.05 s: loops, hold and pilot have one vehicle to deal with. The lead amplifies the gyro's noise, and steps towards the
 //! rotors' limits, by motor_tau / T; beyond 2.4 times, the loops are slowed instead. A loop whose every time is
 //! stretched by k keeps its margins: rates per second shrink by k, those per second squared by k², and the derivative
 //! gain, a pure number, stays.
@@ -12,6 +11,8 @@ use core::f32::consts::TAU;
 use crate::maths::scalar::clamp;
 use crate::params::Params;
 
+/// Lag of the motors that the loops are made for, s.
+const USUAL_LAG: f32 = 0.05;
 /// Largest amplification by the lead: motors of 0.12 s.
 const LEAD_MAX: f32 = 2.4;
 /// Lag beside the motors', s. With it the phase margin of pitch, the least, stays within 1 deg of its 27 deg for loops that are
@@ -40,10 +41,9 @@ pub struct Gains {
 impl Gains {
     /// Gains for `p`.
     pub fn of(p: &Params) -> Self {
-        let usual = Params::DEFAULT.motor_tau;
-        let amplified = clamp(p.motor_tau / usual, 1.0, LEAD_MAX);
+        let amplified = clamp(p.motor_tau / USUAL_LAG, 1.0, LEAD_MAX);
         let lag = p.motor_tau / amplified;
-        let pace = clamp((usual + OTHER_LAG) / (lag + OTHER_LAG), 0.0, 1.0);
+        let pace = clamp((USUAL_LAG + OTHER_LAG) / (lag + OTHER_LAG), 0.0, 1.0);
         Self {
             attitude_p: pace * p.attitude_p,
             setpoint_cutoff: pace * TAU * p.setpoint_lpf_hz,
@@ -68,7 +68,7 @@ mod tests {
     }
 
     #[test]
-    fn motors_up_to_the_default_lag_fly_the_parameters() {
+    fn motors_up_to_the_usual_lag_fly_the_parameters() {
         let p = Params::DEFAULT;
         for motor_tau in [0.02, 0.05] {
             let gains = of(motor_tau);
@@ -90,7 +90,7 @@ mod tests {
         assert!(gains.pace > 0.9999 && gains.rate_p > 9.999, "{gains:?}");
     }
 
-    /// Twice the default loop's lag, 0.08 s, is left: everything takes twice the time.
+    /// Twice the usual loop's lag, 0.08 s, is left: everything takes twice the time.
     #[test]
     fn motors_that_are_slower_still_stretch_the_loops() {
         let gains = of(0.13 * LEAD_MAX);

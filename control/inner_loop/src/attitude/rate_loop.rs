@@ -160,8 +160,14 @@ mod tests {
         yaw_gated: false,
     };
 
+    /// Parameters of motors that need no lead.
+    const UNLED: Params = Params {
+        motor_tau: 0.05,
+        ..Params::DEFAULT
+    };
+
     fn rate_loop() -> RateLoop {
-        RateLoop::new(&Params::default(), 1000.0)
+        RateLoop::new(&UNLED, 1000.0)
     }
 
     #[test]
@@ -169,6 +175,24 @@ mod tests {
         // 0.5 rad/s of error: 0.5 · 10 1/s · 0.021 kg·m² = 0.105 N·m, plus one step of integral.
         let m = rate_loop().step(Vec3::new(0.5, 0.0, 0.0), Vec3::ZERO, FREE, true, 1e-3);
         assert!((m.x - 0.105).abs() < 2e-4 && m.y.abs() < 1e-9);
+    }
+
+    #[test]
+    fn slow_motors_make_the_moment_that_others_make() {
+        let made = |motor_tau: f32| {
+            let p = Params { motor_tau, ..UNLED };
+            let mut l = RateLoop::new(&p, 1000.0);
+            let mut made = Vec3::ZERO;
+            (0..200).map(move |ms| {
+                let rate = Vec3::new(0.5, -0.3, 0.0) * if ms < 100 { 1.0 } else { -1.0 };
+                let moment = l.step(rate, Vec3::ZERO, FREE, true, 1e-3);
+                made = made + (moment - made) * (1e-3 / (1e-3 + motor_tau));
+                made
+            })
+        };
+        for (usual, slow) in made(0.05).zip(made(0.12)) {
+            assert!((usual - slow).norm() < 1e-4, "{usual:?} {slow:?}");
+        }
     }
 
     #[test]
@@ -207,7 +231,7 @@ mod tests {
         let mut l = RateLoop::new(
             &Params {
                 rate_d: 0.1,
-                ..Params::default()
+                ..UNLED
             },
             1000.0,
         );

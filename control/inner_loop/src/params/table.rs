@@ -98,9 +98,9 @@ params! {
     thrust_idle = 0.25, "N", 0.05 ..= 1.0;
     /// Rotor drag torque over thrust, C_Q/C_T (assumed, 0.002).
     torque_ratio = 0.016, "m", 0.005 ..= 0.05;
-    /// Time constant of motor and propeller (assumed; `sophie bringup` finds it). Above 0.05 s roll and pitch are led by it:
-    /// see Slow motors in docs/tuning.md.
-    motor_tau = 0.05, "s", 0.005 ..= 0.3;
+    /// Time constant of motor and propeller (of slow motors, until `sophie bringup` finds yours). Above 0.05 s roll and pitch
+    /// are led by it: see Slow motors in docs/tuning.md.
+    motor_tau = 0.1, "s", 0.005 ..= 0.3;
     /// Share of the thrust that grows with the square of the command; the rest is linear (assumed; of your own rotors from
     /// `bringup --again thrust`).
     thrust_curve = 0.75, "1", 0.0 ..= 1.0;

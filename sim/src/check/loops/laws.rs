@@ -141,6 +141,8 @@ mod tests {
     fn slow_rates_meet_the_gains_and_fast_ones_the_filter() {
         let p = Params {
             notch_zeta_zero: 0.8,
+            // Motors that need no lead.
+            motor_tau: 0.05,
             ..Params::default()
         };
         let laws = Laws::of(&p);

@@ -168,12 +168,12 @@ fn params_of_the_file_and_the_command_line_win() {
     let s = Scenario::parse("[vehicle]\nthrust_max_n = 9.5", "f", &overrides).unwrap();
     assert_eq!(s.params.thrust_max, 8.3);
     assert_eq!(s.differences()[0].key, "vehicle.thrust_max_n");
-    // The others are marks of servos, which arming demands.
+    // The others are the lag, which is taken for that of slow motors, and marks of servos, which arming demands.
     assert!(
         keys(&s)
             .iter()
             .skip(1)
-            .all(|key| key.starts_with("vehicle.servo_"))
+            .all(|key| key.starts_with("vehicle.motor_tau") || key.starts_with("vehicle.servo_"))
     );
     assert!((s.differences()[0].percent().unwrap() + 12.63).abs() < 0.01);
 }
