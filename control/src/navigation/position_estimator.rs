@@ -365,6 +365,9 @@ impl Track {
         let unknown = self.left_out || seconds(self.pose_us, fix.at_us) > UNKNOWN_AGE;
         let elsewhere = !accepted || off.abs() > TURN_STEP;
         if !self.posed || fix.resets != self.resets || (unknown && elsewhere) {
+            if pose_monitor.is_outlier(fix) {
+                return;
+            }
             history.clear();
             self.jump(yaw, fix);
         } else if accepted {
@@ -377,7 +380,7 @@ impl Track {
             }
             history.change(fix.at_us, &changes);
             let gain = scalar::clamp(1.0 / (1.0 + self.fixes as f32), TURN_GAIN, 1.0);
-            self.yaw_offset = scalar::wrap_pi(self.yaw_offset + gain * off);
+            self.yaw_offset = scalar::wrap_pi(self.yaw_offset + gain * scalar::clamp_abs(off, TURN_STEP));
             self.count();
         } else {
             pose_monitor.note_gate(fix.at_us, true);

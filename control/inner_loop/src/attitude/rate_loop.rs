@@ -228,13 +228,7 @@ mod tests {
 
     #[test]
     fn a_setpoint_step_gives_no_derivative_kick_and_motion_is_damped() {
-        let mut l = RateLoop::new(
-            &Params {
-                rate_d: 0.1,
-                ..UNLED
-            },
-            1000.0,
-        );
+        let mut l = RateLoop::new(&Params { rate_d: 0.1, ..UNLED }, 1000.0);
         l.step(Vec3::ZERO, Vec3::ZERO, FREE, false, 1e-3);
         let m = l.step(Vec3::new(1.0, 0.0, 0.0), Vec3::ZERO, FREE, false, 1e-3);
         assert!((m.x - 0.21).abs() < 1e-4);
