@@ -287,18 +287,19 @@ impl ExternalPoseMonitor {
             self.same = 0;
             sound &= self.fault.is_none();
         }
+        let then = then.map(|then| (then.swing, then.yaw() - fix.heading));
         self.recent.push(Arrived {
             at_us: at,
             position: fix.position,
-            then: then.map(|then| (then.swing, then.yaw() - fix.heading)),
+            then,
         });
         if let Some(median) = self.recent.median() {
             sound &= self.follow(&median, fix.variance());
         }
-        if let Some(then) = then.filter(|_| self.same == 0) {
+        if let Some((_, turn)) = then.filter(|_| self.same == 0) {
             // While the vehicle is carried, after a gap and in new axes any heading is accepted.
             let anew = !flies || announced || self.newest.is_none_or(|n| seconds(n.at_us, at) > UNKNOWN_AGE);
-            self.check_heading(scalar::wrap_pi(fix.heading - then.yaw()), at, anew);
+            self.check_heading(scalar::wrap_pi(-turn), at, anew);
         }
         self.newest = Some(*fix);
         let turned = self
