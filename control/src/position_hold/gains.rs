@@ -9,6 +9,9 @@ use crate::params::Params;
 /// Number of states: position, velocity, acceleration of the tilt, its rate, its second derivative, second and first
 /// stage of the setpoint's filter, disturbance.
 pub const STATES: usize = 8;
+/// The states, and the input as one more that nothing moves: exponential and equation have one order, and the board one
+/// copy of their arithmetic.
+const ORDER: usize = STATES + 1;
 /// Period of the law, s.
 const PERIOD: f32 = 0.01;
 /// Deviations that weigh alike, of loops at full pace: m, m/s, m/s² of acceleration beyond what holds against the
@@ -21,7 +24,7 @@ const GENTLE: (f32, f32) = (4.0, 2.0);
 /// Correlation time of the gusts, s.
 const GUST: f32 = 1.0;
 /// Size of each state and of the input: single precision solves the equation of states of about one.
-const SIZES: [f32; STATES + 1] = [0.08, 0.5, 1.0, 5.0, 30.0, 1.0, 1.0, 1.0, 1.0];
+const SIZES: [f32; ORDER] = [0.08, 0.5, 1.0, 5.0, 30.0, 1.0, 1.0, 1.0, 1.0];
 
 /// Gains of the lateral feedback.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,13 +72,14 @@ impl Gains {
         let (a, b) = sampled(p);
         let per = |size: f32, weight: f32| (size / weight) * (size / weight);
         let [position, velocity, ..] = SIZES;
-        let mut weights = [0.0; STATES];
+        let mut weights = [0.0; ORDER];
         let [on_position, on_velocity, ..] = &mut weights;
         *on_position = per(position, off / pace);
         *on_velocity = per(velocity, moving * scalar::inv_sqrt(pace));
-        let mut state = riccati::gains(&a, &b, &weights, EFFORT.recip() * EFFORT.recip());
-        for (gain, size) in state.iter_mut().zip(SIZES) {
-            *gain /= size;
+        let solved = riccati::gains(&a, &b, &weights, EFFORT.recip() * EFFORT.recip());
+        let mut state = [0.0; STATES];
+        for ((gain, solved), size) in state.iter_mut().zip(solved).zip(SIZES) {
+            *gain = solved / size;
         }
         // The input that the equation sees is u + d.
         let [.., disturbance] = &mut state;
@@ -93,21 +97,19 @@ impl Gains {
 }
 
 /// The discrete model in units of [`SIZES`], with u = v - d.
-fn sampled(p: &Params) -> (Square<STATES>, [f32; STATES]) {
-    let whole = riccati::exponential(&continuous(p), PERIOD);
-    let mut a = [[0.0; STATES]; STATES];
-    let mut b = [0.0; STATES];
-    for ((to, input), from) in a.iter_mut().zip(&mut b).zip(&whole) {
-        to.iter_mut().zip(from).for_each(|(to, from)| *to = *from);
-        *input = from.last().copied().unwrap_or_default();
-        let [.., disturbance] = to;
-        *disturbance -= *input;
+fn sampled(p: &Params) -> (Square<ORDER>, [f32; ORDER]) {
+    let mut a = riccati::exponential(&continuous(p), PERIOD);
+    let mut b = [0.0; ORDER];
+    for (row, reach) in a.iter_mut().zip(&mut b).take(STATES) {
+        let [.., disturbance, input] = row;
+        *reach = core::mem::take(input);
+        *disturbance -= *reach;
     }
     (a, b)
 }
 
 /// The continuous model with its input, of the whole state, in units of [`SIZES`].
-fn continuous(p: &Params) -> Square<{ STATES + 1 }> {
+fn continuous(p: &Params) -> Square<ORDER> {
     let LoopGains {
         attitude_p,
         setpoint_cutoff: filter,
@@ -128,7 +130,7 @@ fn continuous(p: &Params) -> Square<{ STATES + 1 }> {
         [0.0, 0.0, 0.0, 0.0, 0.0, -filter, filter, 0.0, 0.0],
         [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -filter, 0.0, filter],
         [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -gust, 0.0],
-        [0.0; STATES + 1],
+        [0.0; ORDER],
     ];
     for (row, own) in rows.iter_mut().zip(SIZES) {
         row.iter_mut().zip(SIZES).for_each(|(x, size)| *x *= size / own);
