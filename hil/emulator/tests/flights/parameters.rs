@@ -22,8 +22,8 @@ fn the_image_flies_with_stored_parameters() {
         s.params.motor_protocol = MotorProtocol::Dshot600;
     });
     let flight = fly(&scenario, 1.0, &[]);
-    // These two, the servos' marks and the accelerometer's three axes.
-    let taken = logged_at(&flight, 0.0, "parameters: 6 from storage");
+    // These two, the lag, the servos' marks and the accelerometer's three axes.
+    let taken = logged_at(&flight, 0.0, "parameters: 7 from storage");
     assert!(taken.is_some(), "{}", log(&flight));
     // Airborne with inverted line and parity, and motor frames at twice the rate.
     assert!(logged_at(&flight, 0.0, "FLIGHT").is_some(), "{}", log(&flight));
@@ -38,7 +38,7 @@ fn the_small_board_flies_with_stored_parameters() {
     let scenario = start(|s| s.params.rc_protocol = RcProtocol::Sbus);
     let flight = fly_small(&scenario, &[]);
     assert!(
-        logged_at(&flight, 0.0, "parameters: 5 from storage").is_some(),
+        logged_at(&flight, 0.0, "parameters: 6 from storage").is_some(),
         "{}",
         log(&flight)
     );
