@@ -30,7 +30,7 @@ const EQUAL: f32 = 1e-6;
 /// Departure from the velocity of the last two poses that is a step, m: in 20 ms no acceleration of a vehicle gives
 /// it.
 const STEP: f32 = 0.15;
-/// Largest acceleration along an axis by which the velocity follows, m/s²: a single pose that is off below [`STEP`] is
+/// Largest acceleration along an axis by which the velocity follows, m/s², as four rotors give it (18 by default): a single pose that is off below [`STEP`] is
 /// not taken for a velocity, from which the next one would be a step.
 const ACCEL_MAX: f32 = 20.0;
 /// Factor on a pose's variance in the step threshold: four deviations, squared, of a second difference of three poses.
@@ -225,7 +225,6 @@ pub struct ExternalPoseMonitor {
     /// The previous median was a step away from the one before it.
     stepped: bool,
     refused: u32,
-    resets: u8,
     /// Origin resets announced since `resets_us`, µs.
     announced: u32,
     resets_us: u64,
@@ -266,8 +265,7 @@ impl ExternalPoseMonitor {
         let at = fix.at_us;
         let mut sound = true;
         let since = self.newest.map_or(0, |newest| at.saturating_sub(newest.at_us));
-        let announced = self.newest.is_some() && fix.resets != self.resets;
-        self.resets = fix.resets;
+        let announced = self.newest.is_some_and(|newest| newest.resets != fix.resets);
         if announced {
             sound = self.announce(at);
         }
@@ -501,6 +499,27 @@ mod tests {
                 monitor.update(&fix, Some(&StateSnapshot::default()), true);
                 assert_eq!(monitor.fault(), None, "{beside} m, pose {pose}");
             }
+        }
+    }
+
+    #[test]
+    fn a_pose_is_an_outlier_where_it_is_off_the_way_of_the_last_ones() {
+        let mut monitor = ExternalPoseMonitor::default();
+        let on_its_way = |pose: u64| Fix {
+            at_us: 20_000 * pose,
+            position: Vec3::new(0.1 * pose as f32, 0.0, 0.0),
+            ..Fix::default()
+        };
+        assert!(!monitor.is_outlier(&on_its_way(1)), "nothing to compare with");
+        for pose in 1..30 {
+            monitor.update(&on_its_way(pose), Some(&StateSnapshot::default()), true);
+        }
+        // At 5 m/s the next pose is 0.3 m from the median, and no outlier.
+        let next = on_its_way(30);
+        assert!(!monitor.is_outlier(&next));
+        for off in [Vec3::new(0.2, 0.0, 0.0), Vec3::new(0.0, -0.2, 0.0)] {
+            let position = next.position + off;
+            assert!(monitor.is_outlier(&Fix { position, ..next }), "{off:?}");
         }
     }
 

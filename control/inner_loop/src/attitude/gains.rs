@@ -1,8 +1,9 @@
 //! Gains of attitude and rate loop in force: those of the parameters, with a lead that makes up for motors that lag more than
 //! 0.05 s, and slower where the lead would be too large.
 //!
-//! A moment that passes (motor_tau s + 1) / (T s + 1) before motors of motor_tau comes as by motors of T, 0.05 s: loops, hold and pilot have one vehicle to deal with. The lead amplifies the gyro's noise, and steps towards the
-//! rotors' limits, by motor_tau / T; beyond 2.4 times, the loops are slowed instead. A loop whose every time is
+//! A moment that passes (motor_tau s + 1) / (T s + 1) before motors of motor_tau comes as by motors of T, 0.05 s: loops, hold
+//! and pilot have one vehicle to deal with. The lead amplifies the gyro's noise, and steps towards the rotors' limits, by
+//! motor_tau / T; beyond 2.4 times, the loops are slowed instead. A loop whose every time is
 //! stretched by k keeps its margins: rates per second shrink by k, those per second squared by k², and the derivative
 //! gain, a pure number, stays.
 
