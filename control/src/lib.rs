@@ -28,4 +28,5 @@ pub mod navigation;
 pub mod oscillation;
 pub mod pilot;
 pub mod position_hold;
+pub mod thrust_factor;
 pub mod vibration;

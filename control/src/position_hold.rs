@@ -136,10 +136,9 @@ pub struct PositionHold {
 }
 
 impl PositionHold {
-    /// A controller that holds the present position.
-    pub fn begin(p: &Params, gains: &Gains, e: &Estimate, motion: &BodyMotion) -> Self {
+    /// A controller that holds the present position, with rotors of `full` thrust together, N.
+    pub fn begin(p: &Params, gains: &Gains, full: f32, e: &Estimate, motion: &BodyMotion) -> Self {
         let weight = p.mass * GRAVITY;
-        let full = 4.0 * p.thrust_max;
         Self {
             mass: p.mass,
             gains: *gains,

@@ -1,7 +1,7 @@
 //! The defmt log of the running firmware. Background: logging never delays a flight.
 //!
 //! At the start it logs the duration of the start and the chip's checks; a line at each change of state, reason,
-//! warning or hardware arming inhibit, and for each arm of a proven grip; each second the timing of every task and
+//! warning or hardware arming inhibit, for each arm of a proven grip, and for the thrust factor as a flight ends; each second the timing of every task and
 //! missed deadlines ([`super::timing`]), and the greatest stack depth if it has grown.
 
 use embassy_futures::select::{Either, select};
@@ -44,6 +44,9 @@ pub async fn run(links: &Links, checks: &[ChipCheck]) -> ! {
             && shown != Some(status)
         {
             state(status, shown);
+            if status.mode.rotors_stand() && shown.is_some_and(|before| !before.mode.rotors_stand()) {
+                thrust(links);
+            }
             shown = Some(status);
         }
         grip.look(links);
@@ -81,6 +84,13 @@ fn state(now: Status, before: Option<Status>) {
     }
     if before.is_none_or(|b| b.warning != now.warning) && !now.warning.is_empty() {
         defmt::warn!("warning: {=str}", now.warning);
+    }
+}
+
+/// Logs at the end of a flight what it has shown of the thrust.
+fn thrust(links: &Links) {
+    if let Some(factor) = links.thrust_factor.fresh() {
+        defmt::info!("thrust {=f32} times the parameter's", factor.value);
     }
 }
 

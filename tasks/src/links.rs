@@ -45,6 +45,7 @@ use sophie_control::params::Params;
 use sophie_control::pilot::actuator_test::{ActuatorTestAnswer, ActuatorTestRequest, ActuatorTestView};
 use sophie_control::pilot::remote::{RemoteAnswer, RemoteRequest};
 use sophie_control::position_hold::gains::HoldGains;
+use sophie_control::thrust_factor::ThrustFactor;
 use sophie_control::vibration::Vibration;
 use sophie_ports::external_pose::ExternalPose;
 use sophie_ports::receiver::RcState;
@@ -176,6 +177,8 @@ links! {
     rc: RcState, Rc to "commander, console, mavlink", stale after 500 ms;
     /// State reported by the commander.
     status: Status, Commander to "telemetry, console, mavlink, log", stale after 200 ms;
+    /// Thrust learnt in flight over that of the parameters; the mixer keeps the last one.
+    thrust_factor: ThrustFactor, Commander to "mixer, supervisor, console, log", stale after 200 ms;
     /// Vibration of each second at the inertial sensor.
     vibration: Vibration, Commander to "console, mavlink", stale after 2500 ms;
     /// Test of one actuator, by console or MAVLink, renewed while it lasts; without it motors stop and servos go to release.

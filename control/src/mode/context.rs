@@ -27,6 +27,7 @@ use crate::pilot::rc::Sticks;
 use crate::pilot::remote::RemoteOrder;
 use crate::position_hold::gains::{Gains, HoldGains};
 use crate::position_hold::{self, PositionHold};
+use crate::thrust_factor::{Air, ThrustLearning, ThrustSample};
 
 /// Time constant of learning gravity at rest, s, and bounds, m/s²: a part's bias of some 40 mg.
 const GRAVITY_TIME: f32 = 0.5;
@@ -72,6 +73,7 @@ pub struct Context {
     pub oscillation: Oscillation,
     /// The vehicle has swung in a hold since it left the ground: it holds gently.
     pub has_swung: bool,
+    pub thrust: ThrustLearning,
     /// Time in this mode, s.
     pub since: f32,
     pub contact_force: ContactForce,
@@ -108,12 +110,14 @@ pub struct Context {
 }
 
 impl Context {
-    pub fn new(params: &Params, hold_gains: &HoldGains) -> Self {
+    /// A vehicle whose last run has left this [thrust factor](crate::thrust_factor), if any.
+    pub fn new(params: &Params, hold_gains: &HoldGains, thrust_factor: Option<f32>) -> Self {
         Self {
             params: *params,
             hold_gains: *hold_gains,
             oscillation: Oscillation::default(),
             has_swung: false,
+            thrust: ThrustLearning::new(params, thrust_factor),
             since: 0.0,
             contact_force: ContactForce::new(params),
             dangers: Dangers::default(),
@@ -145,8 +149,9 @@ impl Context {
         }
     }
 
-    /// Takes in the inputs; learns gravity `at_rest`.
-    pub fn observe(&mut self, i: &Inputs, at_rest: bool, dt: f32) {
+    /// Takes in the inputs; learns gravity while the rotors are locked, and their thrust in free air.
+    pub fn observe(&mut self, i: &Inputs, air: Air, dt: f32) {
+        let at_rest = air == Air::Locked;
         self.since = clamp(self.since + dt, 0.0, 1e6);
         self.note.1 -= dt;
         self.gesture = self
@@ -175,6 +180,13 @@ impl Context {
             lift: i.lift,
         });
         self.contact_force.step(sample, dt);
+        let thrust = sample.map(|s| ThrustSample {
+            specific_force_z: s.specific_force_z,
+            lift: s.lift,
+            sink: self.contact_force.sink(),
+            resting: self.contact_force.resting(),
+        });
+        self.thrust.step(air, thrust, dt);
         self.crown_offset
             .step(i.lift, i.roll_moment, &self.contact_force, dt);
         self.accel_down = sample.map_or(0.0, |f| f.down);
@@ -320,9 +332,9 @@ impl Context {
         }
     }
 
-    /// Collective at full throttle, N.
+    /// Collective at full throttle, N, with the thrust learnt in flight.
     pub fn full_thrust(&self) -> f32 {
-        4.0 * self.params.thrust_max
+        4.0 * self.params.thrust_max * self.thrust.now().value
     }
 
     /// Collective on the pipe while the arms close, N: `perch_lift` of the weight, limited to the pilot's throttle;
@@ -352,7 +364,8 @@ impl Step<'_> {
     pub fn position_hold(&mut self, estimate: &Estimate) -> PositionHold {
         self.context.oscillation.forget();
         let (motion, context) = (self.body_motion(), &self.context);
-        PositionHold::begin(&context.params, context.hold_gains(), estimate, &motion)
+        let full = context.full_thrust();
+        PositionHold::begin(&context.params, context.hold_gains(), full, estimate, &motion)
     }
 
     /// Goes on gently with a `hold` in which the vehicle swings, and says so.

@@ -15,6 +15,7 @@ use crate::maths::scalar::clamp;
 use crate::params::Params;
 use crate::pilot::remote::{RemoteOrder, RemoteRefusal, RemoteRequest};
 use crate::position_hold::gains::HoldGains;
+use crate::thrust_factor::Air;
 
 /// Longest step accepted, s: a stall of the commander must not end a timer.
 const STEP_MAX: f32 = 0.05;
@@ -29,13 +30,19 @@ pub struct ModeLogic {
 impl ModeLogic {
     /// A vehicle just powered up: it first checks whether its arms are closed.
     pub fn new(params: &Params) -> Self {
-        Self::resume(params, &HoldGains::of(params), GripMemory::Unknown)
+        Self::resume(params, &HoldGains::of(params), GripMemory::Unknown, None)
     }
 
-    /// A vehicle restarted with this grip, and the gains for its parameters. The rotors wait for the pilot in either case.
-    pub fn resume(params: &Params, hold_gains: &HoldGains, grip_memory: GripMemory) -> Self {
+    /// A vehicle restarted with this grip and the thrust factor that it had learnt, and the gains for its parameters. The
+    /// rotors wait for the pilot in either case.
+    pub fn resume(
+        params: &Params,
+        hold_gains: &HoldGains,
+        grip_memory: GripMemory,
+        thrust_factor: Option<f32>,
+    ) -> Self {
         Self {
-            context: Context::new(params, hold_gains),
+            context: Context::new(params, hold_gains, thrust_factor),
             state: State::Calibrating(Calibrating { grip_memory }),
         }
     }
@@ -50,6 +57,11 @@ impl ModeLogic {
         self.context.vertical_fallback = crate::navigation::vertical_fallback::VerticalFallback::default();
     }
 
+    #[cfg(test)]
+    pub(super) fn forget_thrust(&mut self) {
+        self.context.thrust.forget();
+    }
+
     /// One step, `dt` s after the last.
     pub fn step(&mut self, inputs: &Inputs, dt: f32) -> Outputs {
         let dt = clamp(dt, 0.0, STEP_MAX);
@@ -62,7 +74,7 @@ impl ModeLogic {
         let remote = self.context.remote.take(inputs.remote);
         let refused = remote.and_then(|request| self.weigh(request.order, &inputs, dt));
         let inputs = &self.context.remote.apply(inputs);
-        self.context.observe(inputs, rotors_locked(before), dt);
+        self.context.observe(inputs, air(before), dt);
         let accel_down = self.context.accel_down;
         let position = inputs.position.as_ref();
         self.context
@@ -137,7 +149,8 @@ impl ModeLogic {
             .ground_probe
             .step(mode == Mode::Failsafe, &context.contact_force, dt);
         let setpoint = state.rotors(context, inputs);
-        let rotors = context.collective.finish(setpoint, &context.params, dt);
+        let full = context.full_thrust();
+        let rotors = context.collective.finish(setpoint, full, dt);
         let grip_memory = state.grip_memory();
         let inhibits = if rotors_locked(mode) {
             context.inhibits(inputs, grip_memory)
@@ -153,6 +166,7 @@ impl ModeLogic {
             inhibits,
             actuator_test: context.actuator_tests.answer(),
             remote: context.remote.answer(),
+            thrust_factor: context.thrust.now(),
         }
     }
 }
@@ -162,6 +176,14 @@ fn flies_free(mode: Mode) -> bool {
         mode,
         Mode::Flight | Mode::Hold | Mode::Approach | Mode::Escaping | Mode::Failsafe
     )
+}
+
+fn air(mode: Mode) -> Air {
+    match mode {
+        Mode::Calibrating | Mode::Disarmed => Air::Locked,
+        Mode::Flight | Mode::Hold => Air::Free,
+        _ => Air::Near,
+    }
 }
 
 fn rotors_locked(mode: Mode) -> bool {

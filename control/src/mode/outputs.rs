@@ -8,6 +8,7 @@ use crate::gripper::clamp_command::ClampCommand;
 use crate::gripper::retained_grip::GripMemory;
 use crate::pilot::actuator_test::ActuatorTestAnswer;
 use crate::pilot::remote::RemoteAnswer;
+use crate::thrust_factor::ThrustFactor;
 
 /// Outputs of one step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -28,4 +29,6 @@ pub struct Outputs {
     pub actuator_test: ActuatorTestAnswer,
     /// Answer to the newest order of a remote link.
     pub remote: RemoteAnswer,
+    /// Thrust learnt in flight, by which the mixer divides its demands.
+    pub thrust_factor: ThrustFactor,
 }

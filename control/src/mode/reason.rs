@@ -60,6 +60,8 @@ reasons! {
     Swings = "swings: check motor_tau and gains",
     /// Autonomous perching requires centred sticks, so that the pilot ends it by moving one.
     SticksNotCentred = "centre the sticks to perch",
+    /// Autonomous perching requires a thrust learnt in free flight: contact shows by the force that is no thrust.
+    ThrustUnknown = "thrust not learnt yet: fly on",
     /// Autonomous perching requires a fresh range, or a known position of the pipe.
     NoRange = "no range to perch by",
     /// The pilot has ended autonomous perching.

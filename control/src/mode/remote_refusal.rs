@@ -53,6 +53,7 @@ fn at_rest_closed(state: &State) -> Result<(), RemoteRefusal> {
 fn not_approached(step: &Step<'_>) -> Option<RemoteRefusal> {
     approach::obstacle(step).map(|why| match why {
         Reason::SticksNotCentred => RemoteRefusal::SticksNotCentred,
+        Reason::ThrustUnknown => RemoteRefusal::ThrustUnknown,
         _ => RemoteRefusal::NoWay,
     })
 }

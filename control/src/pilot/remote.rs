@@ -72,6 +72,8 @@ remote_refusals! {
     Throttle = "throttle not set for a release";
     /// Autonomous perching requires centred sticks.
     SticksNotCentred = "centre the sticks first";
+    /// Autonomous perching requires a thrust learnt in free flight.
+    ThrustUnknown = "thrust not learnt yet: fly on";
     /// Autonomous perching requires a position and a range.
     NoWay = "no position or no range to perch by";
 }

@@ -40,7 +40,13 @@ impl World {
             carried: false,
         };
         Self {
-            law: PositionHold::begin(params, &gains::Gains::of(params), &e, &motion),
+            law: PositionHold::begin(
+                params,
+                &gains::Gains::of(params),
+                4.0 * params.thrust_max,
+                &e,
+                &motion,
+            ),
             e,
             params: *params,
             // The lead is the same with the true motors behind it.

@@ -13,8 +13,8 @@ pub struct Situation<'a> {
     pub tilt: &'a TiltModel,
     /// Yaw is demanded, and thrust suffices for it.
     pub yaw: bool,
-    /// Battery voltage over nominal, 0.5..1.
-    pub battery_ratio: f32,
+    /// Root of the largest thrust over that of the parameters, 0.5..1.25.
+    pub thrust_ratio: f32,
 }
 
 /// Splits a wrench into patterns of thrust.
@@ -53,10 +53,10 @@ impl<L: Law> Allocation for WithLimits<L> {
         let situation = Situation {
             tilt: &self.tilt,
             yaw: self.limits.open_yaw(self.tilt.thrusts()) && c.yaw,
-            battery_ratio: Limits::battery_ratio(c.battery_ratio),
+            thrust_ratio: Limits::thrust_ratio(c.thrust_ratio),
         };
         let split = self.law.split(*w, &situation);
-        self.limits.give(split, situation.yaw, situation.battery_ratio)
+        self.limits.give(split, situation.yaw, situation.thrust_ratio)
     }
 
     fn at_idle(&self) -> Mix {

@@ -30,7 +30,7 @@ impl Printed {
 
 impl Law for Printed {
     fn split(&self, w: Wrench, s: &Situation<'_>) -> Split {
-        let power = s.battery_ratio * s.battery_ratio;
+        let power = s.thrust_ratio * s.thrust_ratio;
         let tilt = self.last.map(|t| self.algorithm_1.angle(t, power));
         stiff(&self.geometry, w, tilt)
     }

@@ -20,7 +20,7 @@ const HOVER: Wrench = Wrench {
 fn conditions() -> Conditions {
     Conditions {
         yaw: true,
-        battery_ratio: 1.0,
+        thrust_ratio: 1.0,
         dt: 1e-3,
     }
 }
@@ -161,8 +161,9 @@ proptest! {
             for [t, l, p, n] in &bits {
                 let f = f32::from_bits;
                 let w = Wrench { thrust: f(*t), roll: f(*l), pitch: f(*p), yaw: f(*n) };
-                let mix = m.mix(&w, Conditions { yaw: true, battery_ratio: f(*n), dt: 1e-3 });
-                prop_assert!(mix.thrusts.iter().all(|t| (0.25..=8.3).contains(t)), "{:?}", mix);
+                let mix = m.mix(&w, Conditions { yaw: true, thrust_ratio: f(*n), dt: 1e-3 });
+                // 8.3 N times the square of the largest ratio.
+                prop_assert!(mix.thrusts.iter().all(|t| (0.25..=12.97).contains(t)), "{:?}", mix);
                 for (arm, measured) in [*t, *l, *p, *n, *t].into_iter().enumerate() {
                     m.tilt_mut().correct(arm, f(measured));
                 }

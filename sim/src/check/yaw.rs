@@ -64,7 +64,7 @@ fn yaw_thrusts(scenario: &Scenario, thrust: f64) -> PerArm<f64> {
     let mut mixer = Mixer::new(scenario.mixer, scenario.vehicle.configuration, &scenario.params);
     let conditions = Conditions {
         yaw: true,
-        battery_ratio: 1.0,
+        thrust_ratio: 1.0,
         dt: SETTLE,
     };
     let collective = [thrust as f32; 4];

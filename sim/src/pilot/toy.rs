@@ -188,7 +188,9 @@ impl Toy {
         s.roll += (self.setpoint.x - s.roll) * (4.5 * DT);
         s.pitch += (self.setpoint.y - s.pitch) * (4.5 * DT);
         s.yaw += (f64::from(yaw_rate) + self.spin) * DT;
-        self.thrust += (f64::from(thrust) * self.strength - self.thrust) * (20.0 * DT);
+        // The mixer divides by the thrust learnt in flight.
+        let thrust = f64::from(thrust / self.out.thrust_factor.value) * self.strength;
+        self.thrust += (thrust - self.thrust) * (20.0 * DT);
         self.gust.step(DT);
 
         let mass = f64::from(self.scenario.params.mass);

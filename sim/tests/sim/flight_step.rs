@@ -69,6 +69,7 @@ fn surroundings(links: &Links) -> Surroundings {
     });
     Surroundings {
         battery_ratio: links.battery.latest().map(|battery| battery.value.ratio),
+        thrust_root: links.thrust_factor.look(|factor| factor.value.root),
         arms,
     }
 }

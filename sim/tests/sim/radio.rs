@@ -191,8 +191,9 @@ fn a_failsafe_sinks_from_high_up_as_slowly_as_from_low_down() {
     for height in [3, 10] {
         for seed in 1..=5 {
             let text = format!(
+                // Far from the pipe, onto which a vehicle of 10 m may drift.
                 "seed = {seed}\nsteps = [{{ do = 'arm' }}, {{ do = 'take-off', height_m = {height} }}, \
-                 {{ do = 'radio-off', seconds = 60 }}, {{ do = 'disarm' }}]"
+                 {{ do = 'radio-off', seconds = 60 }}, {{ do = 'disarm' }}]\n[world]\npipe_north_m = 8.0"
             );
             let scenario = Scenario::parse(&text, "high", &Overrides::default()).unwrap();
             let record = fly(&scenario, &mut Silent);

@@ -37,7 +37,7 @@ struct Group {
     read: fn(&Links) -> Row,
 }
 
-const GROUPS: [Group; 11] = [
+const GROUPS: [Group; 12] = [
     Group {
         name: "sticks",
         what: "sticks -1 to 1, throttle 0 to 1, switches by their position",
@@ -79,6 +79,13 @@ const GROUPS: [Group; 11] = [
         columns: "   volts  ampere    used  servos",
         places: 2,
         read: power,
+    },
+    Group {
+        name: "thrust",
+        what: "thrust over the parameters', learnt in flight, and its deviation",
+        columns: "  factor   sigma",
+        places: 3,
+        read: thrust,
     },
     Group {
         name: "counts",
@@ -192,6 +199,13 @@ fn power(links: &Links) -> Row {
     let used = battery.and_then(|b| b.used).map(|used| used / 3.6);
     let servos = links.servo_battery.fresh().map(|b| b.voltage);
     [battery.map(|b| b.voltage), current, used, servos]
+        .into_iter()
+        .collect()
+}
+
+fn thrust(links: &Links) -> Row {
+    let factor = links.thrust_factor.fresh();
+    [factor.map(|f| f.value), factor.map(|f| f.deviation)]
         .into_iter()
         .collect()
 }

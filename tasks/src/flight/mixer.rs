@@ -30,6 +30,7 @@ pub async fn run<A: MixingStep>(links: &Links, allocation: impl FnOnce(&Params) 
         });
         let surroundings = Surroundings {
             battery_ratio: links.battery.look(|battery| battery.value.ratio),
+            thrust_root: links.thrust_factor.look(|factor| factor.value.root),
             arms,
         };
         mixing.step(message.at.as_micros(), &message.value, &surroundings, &mut mix);

@@ -30,7 +30,8 @@ pub async fn run(links: &Links) -> ! {
         .start
         .retained
         .map_or(GripMemory::Unknown, |retained| retained.grip_memory);
-    let mut logic = ModeLogic::resume(&links.params, &links.hold_gains, grip_memory);
+    let thrust_factor = links.start.retained.and_then(|retained| retained.thrust_factor);
+    let mut logic = ModeLogic::resume(&links.params, &links.hold_gains, grip_memory, thrust_factor);
     let mut late = Lateness::new();
     let mut flow_limit = FlowLimit::default();
     let mut vibration = Shaking::new(links);
@@ -47,12 +48,14 @@ pub async fn run(links: &Links) -> ! {
             inhibits,
             actuator_test,
             remote,
+            thrust_factor,
         } = logic.step(&inputs, tick.dt);
         links.setpoint.send(tick.started, rotors);
         links.clamp_command.send(tick.started, tendons);
         links.grip_memory.send(tick.started, grip_memory);
         links.actuator_test_answer.send(tick.started, actuator_test);
         links.remote_answer.send(tick.started, remote);
+        links.thrust_factor.send(tick.started, thrust_factor);
         let limit = flow_limit.step(links, mode, tick.started);
         let vibrates = vibration.step(links, tick.started);
         let warning = warning(links, mode, limit, vibrates);

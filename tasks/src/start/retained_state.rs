@@ -1,5 +1,5 @@
-//! State retained over a reset: the grip on the pipe, and the gyro bias, which could otherwise only be measured at
-//! rest.
+//! State retained over a reset: the grip on the pipe, the gyro bias, which could otherwise only be measured at rest, and
+//! the thrust factor, which takes a flight.
 //!
 //! A reset (watchdog, fault, command, pin) preserves memory that start-up does not initialise. Two copies are written
 //! alternately, with sequence number and checksum: a reset during a write leaves the other copy valid. After power-on
@@ -12,10 +12,11 @@ use sophie_control::gripper::retained_grip::GripMemory;
 use sophie_control::maths::scalar;
 use sophie_control::maths::vector::Vec3;
 use sophie_control::pilot::rc::ArmChoice;
+use sophie_control::thrust_factor::BOUNDS;
 use sophie_ports::retained::Words;
 
 /// Marks a copy ("WARM") and its layout's number.
-const MAGIC: u32 = 0x5741_524D + 3;
+const MAGIC: u32 = 0x5741_524D + 4;
 const FAULT_BITS: u32 = 4;
 /// Beyond any servo's travel, rad.
 const ANGLE_MAX: f32 = 6.5;
@@ -23,6 +24,8 @@ const ANGLE_MAX: f32 = 6.5;
 const FORCE_MAX: f32 = 2000.0;
 /// An identified response is stored as a byte, in hundredths; 0: none.
 const RESPONSE_UNIT: f32 = 100.0;
+/// A thrust factor is stored as a byte, in hundredths; 0: none.
+const FACTOR_UNIT: f32 = 100.0;
 /// The estimator's own bound, rad/s.
 const BIAS_MAX: f32 = 0.1;
 
@@ -41,6 +44,8 @@ pub struct RetainedState {
     pub response: PerArm<Option<f32>>,
     /// Gyro bias, rad/s, within ±0.1; `None` before calibration.
     pub gyro_bias: Option<Vec3>,
+    /// [Thrust factor](sophie_control::thrust_factor), within its bounds in hundredths; `None` before a commander's step.
+    pub thrust_factor: Option<f32>,
 }
 
 impl RetainedState {
@@ -67,7 +72,10 @@ impl RetainedState {
         let mut words = [
             MAGIC,
             sequence,
-            grip_memory | arms << 8 | u32::from(self.gyro_bias.is_some()) << 16,
+            grip_memory
+                | arms << 8
+                | u32::from(self.gyro_bias.is_some()) << 16
+                | factor_code(self.thrust_factor) << 24,
             faults,
             angle_1,
             angle_2,
@@ -112,7 +120,11 @@ impl RetainedState {
             responses,
             sum,
         ] = *words;
-        if magic != MAGIC || sum != checksum(words) || state >> 17 != 0 || faults >> (4 * FAULT_BITS) != 0 {
+        if magic != MAGIC
+            || sum != checksum(words)
+            || state >> 17 & 0x7F != 0
+            || faults >> (4 * FAULT_BITS) != 0
+        {
             return None;
         }
         let arms = arm_choice(state >> 8 & 0xFF)?;
@@ -138,6 +150,7 @@ impl RetainedState {
             response,
             gyro_bias: (state >> 16 & 1 != 0)
                 .then_some(Vec3::from([bias_x, bias_y, bias_z].map(f32::from_bits))),
+            thrust_factor: factor_of(state >> 24)?,
         };
         retained.is_sane().then_some((retained, sequence))
     }
@@ -172,6 +185,7 @@ impl RetainedState {
                 .gyro_bias
                 .filter(|b| b.is_finite())
                 .map(|b| b.map(|x| scalar::clamp_abs(x, BIAS_MAX))),
+            thrust_factor: factor_of(factor_code(self.thrust_factor)).flatten(),
             ..self
         }
     }
@@ -207,6 +221,22 @@ fn response_of(code: u8) -> Option<Option<f32>> {
     let (least, most) = RESPONSE_RANGE;
     let response = f32::from(code) / RESPONSE_UNIT;
     (least..=most).contains(&response).then_some(Some(response))
+}
+
+/// Code of a thrust factor; NaN and values out of range are stored as 0, none.
+fn factor_code(factor: Option<f32>) -> u32 {
+    factor
+        .filter(|f| (BOUNDS.0..=BOUNDS.1).contains(f))
+        .map_or(0, |f| (f * FACTOR_UNIT + 0.5) as u32)
+}
+
+/// Outer `None`: out of range.
+fn factor_of(code: u32) -> Option<Option<f32>> {
+    if code == 0 {
+        return Some(None);
+    }
+    let factor = code as f32 / FACTOR_UNIT;
+    (BOUNDS.0..=BOUNDS.1).contains(&factor).then_some(Some(factor))
 }
 
 /// Code of a latched fault; other faults are detected again after the restart.

@@ -63,6 +63,9 @@ impl<R: Retain> RetainedStore<R> {
             let mounting = Mounting::from(links.params.imu_mounting);
             self.retained.gyro_bias = Some(mounting.to_board(attitude.gyro_bias));
         }
+        if let Some(factor) = links.thrust_factor.fresh() {
+            self.retained.thrust_factor = Some(factor.value);
+        }
         self.retained = self.retained.bounded();
         let sequence = self.sequence.wrapping_add(1);
         if let Some(words) = self.retained.to_words(sequence) {

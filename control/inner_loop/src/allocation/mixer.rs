@@ -31,8 +31,8 @@ pub struct Mix {
 pub struct Conditions {
     /// Yaw may be used.
     pub yaw: bool,
-    /// Battery voltage over nominal, limited to 0.5..1; lowers the largest thrust by its square.
-    pub battery_ratio: f32,
+    /// Root of the largest thrust over that of the parameters, limited to 0.5..1.25: by battery and rotors.
+    pub thrust_ratio: f32,
     /// Step time, s, > 0.
     pub dt: f32,
 }

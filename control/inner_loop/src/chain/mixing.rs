@@ -9,6 +9,7 @@ use crate::allocation::arm_tilt::TiltModel;
 use crate::allocation::mixer::{Allocation, Conditions, Flexible};
 use crate::allocation::thrust_curve::ThrustCurve;
 use crate::allocation::wrench::PerArm;
+use crate::maths::scalar;
 use crate::params::Params;
 
 /// Measurement of the arms' sensors.
@@ -26,6 +27,8 @@ pub struct Surroundings {
     /// [`voltage_ratio`](crate::allocation::thrust_curve::voltage_ratio) of the last battery voltage, of any age; `None`
     /// means nominal.
     pub battery_ratio: Option<f32>,
+    /// Root of the thrust that the rotors give over that of the parameters; `None` means 1.
+    pub thrust_root: Option<f32>,
     /// Last reading of the arms' sensors, `None` where too old; taken readings may be omitted.
     pub arms: Option<ArmReading>,
 }
@@ -100,7 +103,9 @@ impl<A: MixingStep> Mixing<A> {
     #[inline(always)]
     fn compose(&mut self, at_us: u64, demand: &Demand, surroundings: &Surroundings, out: &mut MixOutput) {
         let dt = self.clock.step(at_us);
-        let ratio = surroundings.battery_ratio.unwrap_or(1.0);
+        let root = surroundings.thrust_root.unwrap_or(1.0);
+        let battery_ratio = surroundings.battery_ratio.unwrap_or(1.0);
+        let ratio = battery_ratio * root;
         // On the pipe the arms do not hang free.
         if !matches!(demand, Demand::Resting(_)) {
             self.readings.take(surroundings.arms.as_ref());
@@ -113,7 +118,8 @@ impl<A: MixingStep> Mixing<A> {
         };
         let conditions = Conditions {
             yaw,
-            battery_ratio: ratio,
+            // The surplus of a fresh battery stays in reserve, that of strong rotors does not.
+            thrust_ratio: scalar::clamp(battery_ratio, 0.0, 1.0) * root,
             dt,
         };
         let mix = match wrench {

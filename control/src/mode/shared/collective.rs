@@ -10,9 +10,9 @@ use crate::pilot::rc::{StickMode, Sticks};
 /// Default hand-over time of the collective between two states, s.
 pub const HAND_OVER_TIME: f32 = 0.5;
 
-/// Setpoint of the pilot in free flight.
-pub fn from_sticks(s: &Sticks, p: &Params) -> Setpoint {
-    let thrust = s.throttle * 4.0 * p.thrust_max;
+/// Setpoint of the pilot in free flight; `full` is the collective at full throttle, N.
+pub fn from_sticks(s: &Sticks, p: &Params, full: f32) -> Setpoint {
+    let thrust = s.throttle * full;
     match s.stick_mode {
         StickMode::Angle => Setpoint::Angle {
             roll: s.roll * p.stick_angle,
@@ -68,8 +68,8 @@ impl Collective {
         self.last.unwrap_or(0.0)
     }
 
-    /// Hands the collective over, limits it to the thrust of four rotors, and stops if it is not finite.
-    pub fn finish(&mut self, setpoint: Setpoint, p: &Params, dt: f32) -> Setpoint {
+    /// Hands the collective over, limits it to the `full` thrust of four rotors, N, and stops if it is not finite.
+    pub fn finish(&mut self, setpoint: Setpoint, full: f32, dt: f32) -> Setpoint {
         let begins = self.pending.take();
         let passes = matches!(
             setpoint,
@@ -83,7 +83,6 @@ impl Collective {
                 Setpoint::Stop
             };
         }
-        let full = 4.0 * p.thrust_max;
         let target = setpoint.thrust();
         if let Some(time) = begins {
             self.offset = self.last.map_or(0.0, |last| last - target);

@@ -20,7 +20,7 @@ pub fn descent(context: &Context, steer: Option<Sticks>) -> Setpoint {
         stick_mode: StickMode::Angle,
         ..steer.unwrap_or_default()
     };
-    match collective::from_sticks(&steer, &context.params) {
+    match collective::from_sticks(&steer, &context.params, context.full_thrust()) {
         Setpoint::Angle {
             roll,
             pitch,

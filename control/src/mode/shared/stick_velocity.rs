@@ -11,7 +11,7 @@ use crate::position_hold::{CLIMB_MAX, SPEED_MAX, VelocityCommand};
 /// Velocity commanded by the sticks; `climb` is a share of the largest climb rate, -1..1.
 pub fn velocity_from_sticks(s: &Sticks, climb: f32, context: &Context) -> VelocityCommand {
     let lean = |stick: f32| GRAVITY * tan(clamp_abs(stick * context.params.stick_angle, 1.0));
-    let yaw_rate = match collective::from_sticks(s, &context.params) {
+    let yaw_rate = match collective::from_sticks(s, &context.params, context.full_thrust()) {
         Setpoint::Angle { yaw_rate, .. } => yaw_rate,
         _ => 0.0,
     };

@@ -46,6 +46,8 @@ pub fn obstacle(step: &Step<'_>) -> Option<Reason> {
         Some(Reason::SticksNotCentred)
     } else if !step.inputs.position_fresh() {
         Some(Reason::NoPosition)
+    } else if !step.context.thrust.is_known() {
+        Some(Reason::ThrustUnknown)
     } else if let (Some(target), Some(e)) = (step.inputs.target, step.inputs.position) {
         (!ApproachPlanner::reaches(&target, &e)).then_some(Reason::TargetFar)
     } else if !step.inputs.position.is_some_and(ranged) {

@@ -77,7 +77,7 @@ impl Behaviour for Flight {
 
     fn rotors(&self, context: &Context, inputs: &Inputs) -> Setpoint {
         match inputs.sticks {
-            Some(s) => collective::from_sticks(&s, &context.params),
+            Some(s) => collective::from_sticks(&s, &context.params, context.full_thrust()),
             // Unreachable: without radio the failsafe flies.
             None => descent(context, None),
         }

@@ -40,7 +40,7 @@ struct World {
 impl World {
     fn holding() -> Self {
         let mut w = Self {
-            r: Rig::flying(),
+            r: Rig::flown(),
             at: Vec3::new(0.0, 0.0, -2.2),
             held: Vec3::new(0.0, 0.0, -2.2),
             count: 0,
@@ -363,6 +363,14 @@ fn it_does_not_begin_without_a_range_a_position_or_centred_sticks_and_says_so() 
     w.r.expect(15.0, Mode::Hold);
     assert_eq!(w.r.out.reason, Some(Reason::NoPosition));
 
+    // The pilot's patience: no more than some seconds.
+    let mut w = World::holding();
+    w.r.logic.forget_thrust();
+    w.r.sticks().perch_switch = true;
+    w.expect(0.5, Mode::Hold);
+    assert_eq!(w.r.out.reason, Some(Reason::ThrustUnknown));
+    w.expect(4.0, Mode::Approach);
+
     // By hand the perch switch means what it ever did.
     let mut r = Rig::flying();
     r.sticks().perch_switch = true;
@@ -560,7 +568,7 @@ fn leaving_is_by_itself_too_with_the_sticks_centred() {
     w.r.sticks().perch_switch = false;
     w.expect(0.05, Mode::Releasing);
     w.run(2.0);
-    let full = 4.0 * w.r.params.thrust_max;
+    let full = 4.0 * w.r.params.thrust_max * w.r.out.thrust_factor.value;
     assert!(
         (w.r.out.rotors.thrust() - 0.2 * full).abs() < 0.01,
         "{:?}",
@@ -601,6 +609,10 @@ fn a_grab_and_a_release_by_order_do_it_with_the_pilots_switch_left_alone() {
         ..e
     });
     assert_eq!(w.r.remote(Grab), Some(RemoteRefusal::NoWay));
+    let learnt = w.r.logic.clone();
+    w.r.logic.forget_thrust();
+    assert_eq!(w.r.remote(Grab), Some(RemoteRefusal::ThrustUnknown));
+    w.r.logic = learnt;
     w.r.inputs.position = seen;
     assert_eq!((w.r.remote(Grab), w.r.out.mode), (None, Mode::Approach));
     // A second one changes nothing, and a release takes it back; where the switch stands then is no wish.
@@ -704,7 +716,7 @@ fn what_ends_it_at_the_touch_leaves_the_pipe_instead_of_holding_on_it() {
 fn a_touch_where_nothing_was_seen_so_near_climbs_and_tries_again() {
     let mut w = World::searching();
     w.run(1.0);
-    w.r.carried = true;
+    (w.r.carried, w.r.falling) = (true, 0.2);
     for _ in 0..12 {
         w.see();
         w.r.step();

@@ -88,6 +88,7 @@ fn on_reason(reason: Reason) -> &'static str {
         Reason::SticksNotCentred => {
             "Perching by itself: roll, pitch and yaw centred, throttle in its middle."
         }
+        Reason::ThrustUnknown => "Wait: a few seconds of flight show it, then it begins.",
         Reason::NoRange => {
             "The module below is silent, and no companion says where the pipe is. Hold off, and perch by hand."
         }

@@ -230,7 +230,7 @@ proptest! {
                 prop_assert!(mode != Mode::Clamping || tendons != ClampCommand::Release);
                 prop_assert!(rotors != Setpoint::Stop || still || mode == Mode::Clamping, "{before:?} -> {mode:?}");
                 prop_assert!(rotors.numbers().iter().all(|n| n.is_finite()), "{rotors:?}");
-                prop_assert!((0.0..=4.0 * r.params.thrust_max).contains(&rotors.thrust()));
+                prop_assert!((0.0..=4.0 * r.params.thrust_max * r.out.thrust_factor.value).contains(&rotors.thrust()));
                 prop_assert!(sticks.is_none_or(|s| s.arm_switch) || !rotors.spin());
                 prop_assert!(reason.is_none_or(|r| r.text().len() <= 40));
                 // Arms open only by the switch, turned off, or with carrying rotors.

@@ -56,7 +56,7 @@ impl Rig {
 
     /// Restarts the board with this grip retained.
     pub(super) fn restart(&mut self, grip_memory: GripMemory) {
-        self.logic = ModeLogic::resume(&self.params, &HoldGains::of(&self.params), grip_memory);
+        self.logic = ModeLogic::resume(&self.params, &HoldGains::of(&self.params), grip_memory, None);
     }
 
     pub(super) fn sticks(&mut self) -> &mut Sticks {
@@ -84,7 +84,9 @@ impl Rig {
                 // The first step removes the speed.
                 GRAVITY + core::mem::take(&mut self.falling) / DT
             } else {
-                let felt = self.inputs.lift / self.params.mass;
+                // The mixer divides by the factor; the rotors are those of the parameters.
+                let thrust = self.inputs.lift / self.out.thrust_factor.value;
+                let felt = thrust / self.params.mass;
                 self.falling += (GRAVITY - felt) * DT;
                 felt
             };
@@ -143,6 +145,20 @@ impl Rig {
         r.sticks().throttle = 0.53;
         r.carried = false;
         r.expect(1.0, Mode::Flight);
+    }
+
+    /// In flight for long enough to know its thrust.
+    pub(super) fn flown() -> Self {
+        let mut r = Self::flying();
+        let hover = r.params.mass * GRAVITY / (4.0 * r.params.thrust_max);
+        for (throttle, seconds) in [(hover + 0.06, 0.5), (hover, 5.0), (hover - 0.06, 0.5)] {
+            for _ in 0..(seconds / DT) as u32 {
+                r.sticks().throttle = throttle / r.out.thrust_factor.value;
+                r.step();
+            }
+        }
+        r.sticks().throttle = 0.53;
+        r
     }
 
     pub(super) fn touched() -> Self {

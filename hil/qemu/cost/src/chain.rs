@@ -135,7 +135,7 @@ pub fn allocation(l: &mut Laws, i: &Inputs) {
     if let Demand::Wrench(wrench) | Demand::Resting(wrench) = l.flow.demand {
         let conditions = Conditions {
             yaw: !i.resting,
-            battery_ratio: i.battery_ratio,
+            thrust_ratio: i.battery_ratio,
             dt: l.flow.attitude.dt,
         };
         l.mix = l.allocation.allocate(&wrench, conditions);

@@ -170,6 +170,7 @@ impl Sequence {
             battery_ratio,
             surroundings: Surroundings {
                 battery_ratio: Some(battery_ratio),
+                thrust_root: Some(1.02),
                 arms: Some(self.arms),
             },
             arm,

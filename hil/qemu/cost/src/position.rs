@@ -159,7 +159,7 @@ pub fn run(print: &mut dyn FnMut(Arguments<'_>), overhead: u32) {
                 carried: false,
             };
             let law = law.get_or_insert_with(|| Hold {
-                law: PositionHold::begin(&p, &Gains::of(&p), &found, &motion),
+                law: PositionHold::begin(&p, &Gains::of(&p), 4.0 * p.thrust_max, &found, &motion),
                 estimate: found,
                 out: sophie_control::chain::setpoint::Setpoint::Idle,
             });

@@ -64,7 +64,7 @@ fn mixer_swing(variant: Variant, gain_k: f64) -> f64 {
             &w,
             Conditions {
                 yaw: true,
-                battery_ratio: 1.0,
+                thrust_ratio: 1.0,
                 dt: 1e-3,
             },
         );

@@ -168,6 +168,7 @@ impl Hovering {
         self.at_us += 1000;
         let surroundings = Surroundings {
             battery_ratio: Some(self.plant.battery_voltage() as f32 / self.params.battery_nominal),
+            thrust_root: None,
             arms: None,
         };
         self.mixing

@@ -18,6 +18,7 @@ fn held() -> RetainedState {
         ],
         response: [None, Some(0.4), Some(1.37), Some(2.5)],
         gyro_bias: Some(Vec3::new(0.01, -0.02, 0.03)),
+        thrust_factor: Some(1.13),
     }
 }
 
@@ -33,10 +34,11 @@ fn what_is_kept_comes_back() {
         GripMemory::Controlled(ArmChoice::Front),
         GripMemory::HeldByGears(ArmChoice::Rear),
     ] {
-        for gyro_bias in [None, held().gyro_bias] {
+        for (gyro_bias, thrust_factor) in [(None, Some(0.6)), (held().gyro_bias, Some(1.5)), (None, None)] {
             let retained = RetainedState {
                 grip_memory,
                 gyro_bias,
+                thrust_factor,
                 ..held()
             };
             assert_eq!(
@@ -166,6 +168,9 @@ fn what_is_no_number_or_out_of_range_is_neither_kept_nor_used() {
         (11, 1e9f32.to_bits()),
         (2, 4),
         (2, 0x0302),
+        (2, 1 | 1 << 17),
+        (2, 1 | 59 << 24),
+        (2, 1 | 151 << 24),
         (3, 4),
         (3, 0x10000),
         (15, 39),

@@ -106,7 +106,7 @@ impl Allocation for Flexible {
         if !w.is_finite() {
             return self.limits.at_idle();
         }
-        let ratio = Limits::battery_ratio(c.battery_ratio);
+        let ratio = Limits::thrust_ratio(c.thrust_ratio);
         let open = self.limits.open_yaw(self.tilt.thrusts());
         let usable = c.yaw && open;
         let split = self.quasi_static(w, usable);

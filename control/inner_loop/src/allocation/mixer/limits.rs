@@ -41,10 +41,10 @@ impl Limits {
         }
     }
 
-    /// Voltage ratio of the rotors' limits, within 0.5..1.
+    /// Root of the largest thrust over that of the parameters, within 0.5..1.25.
     #[inline(always)]
-    pub fn battery_ratio(ratio: f32) -> f32 {
-        scalar::clamp(ratio, 0.5, 1.0)
+    pub fn thrust_ratio(ratio: f32) -> f32 {
+        scalar::clamp(ratio, 0.5, 1.25)
     }
 
     /// Updates the yaw gate by the low-passed thrusts (N); true if yaw may be used.
@@ -57,7 +57,7 @@ impl Limits {
         self.yaw_open
     }
 
-    /// Thrusts of `split` within the limits at a voltage ratio, yaw only if `usable`.
+    /// Thrusts of `split` within the limits at a thrust ratio, yaw only if `usable`.
     #[inline(always)]
     pub fn give(&self, split: Split, usable: bool, ratio: f32) -> Mix {
         let high = self.max * ratio * ratio;

@@ -48,6 +48,7 @@ impl Bench {
         tilt[without] = None;
         Surroundings {
             battery_ratio: None,
+            thrust_root: None,
             arms: Some(ArmReading {
                 at_us: self.at_us,
                 tilt,
@@ -145,6 +146,7 @@ fn without_a_measured_battery_it_counts_as_nominal() {
         let mut bench = Bench::new();
         let surroundings = Surroundings {
             battery_ratio,
+            thrust_root: None,
             arms: None,
         };
         let [command, ..] = bench.run(1, &bench.hover(), &surroundings).commands;
@@ -152,4 +154,42 @@ fn without_a_measured_battery_it_counts_as_nominal() {
     };
     assert!(command(None) == command(Some(1.0)));
     assert!(command(Some(0.9)) > 1.05 * command(None));
+}
+
+#[test]
+fn a_stronger_vehicle_gives_the_thrust_asked_for_and_all_that_it_has() {
+    let p = Params::default();
+    let mut mixes = [1.0f32, 1.2, 0.85].map(|factor| {
+        let surroundings = Surroundings {
+            battery_ratio: Some(1.1),
+            thrust_root: Some(factor.sqrt()),
+            arms: None,
+        };
+        let bench = || {
+            let bench = Bench::new();
+            let hover = bench.hover();
+            (bench, hover)
+        };
+        let (mut hovers, hover) = bench();
+        let hover = hovers.run(200, &hover, &surroundings);
+        let full = Demand::Wrench(Wrench {
+            thrust: 100.0,
+            ..Wrench::default()
+        });
+        let full = bench().0.run(2000, &full, &surroundings);
+        (factor, hover, full)
+    });
+    let (_, plain, _) = mixes[0];
+    let curve = ThrustCurve::from_params(&p);
+    for (factor, hover, full) in &mut mixes {
+        let given = hover.commands.map(|u| *factor * curve.thrust(u, 1.1));
+        for (given, asked) in given.iter().zip(plain.thrusts) {
+            assert!((given - asked).abs() < 1e-3, "{factor}: {given} of {asked}");
+        }
+        let most = p.thrust_max * *factor;
+        assert!(
+            full.thrusts.iter().all(|t| (t - most).abs() < 0.01),
+            "{factor}: {full:?}"
+        );
+    }
 }
