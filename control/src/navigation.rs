@@ -14,6 +14,7 @@ pub(crate) mod frozen_range;
 pub(crate) mod history;
 pub mod inertial;
 pub(crate) mod pipe_footprint;
+pub(crate) mod pose_noise;
 pub mod position_estimator;
 pub mod range_hit;
 pub(crate) mod range_scale;

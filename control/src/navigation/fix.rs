@@ -7,9 +7,9 @@ use crate::maths::vector::Vec3;
 const POSITION_MAX: f32 = 10_000.0;
 /// Largest heading, rad: one turn. Sine and cosine of a huge one are not finite.
 const HEADING_MAX: f32 = 2.0 * scalar::PI;
-/// Deviation of a fix whose sender gives none, m, and the bounds of a given one, m.
+/// Deviation of a fix of which nothing is known yet, m, and the bounds of a given or measured one, m.
 pub const FIX_DEVIATION: f32 = 0.01;
-const DEVIATION_BOUNDS: (f32, f32) = (0.003, 0.5);
+pub(super) const DEVIATION_BOUNDS: (f32, f32) = (0.003, 0.5);
 
 /// A pose that another sensor or computer has measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

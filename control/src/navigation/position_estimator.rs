@@ -157,11 +157,20 @@ impl PositionEstimator {
         };
         let swing = self.pose_monitor.predict(inertial);
         if let Some(fix) = new {
+            let velocity = self
+                .track
+                .as_ref()
+                .filter(|track| track.posed)
+                .map(Track::velocity);
             self.pose_monitor
-                .update(fix, self.history.at(fix.at_us).as_ref(), flies);
+                .update(fix, self.history.at(fix.at_us).as_ref(), flies, velocity);
         }
         let left_out = self.pose_monitor.fault().is_some();
-        let new = new.filter(|_| !left_out);
+        let new = new.filter(|_| !left_out).map(|fix| Fix {
+            variance: Some(self.pose_monitor.variance(fix)),
+            ..*fix
+        });
+        let new = new.as_ref();
         let here = StateSnapshot {
             at_us,
             q: inertial.q,

@@ -101,10 +101,14 @@ fn share(scenario: &Scenario, built: &Built) -> Row {
         .advise("fit configuration B, stiffer arms or the flexible mixer, or state the arms as they are")
 }
 
-/// Largest C = 1 - y/k_q over the throttle range that uses yaw, y the yaw moment per newton of pattern with settled
-/// arms. 0 for stiff arms; above 1 a command is reversed.
+/// Largest C = 1 - y/k_q over the thrusts at which the mixer uses yaw, y the yaw moment per newton of pattern with settled
+/// arms. 0 for stiff arms; above 1 a command is reversed. A mixer that knows its arms gives yaw up there; where it gives it
+/// up at every thrust, all count.
 fn derivative(scenario: &Scenario, built: &Built) -> Row {
+    let uses_yaw = |t: &f64| yaw_thrusts(scenario, *t).iter().any(|change| change.abs() > 0.0);
+    let used = range(scenario).any(|t| uses_yaw(&t));
     let worst = range(scenario)
+        .filter(|t| !used || uses_yaw(t))
         .map(|t| built.yaw_derivative(t))
         .fold(f64::NEG_INFINITY, f64::max);
     Row::new("yaw derivative", worst, "", Limit::AtMost(1.0))
@@ -163,6 +167,20 @@ mod tests {
         let built = Built::of(&s);
         assert!(!authority(&s, &built).pass && !share(&s, &built).pass && !derivative(&s, &built).pass);
         assert!(given(&s, &built, built.hover).abs() < 1e-3);
+    }
+
+    #[test]
+    fn a_mixer_that_gives_yaw_up_where_arms_reverse_it_passes_and_another_does_not() {
+        let of = |mixer| {
+            let mut s = Scenario::default_mission();
+            s.mixer = mixer;
+            s.params.yaw_gate_thrust = 1.0;
+            s.params.torque_ratio *= 0.7;
+            s.vehicle.rotor.torque_ratio *= 0.7;
+            derivative(&s, &Built::of(&s))
+        };
+        let (flexible, rigid) = (of(Variant::Flexible), of(Variant::Rigid));
+        assert!(flexible.pass && !rigid.pass, "{flexible:?} {rigid:?}");
     }
 
     #[test]

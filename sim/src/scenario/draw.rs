@@ -135,7 +135,8 @@ pub fn draw(streams: Streams) -> Vec<Drawn> {
         .iter()
         .filter(|quantity| quantity.key != REPLACED)
         .filter_map(|quantity| {
-            let mut numbers = numbers(quantity, &nominal, streams)?;
+            let share = |of: &str| streams.unit(&format!("unknown {} {of}", quantity.key));
+            let mut numbers = numbers(quantity, &nominal, share)?;
             if !has(quantity.key) {
                 numbers.fill(0.0);
             }
@@ -166,9 +167,13 @@ fn brake(drawn: &mut [Drawn]) {
     }
 }
 
-/// The numbers of `quantity`; `None` without a spread.
-fn numbers(quantity: &Quantity, nominal: &Scenario, streams: Streams) -> Option<Vec<f64>> {
-    let share = |of: &str| streams.unit(&format!("unknown {} {of}", quantity.key));
+/// The middle of the spread of `quantity` about the numbers of `nominal`; `None` without a spread.
+pub(super) fn middle(quantity: &Quantity, nominal: &Scenario) -> Option<Vec<f64>> {
+    numbers(quantity, nominal, |_| 0.5)
+}
+
+/// The numbers of `quantity` at these shares of its spreads, of all and of each number; `None` without a spread.
+fn numbers(quantity: &Quantity, nominal: &Scenario, share: impl Fn(&str) -> f64) -> Option<Vec<f64>> {
     let mut from = (quantity.truth)(nominal);
     if from.is_empty() && matches!(quantity.all, Some(Spread::Within(..))) {
         // An optional key without a nominal value: the spread needs none.

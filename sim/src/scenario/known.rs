@@ -4,7 +4,7 @@
 use sophie_control::params::ServoMarks;
 
 use super::uncertain::{Calibration, QUANTITIES, Quantity};
-use super::{Scenario, keys};
+use super::{Scenario, draw, keys};
 use crate::plant::tendon::ServoSpec;
 
 /// Knowledge of the vehicle that the stack's parameters have.
@@ -109,8 +109,9 @@ fn learn(scenario: &mut Scenario, quantity: &Quantity, calibration: Option<&Cali
 }
 
 impl Scenario {
-    /// The scenario with the vehicle and the pipe that the parameters assume, nominal where they assume nothing: what a
-    /// builder can check before the first flight.
+    /// The scenario with the vehicle and the pipe that the parameters assume: what a builder can check before the first
+    /// flight. Where they assume nothing, the vehicle has the middle of the builders' spread of an effect that this scenario
+    /// has, as the literature gives it, and all else is nominal.
     #[must_use]
     pub fn assumed(&self) -> Self {
         let mut built = Self {
@@ -127,8 +128,20 @@ impl Scenario {
         built.vehicle.infill = self.vehicle.infill;
         built.vehicle.servo = self.vehicle.servo;
         built.vehicle.configuration = self.vehicle.configuration;
+        built.vehicle.rotor.spin.brakes = self.vehicle.rotor.spin.brakes;
+        built.vehicle.rotor.reaction = self.vehicle.rotor.reaction;
+        built.vehicle.air.drag.on_rotors = self.vehicle.air.drag.on_rotors;
         for quantity in QUANTITIES {
             let numbers = (quantity.assumed)(&built);
+            let differs = (quantity.truth)(self) != (quantity.truth)(&built);
+            if numbers.is_empty()
+                && differs
+                && quantity.key.starts_with("vehicle.")
+                && let Some(middle) = draw::middle(quantity, &built)
+            {
+                keys::set(&mut built, quantity.key, &middle);
+                continue;
+            }
             if !numbers.is_empty() && !(quantity.truth)(&built).is_empty() {
                 keys::set(&mut built, quantity.key, &numbers);
             }

@@ -170,6 +170,9 @@ fn a_builder_checks_the_vehicle_that_he_takes_it_for() {
     assert!((checked.world.pipe_diameter - f64::from(truth.params.pipe_diameter)).abs() < 1e-6);
     assert!((checked.vehicle.rotor.thrust_max - f64::from(truth.params.thrust_max)).abs() < 1e-4);
     assert_eq!(checked.world.air.wind, truth.world.air.wind);
+    // He knows that air damps rotors and their inertia turns the body, not how much.
+    assert!((checked.vehicle.air.inflow - 1.0).abs() < 0.2 && checked.vehicle.rotor.reaction);
+    assert_eq!(nominal.assumed().vehicle.air, nominal.vehicle.air);
 }
 
 /// A row without a flight.

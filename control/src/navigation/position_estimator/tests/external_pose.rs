@@ -206,7 +206,7 @@ fn a_new_origin_that_no_one_announced_is_named_before_it_counts() {
 
 #[test]
 fn sound_poses_are_blamed_for_nothing_however_noisy_rare_and_late() {
-    let sources: [(Spoil, u64); 4] = [
+    let sources: [(Spoil, u64); 6] = [
         (noisy, 30_000),
         (mirrored_at_times, 30_000),
         (
@@ -214,6 +214,25 @@ fn sound_poses_are_blamed_for_nothing_however_noisy_rare_and_late() {
                 position: fix.position + noise(fix.at_us, 0.05),
                 variance: Some(Vec3::new(1.0, 1.0, 1.0) * 8.3e-4),
                 ..fix
+            },
+            30_000,
+        ),
+        (
+            // A small tag from afar, whose sender gives no variance.
+            |fix| Fix {
+                position: fix.position + noise(fix.at_us, 0.07),
+                ..fix
+            },
+            30_000,
+        ),
+        (
+            // Covered for 0.2 s every 3 s.
+            |fix| {
+                let covered = fix.at_us % 3_000_000 < 200_000;
+                Fix {
+                    at_us: if covered { 0 } else { fix.at_us },
+                    ..noisy(fix)
+                }
             },
             30_000,
         ),
@@ -238,11 +257,11 @@ fn sound_poses_are_blamed_for_nothing_however_noisy_rare_and_late() {
         r.silent = true;
         r.run(0.6);
         r.silent = false;
-        r.run(1.0);
+        r.run(3.0);
         assert_eq!(fault(&r), None);
         r.silent = true;
         r.run(2.0);
-        (r.silent, r.origin) = (false, Vec3::new(1.0, 0.0, 0.0));
+        (r.silent, r.origin) = (false, Vec3::new(2.0, 0.0, 0.0));
         r.run(1.0);
         assert_eq!(fault(&r), None);
         assert_eq!(r.out.unwrap().reset_count, 1);
