@@ -226,6 +226,11 @@ impl ApproachPlanner {
         }
     }
 
+    /// A companion says where the pipe is.
+    pub fn follows_target(&self) -> bool {
+        self.has_target
+    }
+
     /// Position of the crown in the estimate's axes, m; `None` before the descent.
     pub fn crown_position(&self) -> Option<Vec3> {
         let position = about_down(self.above_crown(0.0), self.heading) + self.origin;

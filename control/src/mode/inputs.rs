@@ -13,7 +13,7 @@ use crate::attitude::motion::Motion;
 use crate::battery::ServoSupply;
 use crate::gripper::grip::GripState;
 use crate::navigation::estimate::Estimate;
-use crate::navigation::fix_age::{APPROACH_AGE, FRESH_AGE, HEIGHT_AGE, PRESSURE_AGE};
+use crate::navigation::fix_age::{APPROACH_AGE, FRESH_AGE, HEIGHT_AGE, PRESSURE_AGE, WAITING_AGE};
 use crate::pilot::actuator_test::ActuatorTestRequest;
 use crate::pilot::rc::Sticks;
 use crate::pilot::remote::RemoteRequest;
@@ -71,6 +71,11 @@ impl Inputs {
     /// Dead reckoning has lasted too long for an approach.
     pub fn position_adrift(&self) -> bool {
         !self.position_younger(APPROACH_AGE)
+    }
+
+    /// An approach has waited too long for the position.
+    pub fn position_awaited(&self) -> bool {
+        !self.position_younger(WAITING_AGE)
     }
 
     /// The position, including the height, has been lost.

@@ -6,6 +6,10 @@ pub const FRESH_AGE: f32 = 0.2;
 pub const COAST_AGE: f32 = 1.0;
 /// Age up to which an approach continues, s: the longest gap of a module plus its latency.
 pub const APPROACH_AGE: f32 = 1.3;
+/// Age up to which it then waits for the position, s. A tag is covered for 0.25 s at a time in the mean (assumed), so
+/// that one gap in 180 lasts longer than 1.3 s, one in 160,000 longer than this; and a second is left to the pilot until
+/// the height is lost.
+pub const WAITING_AGE: f32 = 3.0;
 /// Age up to which dead reckoning holds the height, s: some decimetres off. Then the pilot has the throttle.
 pub const HEIGHT_AGE: f32 = 4.0;
 /// The same with barometric height, s: within [`LOST_AGE`].

@@ -1,6 +1,6 @@
 //! Autonomous free flight onto the pipe, or off it.
 
-use crate::approach::limits::RANGE_AGE;
+use crate::approach::limits::{BACK_SPEED, RANGE_AGE};
 use crate::approach::planner::{ApproachAbort, ApproachPlanner, View};
 use crate::arming::ArmingInhibits;
 use crate::chain::setpoint::Setpoint;
@@ -15,6 +15,9 @@ use crate::navigation::estimate::Estimate;
 use crate::pilot::stick_positions::{centred, keeps_hold};
 use crate::position_hold::{PositionHold, VelocityCommand};
 
+/// Time for which the place of the pipe may come back later than the position, s: a companion sends it less often.
+const TARGET_WAIT: f32 = 0.5;
+
 /// State of the mode [`crate::mode::Mode::Approach`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Approach {
@@ -27,6 +30,8 @@ pub struct Approach {
     pending_abort_reason: Option<Reason>,
     /// The try ended by a contact.
     aborted_in_contact: bool,
+    /// Time for which it still waits once the position is back, s; `None` while it does not wait.
+    waits: Option<f32>,
 }
 
 /// The perch switch was turned on while the position is held.
@@ -94,6 +99,7 @@ impl Approach {
             abort_reason: None,
             pending_abort_reason: None,
             aborted_in_contact: false,
+            waits: None,
         };
         approach.step(&estimate, step);
         approach
@@ -125,6 +131,22 @@ impl Approach {
     }
 
     fn step(&mut self, estimate: &Estimate, step: &mut Step<'_>) {
+        let blind = self.planner.follows_target() && step.inputs.target.is_none();
+        let wait = match self.waits {
+            _ if step.inputs.position_adrift() => Some(TARGET_WAIT),
+            Some(left) if blind && left > 0.0 => Some(left - step.dt),
+            _ => None,
+        };
+        let waited = core::mem::replace(&mut self.waits, wait).is_some();
+        if wait.is_some() {
+            self.wait(estimate, step);
+            return;
+        }
+        if waited {
+            self.position_hold.anchor_at(estimate);
+            let seen = view(&self.position_hold, estimate, step);
+            self.again(Reason::PositionStale, &seen, estimate, step);
+        }
         let seen = view(&self.position_hold, estimate, step);
         if step.context.vertical_fallback.misfit() && !self.planner.leaves() {
             self.misfit(false, &seen, estimate, step);
@@ -154,6 +176,19 @@ impl Approach {
         self.wanted = self
             .position_hold
             .step(estimate, &step.body_motion(), &command, true, step.dt);
+    }
+
+    /// Stays level against the learnt wind without a position, and rises: a decimetre by which the height is off must not
+    /// become a touch.
+    fn wait(&mut self, estimate: &Estimate, step: &mut Step<'_>) {
+        step.context.note(Some(Reason::PositionStale));
+        let rise = VelocityCommand {
+            velocity: Vec3::new(0.0, 0.0, -BACK_SPEED),
+            ..VelocityCommand::default()
+        };
+        self.wanted = self
+            .position_hold
+            .step(estimate, &step.body_motion(), &rise, false, step.dt);
     }
 
     /// Allows one more try unless the misfit is `proven`; then climbs away.

@@ -71,6 +71,7 @@ guards! {
     SWINGS = "swings", |_, s| s.context.oscillation.swings();
     HAS_SWUNG = "has swung before", |_, s| s.context.has_swung;
     POSITION_ADRIFT = "position stale", |_, s| s.inputs.position_adrift();
+    POSITION_AWAITED = "position awaited for too long", |_, s| s.inputs.position_awaited();
 
     ASKED_TO_PERCH = "perch switch turned on", |_, s| approach::asked(s);
     SERVOS_FED = "servo battery, if measured, not low", |_, s| s.inputs.servo_trouble().is_none();

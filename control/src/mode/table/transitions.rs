@@ -137,7 +137,7 @@ pub const TRANSITIONS: &[Transition] = &[
     row(&[Approach], &[ABORTED_IN_CONTACT], To::Escaping(entries::sliding), HANDED_BACK),
     row(&[Approach], &[NOT_COMMITTED, TOUCHED], To::Escaping(entries::sliding), Show(Reason::TouchedEarly)),
     row(&[Approach], &[TAKEN_OVER], To::Hold(entries::handed_back), Show(Reason::TakenOver)),
-    row(&[Approach], &[POSITION_ADRIFT], To::Hold(entries::handed_back), Show(Reason::PositionStale)),
+    row(&[Approach], &[POSITION_AWAITED], To::Hold(entries::handed_back), Show(Reason::PositionStale)),
     row(&[Approach], &[HAS_SWUNG, SWINGS], To::Hold(entries::handed_back), Show(Reason::Swings)),
     row(&[Approach], &[APPROACH_ABORTED], To::Hold(entries::handed_back), HANDED_BACK),
     row(&[Approach], &[DEPARTED], To::Hold(entries::handed_back), Clear),

@@ -508,13 +508,55 @@ fn without_a_pipe_or_a_range_it_is_handed_back_with_a_reason() {
             },
             Reason::RangeStale,
         ),
-        (Estimate { age: 1.4, ..seen }, Reason::PositionStale),
+        (Estimate { age: 3.1, ..seen }, Reason::PositionStale),
     ] {
         let mut r = w.r.clone();
         r.inputs.position = Some(stale);
         r.run(0.02);
         assert_eq!((r.out.mode, r.out.reason), (Mode::Hold, Some(why)));
     }
+}
+
+#[test]
+fn a_position_that_comes_back_in_time_is_waited_for_and_another_try_follows() {
+    let mut w = World::searching();
+    w.run(6.0);
+    let seen = w.r.inputs.position.unwrap();
+    w.r.inputs.position = Some(Estimate { age: 1.4, ..seen });
+    w.r.expect(1.5, Mode::Approach);
+    assert_eq!(w.r.out.reason, Some(Reason::PositionStale));
+    let [roll, pitch, ..] = w.r.out.rotors.numbers();
+    assert!(roll.abs() < 0.02 && pitch.abs() < 0.02, "{:?}", w.r.out.rotors);
+    // A stick ends the wait as it ends an approach.
+    let mut r = w.r.clone();
+    r.sticks().pitch = 0.3;
+    r.run(0.02);
+    assert_eq!(r.out.mode, Mode::Hold);
+    w.r.falling = 0.0;
+    for _ in 0..8000 {
+        w.step();
+        if w.r.out.mode != Mode::Approach {
+            break;
+        }
+    }
+    assert_eq!(w.r.out.mode, Mode::Contact);
+
+    // A companion's place of the pipe comes a little later than its pose.
+    let mut w = told();
+    w.run(1.0);
+    let target = w.r.inputs.target.take();
+    let seen = w.r.inputs.position.unwrap();
+    w.r.inputs.position = Some(Estimate { age: 1.4, ..seen });
+    w.r.expect(1.0, Mode::Approach);
+    w.expect(0.3, Mode::Approach);
+    let mut r = w.r.clone();
+    r.run(0.4);
+    assert_eq!(
+        (r.out.mode, r.out.reason),
+        (Mode::Hold, Some(Reason::TargetStale))
+    );
+    w.r.inputs.target = target;
+    w.expect(2.0, Mode::Approach);
 }
 
 #[test]
