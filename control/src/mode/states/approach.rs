@@ -5,6 +5,7 @@ use crate::approach::planner::{ApproachAbort, ApproachPlanner, View};
 use crate::arming::ArmingInhibits;
 use crate::chain::setpoint::Setpoint;
 use crate::contact::contact_force::HINT_FORCE;
+use crate::maths::scalar::clamp;
 use crate::maths::vector::Vec3;
 use crate::mode::behaviour::Behaviour;
 use crate::mode::context::{Context, Step};
@@ -30,8 +31,8 @@ pub struct Approach {
     pending_abort_reason: Option<Reason>,
     /// The try ended by a contact.
     aborted_in_contact: bool,
-    /// Time for which it still waits once the position is back, s; `None` while it does not wait.
-    waits: Option<f32>,
+    /// Time for which it still waits for the pipe once the position is back, s; 0 while it does not wait.
+    waits: f32,
 }
 
 /// The perch switch was turned on while the position is held.
@@ -99,7 +100,7 @@ impl Approach {
             abort_reason: None,
             pending_abort_reason: None,
             aborted_in_contact: false,
-            waits: None,
+            waits: 0.0,
         };
         approach.step(&estimate, step);
         approach
@@ -131,14 +132,16 @@ impl Approach {
     }
 
     fn step(&mut self, estimate: &Estimate, step: &mut Step<'_>) {
+        let waited = self.waits > 0.0;
         let blind = self.planner.follows_target() && step.inputs.target.is_none();
-        let wait = match self.waits {
-            _ if step.inputs.position_adrift() => Some(TARGET_WAIT),
-            Some(left) if blind && left > 0.0 => Some(left - step.dt),
-            _ => None,
+        self.waits = if step.inputs.position_adrift() {
+            TARGET_WAIT
+        } else if blind {
+            clamp(self.waits - step.dt, 0.0, TARGET_WAIT)
+        } else {
+            0.0
         };
-        let waited = core::mem::replace(&mut self.waits, wait).is_some();
-        if wait.is_some() {
+        if self.waits > 0.0 {
             self.wait(estimate, step);
             return;
         }
