@@ -515,8 +515,8 @@ fn numbers_are_watched_until_a_key() {
         table.line.put(b"q");
         table.run(300);
     }
-    assert_eq!(table.says("watch", 100).len(), 11);
-    assert_eq!(table.says("watch nothing", 100).len(), 11);
+    assert_eq!(table.says("watch", 100).len(), 12);
+    assert_eq!(table.says("watch nothing", 100).len(), 12);
 }
 
 #[test]
