@@ -75,7 +75,7 @@ guards! {
 
     ASKED_TO_PERCH = "perch switch turned on", |_, s| approach::asked(s);
     SERVOS_FED = "servo battery, if measured, not low", |_, s| s.inputs.servo_trouble().is_none();
-    MAY_APPROACH = "position and range or pipe known, sticks centred, servo battery not low", |_, s| approach::obstacle(s).is_none();
+    MAY_APPROACH = "position, thrust and range or pipe known, sticks centred, servo battery not low", |_, s| approach::obstacle(s).is_none();
     TAKEN_OVER = "a stick moved, or perch or hold switch turned", |_, s| s.context.auto_perch.taken;
     AUTO_PERCH = "perching or leaving by itself", |_, s| s.context.auto_perch.active;
     BY_HAND = "flown by hand", |_, s| !s.context.auto_perch.acts();
