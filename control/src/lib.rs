@@ -28,5 +28,7 @@ pub mod navigation;
 pub mod oscillation;
 pub mod pilot;
 pub mod position_hold;
+#[cfg(test)]
+mod test_noise;
 pub mod thrust_factor;
 pub mod vibration;

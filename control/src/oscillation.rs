@@ -78,6 +78,7 @@ impl Oscillation {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::test_noise::TestNoise;
 
     const DT: f32 = 0.01;
 
@@ -116,16 +117,11 @@ mod tests {
     #[test]
     fn noise_of_gusts_is_never_one() {
         // Twice those of a strong wind, coloured at 1 Hz: ten hours.
-        let mut state = 12345_u32;
-        let mut uniform = move || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            (state >> 8) as f32 / 16_777_216.0
-        };
+        let mut random = TestNoise(12345);
         let (mut watch, mut rate) = (Oscillation::default(), 0.0_f32);
         let keep = 1.0 - DT * core::f32::consts::TAU;
         for i in 0..3_600_000 {
-            let normal: f32 = (0..12).map(|_| uniform()).sum::<f32>() - 6.0;
-            rate = keep * rate + (1.0 - keep * keep).sqrt() * 0.28 * normal;
+            rate = keep * rate + (1.0 - keep * keep).sqrt() * 0.28 * random.normal();
             watch.step(Some(Vec3::new(rate, 0.0, 0.0)), DT);
             assert!(!watch.swings(), "{i}");
         }

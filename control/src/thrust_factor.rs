@@ -15,11 +15,12 @@ use crate::params::Params;
 
 /// Bounds of the factor: beyond them propellers, battery or parameters are others, and the mixer no longer follows.
 pub const BOUNDS: (f32, f32) = (0.6, 1.5);
-/// Standard deviation of the factor before a flight: builders' vehicles lie within -15 to +20 % (docs/uncertainty.md).
+/// Standard deviation of the factor before a flight: rotors of 0.9 to 1.12 times the nominal thrust in air of 1.02 to
+/// 1.34 kg/m³ give 0.75 to 1.22 times (docs/uncertainty.md).
 const PRIOR: f32 = 0.2;
 /// Density of the force that is no thrust, N²·s: 1 N along the thrust axis, gusts and climb at 0.7 m/s, for a second each.
 const GUSTS: f32 = 2.0;
-/// Density of the walk, 1/s: hot motors lose 5 % in a minute of full load.
+/// Density of the walk, 1/s: hot motors lose up to 5 % (docs/uncertainty.md), in a minute (assumed).
 const WALK: f32 = 0.05 * 0.05 / 60.0;
 /// Climb rate that proves free air after the rotors have stood, m/s, by the inertial sensor: from the ground there is no
 /// other way up.
@@ -41,18 +42,14 @@ pub struct ThrustFactor {
     pub deviation: f32,
 }
 
-impl ThrustFactor {
-    /// A vehicle that has not flown.
-    pub const UNKNOWN: Self = Self {
-        value: 1.0,
-        root: 1.0,
-        deviation: PRIOR,
-    };
-}
-
 impl Default for ThrustFactor {
+    /// A vehicle that has not flown.
     fn default() -> Self {
-        Self::UNKNOWN
+        Self {
+            value: 1.0,
+            root: 1.0,
+            deviation: PRIOR,
+        }
     }
 }
 
@@ -165,6 +162,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::test_noise::TestNoise;
 
     const DT: f32 = 0.01;
 
@@ -176,7 +174,7 @@ mod tests {
         /// Force of gusts, N, coloured at 1 s.
         gust: f32,
         size: f32,
-        state: u32,
+        noise: TestNoise,
     }
 
     impl Hovering {
@@ -186,22 +184,13 @@ mod tests {
                 truth,
                 gust: 0.0,
                 size,
-                state: 7,
+                noise: TestNoise(7),
             }
-        }
-
-        fn normal(&mut self) -> f32 {
-            let mut sum = -6.0;
-            for _ in 0..12 {
-                self.state = self.state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-                sum += (self.state >> 8) as f32 / 16_777_216.0;
-            }
-            sum
         }
 
         fn step(&mut self, air: Air, sink: f32) {
             let weight = Params::DEFAULT.mass * GRAVITY;
-            let normal = self.normal();
+            let normal = self.noise.normal();
             self.gust += -self.gust * DT + self.size * (2.0 * DT).sqrt() * normal;
             // The demand is met with the present factor; the thrust is the weight.
             let lift = weight * self.learning.now().value / self.truth;
@@ -247,7 +236,7 @@ mod tests {
         let mut sum = 0.0;
         for seed in 0..200 {
             let mut hovering = Hovering::new(1.1, 1.0);
-            hovering.state = 1 + 7919 * seed;
+            hovering.noise = TestNoise(1 + 7919 * seed);
             // The gust blows before the flight already.
             for _ in 0..500 {
                 hovering.step(Air::Locked, 0.0);

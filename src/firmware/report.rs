@@ -1,8 +1,8 @@
 //! The defmt log of the running firmware. Background: logging never delays a flight.
 //!
 //! At the start it logs the duration of the start and the chip's checks; a line at each change of state, reason,
-//! warning or hardware arming inhibit, for each arm of a proven grip, and for the thrust factor as a flight ends; each second the timing of every task and
-//! missed deadlines ([`super::timing`]), and the greatest stack depth if it has grown.
+//! warning or hardware arming inhibit, for each arm of a proven grip, and for the thrust factor as a flight ends; each
+//! second the timing of every task and missed deadlines ([`super::timing`]), and the greatest stack depth if it has grown.
 
 use embassy_futures::select::{Either, select};
 use embassy_time::{Duration, Instant, Ticker};

@@ -180,7 +180,7 @@ fn flies_free(mode: Mode) -> bool {
 
 fn air(mode: Mode) -> Air {
     match mode {
-        Mode::Calibrating | Mode::Disarmed => Air::Locked,
+        _ if rotors_locked(mode) => Air::Locked,
         Mode::Flight | Mode::Hold => Air::Free,
         _ => Air::Near,
     }

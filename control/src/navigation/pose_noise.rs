@@ -17,7 +17,7 @@ const STEP: f32 = 0.025;
 /// The noise, the same along each axis: that of a tag lies along the line of sight, which turns with the flight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoseNoise {
-    /// Sum over the axes, m².
+    /// Along the worst axis, m².
     variance: f32,
     /// The last pose and the difference to the one before it, m.
     last: Option<Vec3>,
@@ -60,24 +60,12 @@ impl PoseNoise {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    struct Random(u32);
-
-    impl Random {
-        fn uniform(&mut self) -> f32 {
-            self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            (self.0 >> 8) as f32 / 16_777_216.0
-        }
-
-        fn normal(&mut self) -> f32 {
-            (0..12).map(|_| self.uniform()).sum::<f32>() - 6.0
-        }
-    }
+    use crate::test_noise::TestNoise;
 
     /// Deviation found after `seconds` at 50 Hz of poses of this deviation, of which a share is 0.3 m off, in a flight that
     /// swings by 3 m/s².
     fn found(deviation: f32, outliers: f32, seconds: u32) -> f32 {
-        let (mut random, mut noise) = (Random(5), PoseNoise::default());
+        let (mut random, mut noise) = (TestNoise(5), PoseNoise::default());
         for i in 0..50 * seconds {
             let t = 0.02 * i as f32;
             let off = if random.uniform() < outliers { 0.3 } else { 0.0 };

@@ -12,7 +12,7 @@ use sophie_control::gripper::retained_grip::GripMemory;
 use sophie_control::maths::scalar;
 use sophie_control::maths::vector::Vec3;
 use sophie_control::pilot::rc::ArmChoice;
-use sophie_control::thrust_factor::BOUNDS;
+use sophie_control::thrust_factor::BOUNDS as FACTOR_RANGE;
 use sophie_ports::retained::Words;
 
 /// Marks a copy ("WARM") and its layout's number.
@@ -22,10 +22,8 @@ const FAULT_BITS: u32 = 4;
 const ANGLE_MAX: f32 = 6.5;
 /// Beyond any parameters' limit, N.
 const FORCE_MAX: f32 = 2000.0;
-/// An identified response is stored as a byte, in hundredths; 0: none.
-const RESPONSE_UNIT: f32 = 100.0;
-/// A thrust factor is stored as a byte, in hundredths; 0: none.
-const FACTOR_UNIT: f32 = 100.0;
+/// Identified responses and the thrust factor are stored as bytes, in hundredths; 0: none.
+const HUNDRED: f32 = 100.0;
 /// The estimator's own bound, rad/s.
 const BIAS_MAX: f32 = 0.1;
 
@@ -61,10 +59,9 @@ impl RetainedState {
             .fault
             .iter()
             .fold(0, |word, &fault| word << FAULT_BITS | fault_code(fault));
-        let responses = self
-            .response
-            .iter()
-            .fold(0, |word, &response| word << 8 | response_code(response));
+        let responses = self.response.iter().fold(0, |word, &response| {
+            word << 8 | hundredths(response, RESPONSE_RANGE)
+        });
         let bias = self.gyro_bias.unwrap_or_default();
         let [angle_1, angle_2, angle_3, angle_4] = self.angle.map(f32::to_bits);
         let [force_1, force_2, force_3, force_4] = self.force.map(f32::to_bits);
@@ -75,7 +72,7 @@ impl RetainedState {
             grip_memory
                 | arms << 8
                 | u32::from(self.gyro_bias.is_some()) << 16
-                | factor_code(self.thrust_factor) << 24,
+                | hundredths(self.thrust_factor, FACTOR_RANGE) << 24,
             faults,
             angle_1,
             angle_2,
@@ -140,7 +137,7 @@ impl RetainedState {
         }
         let mut response = [None; 4];
         for (slot, code) in response.iter_mut().zip(responses.to_be_bytes()) {
-            *slot = response_of(code)?;
+            *slot = of_hundredths(code.into(), RESPONSE_RANGE)?;
         }
         let retained = Self {
             grip_memory,
@@ -150,7 +147,7 @@ impl RetainedState {
             response,
             gyro_bias: (state >> 16 & 1 != 0)
                 .then_some(Vec3::from([bias_x, bias_y, bias_z].map(f32::from_bits))),
-            thrust_factor: factor_of(state >> 24)?,
+            thrust_factor: of_hundredths(state >> 24, FACTOR_RANGE)?,
         };
         retained.is_sane().then_some((retained, sequence))
     }
@@ -180,12 +177,13 @@ impl RetainedState {
             force: self.force.map(|f| scalar::clamp(f, 0.0, FORCE_MAX)),
             response: self
                 .response
-                .map(|r| response_of(response_code(r) as u8).flatten()),
+                .map(|r| of_hundredths(hundredths(r, RESPONSE_RANGE), RESPONSE_RANGE).flatten()),
             gyro_bias: self
                 .gyro_bias
                 .filter(|b| b.is_finite())
                 .map(|b| b.map(|x| scalar::clamp_abs(x, BIAS_MAX))),
-            thrust_factor: factor_of(factor_code(self.thrust_factor)).flatten(),
+            thrust_factor: of_hundredths(hundredths(self.thrust_factor, FACTOR_RANGE), FACTOR_RANGE)
+                .flatten(),
             ..self
         }
     }
@@ -205,38 +203,20 @@ fn arm_choice(code: u32) -> Option<ArmChoice> {
         .find(|&arms| arm_code(arms) == code)
 }
 
-/// Code of a response; NaN and values out of range are stored as 0, none.
-fn response_code(response: Option<f32>) -> u32 {
-    let (least, most) = RESPONSE_RANGE;
-    response
-        .filter(|r| (least..=most).contains(r))
-        .map_or(0, |r| (r * RESPONSE_UNIT + 0.5) as u32)
+/// Code of `value` in hundredths; NaN and values out of `range` are stored as 0, none.
+fn hundredths(value: Option<f32>, (least, most): (f32, f32)) -> u32 {
+    value
+        .filter(|v| (least..=most).contains(v))
+        .map_or(0, |v| (v * HUNDRED + 0.5) as u32)
 }
 
-/// Outer `None`: out of range.
-fn response_of(code: u8) -> Option<Option<f32>> {
+/// Outer `None`: out of `range`.
+fn of_hundredths(code: u32, (least, most): (f32, f32)) -> Option<Option<f32>> {
     if code == 0 {
         return Some(None);
     }
-    let (least, most) = RESPONSE_RANGE;
-    let response = f32::from(code) / RESPONSE_UNIT;
-    (least..=most).contains(&response).then_some(Some(response))
-}
-
-/// Code of a thrust factor; NaN and values out of range are stored as 0, none.
-fn factor_code(factor: Option<f32>) -> u32 {
-    factor
-        .filter(|f| (BOUNDS.0..=BOUNDS.1).contains(f))
-        .map_or(0, |f| (f * FACTOR_UNIT + 0.5) as u32)
-}
-
-/// Outer `None`: out of range.
-fn factor_of(code: u32) -> Option<Option<f32>> {
-    if code == 0 {
-        return Some(None);
-    }
-    let factor = code as f32 / FACTOR_UNIT;
-    (BOUNDS.0..=BOUNDS.1).contains(&factor).then_some(Some(factor))
+    let value = code as f32 / HUNDRED;
+    (least..=most).contains(&value).then_some(Some(value))
 }
 
 /// Code of a latched fault; other faults are detected again after the restart.

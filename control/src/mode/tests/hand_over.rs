@@ -26,6 +26,7 @@ fn a_radio_that_comes_back_in_direct_mode_takes_the_collective_over_without_a_st
         r.inputs.sticks = sticks;
         r.sticks().stick_mode = StickMode::Direct;
         r.sticks().throttle = throttle;
+        let mut offset = None;
         for step in 1..=50 {
             r.step();
             // A throttle stands for a command, whatever thrust the vehicle has learnt.
@@ -34,9 +35,10 @@ fn a_radio_that_comes_back_in_direct_mode_takes_the_collective_over_without_a_st
             assert!(matches!(r.out.rotors, Setpoint::Direct { .. }));
             // A straight line over half a second.
             let share = step as f32 * DT / HAND_OVER_TIME;
-            let wanted = from + (to - from) * share;
+            let offset = *offset.get_or_insert(from - to);
+            let wanted = to + offset * (1.0 - share);
             assert!(
-                (r.out.rotors.thrust() - wanted).abs() < 0.1,
+                (r.out.rotors.thrust() - wanted).abs() < 0.05,
                 "step {step}: {} of {wanted} N",
                 r.out.rotors.thrust()
             );

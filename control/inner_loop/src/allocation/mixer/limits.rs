@@ -41,7 +41,7 @@ impl Limits {
         }
     }
 
-    /// Root of the largest thrust over that of the parameters, within 0.5..1.25.
+    /// Root of the largest thrust over that of the parameters, within 0.5..1.25: by half again stronger rotors at most.
     #[inline(always)]
     pub fn thrust_ratio(ratio: f32) -> f32 {
         scalar::clamp(ratio, 0.5, 1.25)
