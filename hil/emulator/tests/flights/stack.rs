@@ -241,8 +241,9 @@ fn leaves_a_quarter(board: &str, image: &Path) {
         log(&flight)
     );
     assert_eq!(flight.board.resets.len(), 1, "{:?}", flight.board.resets);
+    // Every command once; how often more is a matter of the machine's speed.
     assert!(
-        answers > 20 && parameters > 100 && files > 10,
+        answers >= COMMANDS.len() && parameters > 100 && files > 10,
         "{answers} {parameters} {files}"
     );
     assert!(
