@@ -20,7 +20,8 @@
 //! | lag | force less tension |
 //! | touch | pressure above the sensor's threshold |
 //! | hold position | the servo stays, whatever the force, until the tension is known after a restart |
-//! | proven | every closing arm holds, all were within the tolerance at once for the dwell time, and [fit](crate::gripper::grip_geometry) |
+//! | settled | the mean pressure is within the tolerance and hardly changes |
+//! | proven | every closing arm holds, all were settled at once for the dwell time, and [fit](crate::gripper::grip_geometry) |
 //! | released | every arm is free: light, tendon slack, servo back at its release position |
 
 mod arm;
@@ -47,7 +48,6 @@ use crate::allocation::wrench::PerArm;
 use crate::gripper::grip::{ArmGrip, ArmState};
 use crate::gripper::grip_fault::GripFault;
 use crate::gripper::grip_geometry::{Laid, Misfit, lies_across, misfit};
-use crate::maths::scalar;
 
 /// Pressure of a touch, Pa: above the sensor's threshold of 0.1 N (69 Pa on 1444 mm²).
 const TOUCH_PRESSURE: f32 = 100.0;
@@ -68,8 +68,7 @@ pub struct ArmOutput {
 pub struct GripperOutput {
     /// Per arm.
     pub arms: PerArm<ArmOutput>,
-    /// All chosen arms (at least one) hold, were within the tolerance together for the dwell time, and are bent as
-    /// round a pipe.
+    /// All chosen arms (at least one) hold, were settled together once, and are bent as round a pipe.
     pub proven: bool,
     /// Reason for which the geometry alone prevents the proof.
     pub misfit: Option<Misfit>,
@@ -83,8 +82,8 @@ pub struct GripperOutput {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Gripper {
     arms: PerArm<ArmGripper>,
-    /// Time of all chosen arms within the tolerance, s.
-    together: f32,
+    /// All chosen arms were settled together in this closing.
+    settled: bool,
     proven: bool,
     wound_at_power_on: bool,
 }
@@ -133,7 +132,8 @@ impl Gripper {
         // together.
         let opening = self.arms.iter().zip(input).filter(|(_, i)| !i.close);
         let most = opening.map(|(arm, _)| arm.force).fold(0.0, f32::max);
-        let (mut holding, mut within) = (input.iter().any(|i| i.close), true);
+        let mut holding = input.iter().any(|i| i.close);
+        let mut settled = holding;
         for ((arm, input), output) in self.arms.iter_mut().zip(input).zip(&mut out.arms) {
             let grip = arm.step(&cfg.releasing(arm.force, most), input, dt);
             *output = ArmOutput {
@@ -141,21 +141,16 @@ impl Gripper {
                 hold_position: arm.holds_position(),
             };
             holding &= !input.close || grip.state == ArmState::Holding;
-            within &= !input.close || (grip.pressure - cfg.demand.pressure).abs() <= cfg.demand.tolerance;
+            settled &= !input.close || arm.is_settled(cfg);
             out.released &= arm.is_free(input.pressure);
         }
-        // A proven grip is doubted for each arm alone: a push changes the pressures together without loosening the
-        // grip.
-        self.together = if within {
-            scalar::clamp(self.together + dt, 0.0, 10.0)
-        } else {
-            0.0
-        };
+        // An arm that closes moves the load of those that closed before it.
+        self.settled = settled || self.settled && input.iter().any(|i| i.close);
         let laid = self.laid(cfg, input);
         if !self.proven && lies_across(&laid) {
             out.misfit = Some(Misfit::Oblique);
         }
-        if holding && !self.proven && self.together >= cfg.demand.dwell {
+        if holding && !self.proven && self.settled {
             out.misfit = misfit(&laid, cfg.pipe_bend);
             self.proven = out.misfit.is_none() && input.iter().all(|i| !i.close || i.tilt.is_some());
         }

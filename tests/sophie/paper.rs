@@ -317,11 +317,13 @@ fn an_arm_from_the_bench_is_fitted_and_flies() {
             "{name}: {truth} not near {low} to {high}"
         );
     }
-    // By hand on a pipe of little friction: one flight in eight slides off too often for the pilot's patience.
-    let flown = ["1", "2", "3", "4"].map(|seed| sophie(&temp.0, &["fly", "out/arm.toml", "--seed", seed]));
+    // By hand on a pipe of little friction, where 3 degrees are left against a push: two flights of eight lean more each time
+    // that they come down, until the pilot's patience ends.
+    let flown = ["1", "2", "3", "4", "5", "6", "7", "8"]
+        .map(|seed| sophie(&temp.0, &["fly", "out/arm.toml", "--seed", seed]));
     let perched = flown.iter().filter(|flight| flight.status.success()).count();
     assert!(
-        perched >= 3,
+        perched >= 5,
         "{perched}: {}",
         flown.map(|flight| text(&flight.stdout)).join("\n")
     );

@@ -7,20 +7,31 @@
 //!   sin θ · K <= cos θ - s,   K = H cos ψ / (μ R) + μ (H cos ψ / R - 1)
 //!
 //! so more thrust holds less: at μ 0.6 on 0.3 m up to 25° without thrust, 16° at a share of 0.375, 11° at 0.56.
+//!
+//! A level push F at the centre of mass turns the force that friction must hold by δ, tan δ = F / (m g): without thrust a
+//! lean θ is held against it while θ + δ is. Arms that press add a seventh to the normal forces, and so to μ.
 
-use crate::maths::scalar::{clamp, cos, sin, sqrt};
+use crate::maths::scalar::{GRAVITY, atan2, clamp, cos, sin, sqrt};
 use crate::params::Params;
 
 /// Distance of a belly pad from the middle, m (assumed).
 const PAD: f32 = 0.03;
 /// Centre of mass above the pads, m (assumed).
 const HEIGHT: f32 = 0.04;
+/// Push that a grip must hold, N: a wind of 10 m/s on 0.05 m² of drag area.
+const PUSH: f32 = 3.0;
+/// Normal forces under arms that press with the grip pressure over those without (estimated, docs/design/contact.md).
+const PRESSED: f32 = 1.15;
 
 /// Friction limit on the pipe that the parameters describe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrictionLimit {
     /// K of the formula above.
     slope: f32,
+    /// K under arms that press.
+    pressed: f32,
+    /// δ of the formula above, rad.
+    push: f32,
 }
 
 impl FrictionLimit {
@@ -30,8 +41,11 @@ impl FrictionLimit {
         let friction = clamp(p.pipe_friction, 0.05, 2.0);
         let flat = sqrt(radius * radius - PAD * PAD);
         let lever = (flat + HEIGHT) * flat / (radius * radius);
+        let slope = |friction: f32| lever / friction + friction * (lever - 1.0);
         Self {
-            slope: lever / friction + friction * (lever - 1.0),
+            slope: slope(friction),
+            pressed: slope(PRESSED * friction),
+            push: atan2(PUSH, p.mass * GRAVITY),
         }
     }
 
@@ -39,6 +53,12 @@ impl FrictionLimit {
     pub fn holds(self, lean: f32, share: f32) -> bool {
         let lean = clamp(lean.abs(), 0.0, 1.5);
         sin(lean) * self.slope <= cos(lean) - share
+    }
+
+    /// Pressing arms and friction hold a lean of `lean` rad without rotors against a push of 3 N from the worse side.
+    pub fn holds_pushed(self, lean: f32) -> bool {
+        let lean = clamp(lean.abs() + self.push, 0.0, 1.5);
+        sin(lean) * self.pressed <= cos(lean)
     }
 }
 
@@ -79,6 +99,19 @@ mod tests {
                 "{diameter} {friction} {share}: {got} for {wanted} deg"
             );
         }
+    }
+
+    /// tan δ = 3 / (1.8 g): 9.6°. At μ 0.69 on 0.3 m K is 1.92: 27.5° in all; at 0.345 3.62: 15.4°; at 0.23 5.35: 10.6°.
+    #[test]
+    fn a_push_leaves_less_lean_and_of_slippery_pipes_next_to_none() {
+        for (friction, wanted) in [(0.6, 17.9), (0.3, 5.8), (0.2, 1.0)] {
+            let limit = friction_limit(0.3, friction);
+            let held = (0..900).take_while(|&i| limit.holds_pushed(deg(0.1 * i as f32)));
+            let got = 0.1 * held.count() as f32 - 0.1;
+            assert!((got - wanted).abs() < 0.3, "{friction}: {got} for {wanted} deg");
+        }
+        assert!(!friction_limit(0.3, 0.15).holds_pushed(0.0));
+        assert!(!friction_limit(0.3, 0.6).holds_pushed(f32::INFINITY));
     }
 
     #[test]

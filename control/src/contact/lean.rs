@@ -137,9 +137,9 @@ impl Lean {
         self.friction_limit.holds(self.lean, self.closing_share)
     }
 
-    /// Friction holds the vehicle once the rotors have stopped.
+    /// Friction and the arms hold the vehicle once the rotors have stopped, against wind too.
     pub fn may_stay(&self) -> bool {
-        self.friction_limit.holds(self.lean, 0.0)
+        self.friction_limit.holds_pushed(self.lean)
     }
 
     /// The lean exceeds the friction limit of any pipe while the arms close.

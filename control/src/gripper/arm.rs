@@ -127,6 +127,11 @@ impl ArmGripper {
         self.fault
     }
 
+    /// The pressure is settled at the grip pressure.
+    pub(super) fn is_settled(&self, cfg: &Config) -> bool {
+        self.hold.settled(&cfg.demand)
+    }
+
     pub(super) fn holds_position(&self) -> bool {
         matches!(self.phase, Phase::Resume(_))
     }

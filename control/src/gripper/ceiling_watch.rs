@@ -9,6 +9,8 @@ use crate::maths::filter::LowPass;
 /// Tension rise over which the pressure must rise, N: from touch to grip on a skin of 70 Pa/N, and more than the
 /// disturbance of a swinging arm.
 const WINDOW: f32 = 12.0;
+/// Share of the grip pressure that shows the sensor's range.
+const SHOWN_SHARE: f32 = 0.95;
 /// Cut-off of the tension, rad/s: a tilt wrong by 0.1 rad is 20 N for a frame.
 const CUTOFF: f32 = 20.0;
 
@@ -37,7 +39,7 @@ impl CeilingWatch {
 
     /// One step of `dt` s; true if tension and force rose without the pressure.
     pub fn step(&mut self, cfg: &Config, sample: CeilingSample, dt: f32) -> bool {
-        self.shown |= sample.pressure >= cfg.demand.pressure - cfg.demand.tolerance;
+        self.shown |= sample.pressure >= SHOWN_SHARE * cfg.demand.pressure;
         if self.shown {
             return false;
         }

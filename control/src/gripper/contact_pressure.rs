@@ -33,7 +33,7 @@ const RECOVERY_TIME: f32 = 0.2;
 
 /// Conductance, as a pressure, over which the pressure that a late sensor misses is added, Pa. A count of noise (0.17 Pa
 /// at 10 kΩ) reads as 1.3 Pa at the most of 650 Pa missed, a free arm with five counts far less than `release_pressure`.
-/// From 750 Pa on, a grip less four tolerances, even that sensor reads by its line.
+/// From 750 Pa on, below a grip's tolerance, even that sensor reads by its line.
 const RAMP: f32 = 100.0;
 
 /// Line of one sensor: its conductance as a pressure by the common model, c Pa, is trim times (pressure + zero).

@@ -10,6 +10,7 @@ mod response;
 use super::arm::Phase;
 use super::pressure_loop::LAG_MAX;
 use super::*;
+use crate::maths::scalar;
 use crate::params::Params;
 
 const DT: f32 = 0.01;
@@ -53,6 +54,6 @@ fn run(arm: &mut ArmGripper, cfg: &Config, pressure: f32, seconds: f32) -> ArmGr
 fn holding(cfg: &Config) -> ArmGripper {
     let mut arm = ArmGripper::default();
     run(&mut arm, cfg, 0.0, 1.5);
-    assert!(run(&mut arm, cfg, 950.0, 1.5).state == ArmState::Holding);
+    assert!(run(&mut arm, cfg, 950.0, 2.0).state == ArmState::Holding);
     arm
 }

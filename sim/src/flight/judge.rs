@@ -24,6 +24,8 @@ const PRESSURE_MAX: f64 = 1500.0;
 /// The same for bumps, Pa: an open arm that lands on the pipe; a gripping one after a reset, until the loops run again
 /// (its tension, no longer opposed by thrust, presses the pipe).
 const PRESSURE_BUMP: f64 = 3000.0;
+/// Allowed pressure error of a settled grip by the paper's rule, Pa, beyond the sensor's own (assumed; the paper has none).
+const TOLERANCE: f64 = 50.0;
 /// Allowed pressure error during spool-down and push, in tolerances: the body moves on its pads and the loop is slow.
 const DISTURBED: f64 = 2.0;
 /// Share of the roll angle that the manoeuvre must truly reach on each side.
@@ -41,7 +43,6 @@ const CRASH_SPEED: f64 = 2.0;
 pub struct Judge {
     chosen: PerArm<bool>,
     target: f64,
-    tolerance: f64,
     /// Pressure below which an arm is free, Pa.
     released: f64,
     /// Largest sensor error at the target, Pa: the stack cannot correct it.
@@ -71,7 +72,6 @@ impl Judge {
         Self {
             chosen: scenario.arms.mask(),
             target,
-            tolerance: f64::from(p.grip_tolerance),
             released: f64::from(p.release_pressure),
             sensor_error: target * LARGEST_ERROR,
             torque_max: f64::from(ForceLimit::from_params(p).force * p.reel_radius),
@@ -273,7 +273,7 @@ impl Judge {
 
     /// A chosen arm with a true pressure off by more than `tolerances` tolerances plus the sensor's error.
     fn badly_held(&self, plant: &Plant, tolerances: f64) -> Option<String> {
-        let allowed = tolerances * self.tolerance + self.sensor_error;
+        let allowed = tolerances * TOLERANCE + self.sensor_error;
         let mut arms = plant.pressure().into_iter().zip(self.chosen).enumerate();
         let (arm, (pressure, _)) =
             arms.find(|(_, (pressure, chosen))| *chosen && (pressure - self.target).abs() > allowed)?;

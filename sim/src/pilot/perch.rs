@@ -65,6 +65,8 @@ const EASE: f64 = 0.25;
 const RELEASE_THROTTLE: f64 = 0.25;
 /// The same at least: below 0.20 the stack opens nothing, whatever the rotors' strength.
 const RELEASE_LEAST: f64 = 0.21;
+/// Displays after which the pilot comes down nearer to the crown.
+const BESIDE: [Reason; 2] = [Reason::SlidesOff, Reason::LeansToStay];
 /// Displayed reasons for which a perched vehicle refuses the release, and the time for which they must last, s.
 const TROUBLES: [Reason; 2] = [Reason::BatteryCritical, Reason::RADIO_LOST];
 const REFUSED_TIME: f64 = 3.0;
@@ -241,7 +243,7 @@ impl Mission {
         let beside = (v.seen.position.y - self.pipe.y).abs();
         let slips = self.phase == Phase::Throttle
             && (beside > SLIPPING * self.pipe_radius || v.height() < self.height - SUNK);
-        let left = v.mode == Some(Mode::Escaping) && v.shows(Reason::SlidesOff);
+        let left = v.mode == Some(Mode::Escaping) && BESIDE.iter().any(|why| v.shows(*why));
         if slips || left {
             self.perch_switch = false;
             self.missed += 1;

@@ -276,9 +276,10 @@ params! {
 
     /// Contact pressure of a proven grip (paper).
     grip_pressure = 950.0, "Pa", 100.0 ..= 5000.0;
-    /// Error of the contact pressure that a grip may have (paper, about the sensor's error).
-    grip_tolerance = 50.0, "Pa", 10.0 ..= 500.0;
-    /// Time for which the pressures must stay within the tolerance.
+    /// Error of the mean contact pressure at which a grip is proven: 15 % of it, as a force sensor's own error and what
+    /// friction of the tendon leaves.
+    grip_tolerance = 142.0, "Pa", 10.0 ..= 500.0;
+    /// Time for which the mean pressures must stay within the tolerance, and hardly change.
     grip_dwell = 0.5, "s", 0.05 ..= 5.0;
     /// Pressure below which an arm counts as free of the pipe.
     release_pressure = 80.0, "Pa", 10.0 ..= 500.0;

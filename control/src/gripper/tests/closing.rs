@@ -156,7 +156,7 @@ fn a_servo_at_the_end_of_its_travel_is_reported_and_not_wound_up() {
     for _ in 0..1000 {
         let i = ArmInput {
             tension: Some(stuck),
-            ..input(&cfg, &arm, 700.0)
+            ..input(&cfg, &arm, 500.0)
         };
         grip = arm.step(&cfg, &i, DT);
     }

@@ -2,7 +2,7 @@
 
 use crate::allocation::wrench::Wrench;
 use crate::chain::setpoint::Setpoint;
-use crate::gripper::grip::{ArmGrip, ArmState, GripState};
+use crate::gripper::grip::{ArmGrip, ArmState, GripState, HELD_SHARE};
 use crate::gripper::grip_geometry::Misfit;
 use crate::maths::scalar::clamp_abs;
 use crate::mode::inputs::Inputs;
@@ -21,9 +21,6 @@ const LEVEL_RATE: f32 = 0.2;
 const FOLLOW_TIME: f32 = 1.0;
 /// Share of the collective below which the grip alone holds the attitude.
 const LIFT_SHARE: f32 = 0.5;
-/// Share of the grip pressure above which an arm holds outside the tolerance: in spool-down the load moves from the
-/// rotors onto the arms.
-const HELD_SHARE: f32 = 0.6;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PipeAttitudeHold {

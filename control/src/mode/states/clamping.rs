@@ -12,14 +12,10 @@ use crate::mode::shared::on_pipe::{PipeAttitudeHold, SPOOL_DOWN_TIME, SPOOL_TIME
 
 /// Time from the ramp's end until the rotors have stopped, s: six motor time constants.
 pub const STOP_TIME: f32 = 0.3;
-/// Time allowed without proof after the rotors have stopped, s.
-const PROOF_TIME: f32 = 3.0;
 /// Time of an arm at its force limit, or faulty, that ends the closing, s.
 pub const HOPELESS_TIME: f32 = 1.0;
 /// The same for a pipe that lies across, s: waiting does not improve it, and on a flank the lean grows meanwhile.
 const ACROSS_TIME: f32 = 0.1;
-/// Time beyond `clamp_timeout` for spooling down and proof, s.
-const SPOOL_ALLOWANCE: f32 = 10.0;
 
 /// State of the mode [`crate::mode::Mode::Clamping`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,7 +50,6 @@ impl Clamping {
     pub fn doubt(&self, step: &Step<'_>) -> Option<Reason> {
         let sticks = step.inputs.sticks?;
         let context = &step.context;
-        let limit = context.params.clamp_timeout + if self.spool.down { SPOOL_ALLOWANCE } else { 0.0 };
         let switched = !sticks.perch_switch && context.perch_switch.seen_on;
         if switched || context.auto_perch.taken {
             return Some(Reason::ClosingCancelled);
@@ -62,7 +57,10 @@ impl Clamping {
         match self.hopeless(step) {
             Some(why @ Reason::PipeOblique) if self.spool.hopeless >= ACROSS_TIME => Some(why),
             Some(why) if self.spool.hopeless >= HOPELESS_TIME => Some(why),
-            _ if context.since >= limit => Some(Reason::GripNotProven),
+            // Not while the rotors stop: these arms hold.
+            _ if context.since >= context.params.clamp_timeout && !self.spool.down => {
+                Some(Reason::GripNotProven)
+            }
             _ => None,
         }
     }
@@ -133,13 +131,9 @@ impl Behaviour for Clamping {
     }
 
     fn advance(&mut self, step: &mut Step<'_>) {
-        let mut spool = self.spooled(step);
+        let spool = self.spooled(step);
         if self.spool.down && !spool.down {
             step.context.note(Some(Reason::GripLostSpooling));
-        }
-        if spool.still >= STOP_TIME + PROOF_TIME {
-            // Held, not proven: the rotors carry some weight until the proof.
-            spool = Spool::at(0.0);
         }
         self.spool = spool;
         self.hold = if spool.down {

@@ -121,10 +121,14 @@ fn grip(record: &FlightRecord) -> Grip {
             .samples
             .last()
             .is_some_and(|last| last.mode == Mode::Perched);
+    // A proof that the stack takes back while its rotors turn is a grip that it refuses.
+    let relied_on = record.samples.iter().any(|sample| sample.mode == Mode::Perched);
     if held_throughout || holds_yet {
         Grip::Holds
-    } else {
+    } else if relied_on {
         Grip::Fails
+    } else {
+        Grip::Never
     }
 }
 
@@ -323,6 +327,11 @@ mod tests {
                 "grip lost",
                 proven(at("hold", GivenUp, Mode::Perched)),
                 NotHolding,
+            ),
+            (
+                "grip given up before the rotors stop",
+                proven(at("perch", GivenUp, Mode::Escaping)),
+                HandedBack,
             ),
             ("spins", at("roll", Lost, Mode::Flight), Fallen),
             (
