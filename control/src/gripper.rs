@@ -41,7 +41,7 @@ pub mod tendon;
 mod tests;
 
 pub use self::arm::ArmGripper;
-pub use self::bend_watch::RESPONSE as RESPONSE_RANGE;
+pub use self::bend_watch::{RESPONSE as RESPONSE_RANGE, tendon_stiffness};
 pub use self::config::{Config, TIGHTENINGS, force_per_thrust};
 pub use self::input::{ArmInput, Pressure};
 use crate::allocation::wrench::PerArm;

@@ -17,9 +17,6 @@ const REGAIN_RATE_MAX: f32 = 30.0;
 const LAG_STUCK: f32 = 8.0;
 /// Time at the force limit before the arm counts as limited, s.
 const LIMITED_AFTER: f32 = 1.0;
-/// Age up to which a learnt response is kept for the next run, s: well beyond a closing. Under longer load a printed
-/// arm creeps, and sun or shade changes it; the free arm of the next closing is learnt again.
-const RESPONSE_AGE: f32 = 60.0;
 /// Time of known pressure and tilt after a restart, s: ten servo frames of 20 ms.
 const RESUME_TIME: f32 = 0.2;
 /// Time without a tilt until a fault, s; the servo is held at once.
@@ -54,8 +51,6 @@ pub struct ArmGripper {
     bend_watch: Option<BendWatch>,
     /// Learnt in this closing.
     pub(super) response: Response,
-    /// Time since it was learnt, s.
-    response_age: f32,
     ceiling_watch: CeilingWatch,
     fault: Option<GripFault>,
     /// Time without a tilt, s.
@@ -84,7 +79,6 @@ impl ArmGripper {
     /// One step of `dt` s. The force stays within 0 and the limit for any input.
     pub fn step(&mut self, cfg: &Config, input: &ArmInput, dt: f32) -> ArmGrip {
         let dt = scalar::clamp(dt, 1e-4, 0.1);
-        self.response_age = scalar::clamp(self.response_age + dt, 0.0, 1e6);
         let measured = self.filters.step(input, dt);
         if input.close {
             self.close(cfg, &measured, dt);
@@ -118,7 +112,7 @@ impl ArmGripper {
             force: self.force,
             closure: self.hold.closure(),
             fault: self.fault,
-            response: self.response.known().filter(|_| self.response_age < RESPONSE_AGE),
+            response: self.response.known(),
         }
     }
 
@@ -265,7 +259,6 @@ impl ArmGripper {
         // The arm may lie on the pipe although its sensor shows no touch.
         if !self.response.is_known() {
             self.response = Response::ASSUMED;
-            self.response_age = RESPONSE_AGE;
         }
     }
 
@@ -292,7 +285,7 @@ impl ArmGripper {
                 self.phase = Phase::Grip(PressureLoop::new(contact, self.force, transient));
             }
             _ => {
-                let rise = cfg.approach_rate / self.response.value() * dt;
+                let rise = cfg.approach_rate / self.response.arm() * dt;
                 self.force = scalar::clamp(self.force + rise, FORCE_MIN, cfg.limit);
             }
         }
@@ -336,7 +329,9 @@ impl ArmGripper {
             };
         }
         if self.response != known {
-            self.response_age = 0.0;
+            // The reel stays: the same way is another force.
+            self.force *= self.response.tendon() / known.tendon();
+            self.bend_watch = Some(BendWatch::of_a_learnt_stiffness(&sample));
         }
     }
 }

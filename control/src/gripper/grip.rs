@@ -37,7 +37,7 @@ pub struct ArmGrip {
     pub closure: Option<f32>,
     /// Cause of [`ArmState::Faulty`].
     pub fault: Option<GripFault>,
-    /// Bending relative to the parameters, learnt in this closing less than a minute ago; for the next run.
+    /// Bending by the reel's way relative to the parameters, learnt in this closing.
     pub response: Option<f32>,
 }
 

@@ -9,7 +9,7 @@ use rand_pcg::Pcg64Mcg;
 use sophie_control::gripper::contact_pressure::{Fsr, FsrScale};
 use sophie_control::gripper::grip::{ArmGrip, ArmState};
 use sophie_control::gripper::tendon::{Drive, Reel, TendonDrive};
-use sophie_control::gripper::{ArmGripper, ArmInput, Config, Pressure};
+use sophie_control::gripper::{ArmGripper, ArmInput, Config, Pressure, tendon_stiffness};
 use sophie_control::params::Params;
 
 use crate::normal::StandardNormal;
@@ -403,7 +403,8 @@ impl ArmStand {
     fn drive_servo(&mut self, step: u64) {
         if step.is_multiple_of(self.drive_steps) {
             let dt = (self.drive_steps as f64 * STEP) as f32;
-            self.order = self.drive.step(&self.reel, self.grip.force, self.tilt, dt);
+            let reel = self.reel.softened(tendon_stiffness(self.grip.response));
+            self.order = self.drive.step(&reel, self.grip.force, self.tilt, dt);
         }
     }
 }

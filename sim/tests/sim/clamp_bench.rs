@@ -13,7 +13,7 @@ use sophie_control::gripper::contact_pressure::{Fsr, FsrScale};
 use sophie_control::gripper::grip::{ArmGrip, ArmState};
 use sophie_control::gripper::grip_fault::GripFault;
 use sophie_control::gripper::tendon::{Drive, ForceLimit, Reel, TendonDrive};
-use sophie_control::gripper::{ArmGripper, ArmInput, Config, Pressure};
+use sophie_control::gripper::{ArmGripper, ArmInput, Config, Pressure, tendon_stiffness};
 use sophie_control::params::Params;
 use sophie_sim::normal::StandardNormal;
 use sophie_sim::plant::beam::rest::{self, SlowArm, pipe_under};
@@ -219,9 +219,10 @@ impl Bench {
         self.to_frame -= STEP;
         if self.to_frame <= 0.5 * STEP {
             self.to_frame += self.frame;
+            let reel = self.reel.softened(tendon_stiffness(self.grip.response));
             self.driven = self
                 .drive
-                .step(&self.reel, self.grip.force, self.measured_tilt, self.frame as f32);
+                .step(&reel, self.grip.force, self.measured_tilt, self.frame as f32);
         }
     }
 

@@ -85,19 +85,22 @@ fn friction_overshoots_on_the_way_in_and_holds_the_grip_on_the_way_back() {
 }
 
 #[test]
-fn a_soft_thread_changes_the_reel_s_way_and_not_the_grip_s_force() {
-    let cases = [8000.0, 5000.0, 3000.0, 2000.0].map(|stiffness| {
+fn a_soft_thread_is_learnt_and_closes_as_a_stiff_one() {
+    let cases = [8000.0, 5000.0, 3000.0, 2000.0, 1500.0].map(|stiffness| {
         (
             format!("stiffness {stiffness}"),
             with_tendon(|spec| spec.stiffness = stiffness),
         )
     });
     let tried = tried(&cases);
-    assert!(tried[1].grip.state == ArmState::Holding);
-    let share = tried[1].steady / tried[0].steady;
-    assert!((share - 1.0).abs() < 0.1, "{share}");
-    // The stack takes the reel's way for a stiff thread's: it asks for more than there is.
-    assert!(tried[1].asked > 1.2 * tried[0].asked);
+    for soft in &tried {
+        assert!(soft.grip.state == ArmState::Holding && soft.peak < 1.1 * tried[0].peak);
+        let (held, asked) = (soft.steady / tried[0].steady, soft.asked / tried[0].asked);
+        assert!(
+            (held - 1.0).abs() < 0.1 && (asked - 1.0).abs() < 0.2,
+            "{held} {asked}"
+        );
+    }
 }
 
 #[test]

@@ -34,7 +34,7 @@ impl TendonOrder {
 }
 
 /// Demand on all tendons.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TendonForces {
     /// Per arm.
     pub arms: PerArm<TendonForce>,
@@ -43,10 +43,12 @@ pub struct TendonForces {
 }
 
 /// Demand on one tendon.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TendonForce {
     /// Tension, N; 0 is slack.
     pub force: f32,
+    /// Stiffness over that of the parameters, 0..1.
+    pub stiffness: f32,
     /// Hold the servo's position and ignore the force.
     pub hold_position: bool,
 }

@@ -17,7 +17,7 @@ use crate::start::retained_state::RetainedState;
 use embassy_time::Instant;
 use sophie_control::allocation::wrench::PerArm;
 use sophie_control::gripper::retained_grip::GripMemory;
-use sophie_control::gripper::{ArmInput, Config, Gripper, Pressure};
+use sophie_control::gripper::{ArmInput, Config, Gripper, Pressure, tendon_stiffness};
 
 use crate::deadline::FixedRate;
 use crate::links::Links;
@@ -67,6 +67,7 @@ pub async fn run(links: &Links) -> ! {
             let forces = TendonForces {
                 arms: out.arms.map(|arm| TendonForce {
                     force: arm.grip.force,
+                    stiffness: tendon_stiffness(arm.grip.response),
                     hold_position: arm.hold_position,
                 }),
                 wound_at_power_on: out.wound_at_power_on,
@@ -93,11 +94,16 @@ fn begin(links: &Links) -> Gripper {
             response,
             ..
         }) => {
+            let mut arms = force.map(|force| TendonForce {
+                force,
+                stiffness: 1.0,
+                hold_position: true,
+            });
+            for (arm, response) in arms.iter_mut().zip(response) {
+                arm.stiffness = tendon_stiffness(response);
+            }
             let forces = TendonForces {
-                arms: force.map(|force| TendonForce {
-                    force,
-                    hold_position: true,
-                }),
+                arms,
                 wound_at_power_on: false,
             };
             links.tendons.send(Instant::now(), TendonOrder::Resumed(forces));

@@ -89,7 +89,8 @@ impl Tendon {
         if asked.hold_position {
             self.hold_position(tilt, dt)
         } else {
-            self.drive.step(&self.reel, asked.force, tilt, dt)
+            self.drive
+                .step(&self.reel.softened(asked.stiffness), asked.force, tilt, dt)
         }
     }
 

@@ -254,6 +254,7 @@ fn after_a_restart_closed_arms_are_sent_their_force_at_once_and_all_others_nothi
         if let Some(forces) = forces {
             let asked = retained.force.map(|force| TendonForce {
                 force,
+                stiffness: 1.0,
                 hold_position: true,
             });
             assert_eq!(forces.arms, asked);

@@ -29,6 +29,7 @@ fn speak(links: &Links, running: bool, calibrated: bool) {
     let forces = TendonForces {
         arms: [50.0, 51.0, 52.0, 5.0].map(|force| TendonForce {
             force,
+            stiffness: 1.0,
             hold_position: false,
         }),
         wound_at_power_on: false,
@@ -174,6 +175,7 @@ fn forces_that_are_resumed_or_old_are_not_kept_as_news() {
     let forces = TendonForces {
         arms: [TendonForce {
             force: 60.0,
+            stiffness: 1.0,
             hold_position: false,
         }; 4],
         wound_at_power_on: false,

@@ -48,6 +48,7 @@ fn forces(force: f32, wound_at_power_on: bool) -> TendonForces {
     TendonForces {
         arms: [TendonForce {
             force,
+            stiffness: 1.0,
             hold_position: false,
         }; 4],
         wound_at_power_on,
@@ -221,6 +222,7 @@ fn after_a_restart_the_drives_go_on_where_they_were_unless_only_the_gears_know()
         let order = TendonForces {
             arms: [TendonForce {
                 force: 0.0,
+                stiffness: 1.0,
                 hold_position: true,
             }; 4],
             wound_at_power_on: false,

@@ -15,6 +15,8 @@ pub const SPAN_MIN_US: f32 = 200.0;
 /// (built so; assumed).
 pub const REFERENCE_TILT: f32 = 0.4;
 const TRIM_MAX_US: f32 = 50.0;
+/// Least share of the parameters' tendon stiffness: 1 kN/m of thread, knots and mount told as 8.
+const SHARE_MIN: f32 = 0.12;
 /// Used share of the servo's speed, so that it follows its command.
 const SPEED_SHARE: f32 = 0.9;
 /// Age of the tilt when the servo's task reads it, s: sensor 20 ms, half of the arms' 10 ms period.
@@ -69,6 +71,13 @@ impl Reel {
             tilt_age: TILT_AGE + 1.0 / p.servo_frame_rate,
             limit: ForceLimit::from_params(p),
         }
+    }
+
+    /// The same parts with a tendon of the `share` of its stiffness, as a closing arm shows it.
+    #[must_use]
+    pub fn softened(mut self, share: f32) -> Self {
+        self.stiffness *= scalar::clamp(share, SHARE_MIN, 1.0);
+        self
     }
 
     /// The parts of all four arms.

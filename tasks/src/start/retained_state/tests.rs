@@ -16,7 +16,7 @@ fn held() -> RetainedState {
             Some(GripFault::Ceiling),
             Some(GripFault::Unfelt),
         ],
-        response: [None, Some(0.4), Some(1.37), Some(2.5)],
+        response: [None, Some(0.13), Some(1.37), Some(2.5)],
         gyro_bias: Some(Vec3::new(0.01, -0.02, 0.03)),
         thrust_factor: Some(1.13),
     }
@@ -173,7 +173,7 @@ fn what_is_no_number_or_out_of_range_is_neither_kept_nor_used() {
         (2, 1 | 151 << 24),
         (3, 4),
         (3, 0x10000),
-        (15, 39),
+        (15, 12),
         (15, 251 << 24),
     ] {
         let mut forged = words(held(), 3);
@@ -190,7 +190,7 @@ fn what_is_no_number_or_out_of_range_is_neither_kept_nor_used() {
 fn an_implausible_arm_response_is_not_retained() {
     for (response, kept) in [
         (Some(f32::NAN), None),
-        (Some(0.39), None),
+        (Some(0.12), None),
         (Some(2.6), None),
         (Some(1.234), Some(1.23)),
         (None, None),
