@@ -92,7 +92,8 @@ impl VerticalFallback {
         let begins = self.differs.step((ranged || blind) && off.abs() > limit, dt) > BENT_TIME;
         self.misfit = self.since.is_none() && begins && learnt && limit > BENT;
         self.since = match self.since {
-            Some(since) => (off.abs() > BENT).then_some(clamp(since + dt, 0.0, 1e3)),
+            // Poses that are back give the height.
+            Some(since) => (off.abs() > BENT && (ranged || blind)).then_some(clamp(since + dt, 0.0, 1e3)),
             None => begins.then_some(0.0),
         };
         if self.since.is_some() {
