@@ -7,6 +7,7 @@ use super::pressure_loop::PressureLoop;
 use super::{ArmInput, Config, FORCE_MIN, Pressure};
 use crate::gripper::grip::{ArmGrip, ArmState, FreeProof, HoldProof};
 use crate::gripper::grip_fault::GripFault;
+use crate::gripper::grip_geometry::BENT_MIN;
 use crate::maths::scalar;
 
 /// Largest force rate of a touching arm, N/s.
@@ -187,7 +188,7 @@ impl ArmGripper {
         }
         // A servo at its end or stall counts as a force limit.
         let stuck = matches!(self.phase, Phase::Grip(_)) && self.force - contact.tension > LAG_STUCK;
-        let limited = self.force >= cfg.demand.force || stuck;
+        let limited = self.force >= cfg.provable() / cfg.limit * self.most(cfg, &contact) || stuck;
         self.at_limit = if limited {
             scalar::clamp(self.at_limit + dt, 0.0, 10.0)
         } else {
@@ -286,8 +287,22 @@ impl ArmGripper {
             }
             _ => {
                 let rise = cfg.approach_rate / self.response.arm() * dt;
-                self.force = scalar::clamp(self.force + rise, FORCE_MIN, cfg.limit);
+                self.force = scalar::clamp(self.force + rise, FORCE_MIN, self.most(cfg, contact));
             }
+        }
+    }
+
+    /// Largest force, N. An arm that an obstacle has held since it was open bends as one on a soft tendon: until it is
+    /// bent as round the widest pipe that fits, the reel goes no further than the parameters' stiffness allows, but for
+    /// the rotor's thrust.
+    fn most(&self, cfg: &Config, contact: &Contact) -> f32 {
+        let open = -contact.tilt < BENT_MIN * cfg.pipe_bend;
+        let blocked = open && !matches!(self.phase, Phase::Grip(_));
+        if blocked {
+            let against_thrust = contact.lifted.min(cfg.limit);
+            (cfg.limit * self.response.tendon() + against_thrust).min(cfg.limit)
+        } else {
+            cfg.limit
         }
     }
 

@@ -15,7 +15,9 @@ use crate::allocation::wrench::PerArm;
 use crate::maths::scalar::deg;
 
 /// Range of the mean tilt, relative to that round the pipe of the parameters.
-const SHARE: (f32, f32) = (0.65, 1.7);
+const SHARE: (f32, f32) = (BENT_MIN, 1.7);
+/// Least bending round a pipe that fits, the widest one.
+pub const BENT_MIN: f32 = 0.65;
 /// Largest half difference of the pairs: left and right, the two diagonals, front and rear, rad.
 const BESIDE_MAX: f32 = deg(25.0);
 const OBLIQUE_MAX: f32 = deg(60.0);
