@@ -119,8 +119,8 @@ pub struct HoldProof {
     mean: Option<CascadedLowPass>,
     within: HoldTimer,
     settled: HoldTimer,
-    firm: HoldTimer,
-    loose: HoldTimer,
+    /// The pressure says otherwise than [`Self::holds`].
+    contrary: HoldTimer,
     /// Closure time of the first proof, s.
     closure: Option<f32>,
     holds: bool,
@@ -144,16 +144,12 @@ impl HoldProof {
         self.within.step(within, dt);
         self.settled.step(within && slow && force < demand.force, dt);
         let firm = mean.is_some_and(|m| m.value() + m.lead() >= demand.held);
-        self.firm.step(firm, dt);
-        self.loose.step(!firm, dt);
         if self.closure.is_none() && self.settled(demand) {
             self.closure = Some(self.elapsed - self.within.time());
             self.holds = true;
         }
-        if self.holds {
-            self.holds = self.loose.time() <= demand.dwell;
-        } else {
-            self.holds = self.closure.is_some() && self.firm.time() >= demand.dwell;
+        if self.closure.is_some() && self.contrary.step(firm != self.holds, dt) > demand.dwell {
+            self.holds = firm;
         }
         self.holds
     }

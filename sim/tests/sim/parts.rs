@@ -77,11 +77,10 @@ fn friction_overshoots_on_the_way_in_and_holds_the_grip_on_the_way_back() {
     // The reel pulls more until the arm is there; then it turns back, and the channel still holds.
     assert!(rubbing.asked > 1.05 * smooth.asked && rubbing.peak > 1.2 * smooth.peak);
     assert!(rubbing.steady < smooth.steady);
-    // The rougher the channel, the later and the harder: past 1.5 kPa at last, and still a grip, within two thirds of
-    // what skin and pipe bear.
+    // The rougher the channel, the later and the harder: past 1.5 kPa at last, and still a grip.
     let holds = |tried: &Tried| tried.grip.state == ArmState::Holding;
     assert!(tried.iter().all(holds) && tried.is_sorted_by(|a, b| a.peak < b.peak));
-    assert!(worst.peak < 2000.0, "{}", worst.peak);
+    assert!(worst.peak < 1700.0, "{}", worst.peak);
 }
 
 #[test]

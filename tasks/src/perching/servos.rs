@@ -87,15 +87,17 @@ struct Tendon {
 impl Tendon {
     fn step(&mut self, asked: TendonForce, tilt: Option<f32>, dt: f32) -> Drive {
         if asked.hold_position {
-            self.hold_position(tilt, dt)
+            self.hold_position(asked, tilt, dt)
         } else {
-            self.drive
-                .step(&self.reel.softened(asked.stiffness), asked.force, tilt, dt)
+            let reel = self.reel.softened(asked.stiffness);
+            self.drive.step(&reel, asked.force, tilt, dt)
         }
     }
 
-    fn hold_position(&mut self, tilt: Option<f32>, dt: f32) -> Drive {
-        self.drive.hold_position(&self.reel, tilt, dt)
+    /// The servo stays; its tension is that of the tendon's learnt stiffness, from which a resumed grip goes on.
+    fn hold_position(&mut self, asked: TendonForce, tilt: Option<f32>, dt: f32) -> Drive {
+        let reel = self.reel.softened(asked.stiffness);
+        self.drive.hold_position(&reel, tilt, dt)
     }
 }
 
@@ -162,12 +164,12 @@ impl Tendons {
             }
             // Held forces must not start winding.
             Newest::Fresh(Stamped {
-                value: TendonOrder::Resumed(_),
+                value: order @ TendonOrder::Resumed(_),
                 ..
             })
-            | Newest::Held(_) => {
-                for ((tendon, tilt), out) in arms {
-                    *out = tendon.hold_position(tilt, dt);
+            | Newest::Held(Stamped { value: order, .. }) => {
+                for (((tendon, tilt), out), asked) in arms.zip(order.forces().arms) {
+                    *out = tendon.hold_position(asked, tilt, dt);
                 }
             }
         }

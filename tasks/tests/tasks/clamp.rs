@@ -237,6 +237,7 @@ fn after_a_restart_closed_arms_are_sent_their_force_at_once_and_all_others_nothi
         let retained = RetainedState {
             grip_memory,
             force: [50.0, 51.0, 52.0, 53.0],
+            response: [Some(0.3); 4],
             ..RetainedState::default()
         };
         let start = Start {
@@ -254,7 +255,7 @@ fn after_a_restart_closed_arms_are_sent_their_force_at_once_and_all_others_nothi
         if let Some(forces) = forces {
             let asked = retained.force.map(|force| TendonForce {
                 force,
-                stiffness: 1.0,
+                stiffness: 0.3,
                 hold_position: true,
             });
             assert_eq!(forces.arms, asked);

@@ -232,6 +232,47 @@ fn after_a_restart_the_drives_go_on_where_they_were_unless_only_the_gears_know()
     }
 }
 
+/// A resumed grip goes on from this tension: by the stiffness as told it would be wound 1 / 0.3 times as tight.
+#[test]
+fn a_servo_that_is_held_reads_the_tension_of_the_learnt_stiffness() {
+    let tension = |stiffness: f32, order: fn(TendonForces) -> TendonOrder| {
+        let retained = RetainedState {
+            grip_memory: GripMemory::Controlled(ArmChoice::All),
+            angle: [2.0; 4],
+            ..RetainedState::default()
+        };
+        let (mut rig, _) = started(Start {
+            cause: StartCause::Watchdog,
+            retained: Some(retained),
+            sequence: 1,
+        });
+        let forces = TendonForces {
+            arms: [TendonForce {
+                force: 50.0,
+                stiffness,
+                hold_position: true,
+            }; 4],
+            wound_at_power_on: false,
+        };
+        rig.run_with(200, |links, at| {
+            links.arms.send(at, ArmAngles::at(at, [Some(CLOSED); 4]));
+            links.tendons.send(at, order(forces));
+        });
+        let [first, ..] = rig.links.tension.fresh().unwrap();
+        first
+    };
+    for order in [
+        TendonOrder::Measured as fn(TendonForces) -> TendonOrder,
+        TendonOrder::Resumed,
+    ] {
+        let (told, learnt) = (tension(1.0, order), tension(0.3, order));
+        assert!(
+            told > 10.0 && (learnt / told - 0.3).abs() < 0.01,
+            "{told} {learnt}"
+        );
+    }
+}
+
 /// Each 10 ms an order for pressures `age` ms old; `servos` reads it 0.9 ms later.
 fn ordered(rig: &mut Rig, ms: u64, age: u64, order: fn(TendonForces) -> TendonOrder) {
     rig.run_with(ms, |links, at| {

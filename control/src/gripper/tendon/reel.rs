@@ -2,6 +2,7 @@
 
 use super::ForceLimit;
 use crate::allocation::wrench::PerArm;
+use crate::gripper::RESPONSE_RANGE;
 use crate::maths::scalar;
 use crate::params::Params;
 use crate::pilot::actuator_test;
@@ -15,8 +16,6 @@ pub const SPAN_MIN_US: f32 = 200.0;
 /// (built so; assumed).
 pub const REFERENCE_TILT: f32 = 0.4;
 const TRIM_MAX_US: f32 = 50.0;
-/// Least share of the parameters' tendon stiffness: 1 kN/m of thread, knots and mount told as 8.
-const SHARE_MIN: f32 = 0.12;
 /// Used share of the servo's speed, so that it follows its command.
 const SPEED_SHARE: f32 = 0.9;
 /// Age of the tilt when the servo's task reads it, s: sensor 20 ms, half of the arms' 10 ms period.
@@ -76,7 +75,7 @@ impl Reel {
     /// The same parts with a tendon of the `share` of its stiffness, as a closing arm shows it.
     #[must_use]
     pub fn softened(mut self, share: f32) -> Self {
-        self.stiffness *= scalar::clamp(share, SHARE_MIN, 1.0);
+        self.stiffness *= scalar::clamp(share, RESPONSE_RANGE.0, 1.0);
         self
     }
 
