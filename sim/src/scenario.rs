@@ -363,6 +363,8 @@ pub struct Sensors {
     pub flow_rate: Option<f64>,
     /// Resolution of the range, m; `None`: a millimetre.
     pub range_step: Option<f64>,
+    /// How far the range reaches indoors over a white surface, m; `None`: [`crate::sensors::flow::REACH`].
+    pub range_reach: Option<f64>,
     /// White noise of the flow of a frame, rad; `None`: [`crate::sensors::flow::FLOW_NOISE`].
     pub flow_noise: Option<f64>,
     /// The quality of the flow varies whatever the flow is worth.
@@ -404,6 +406,7 @@ impl Sensors {
             noise: self.flow_noise,
             quality_varies: self.flow_quality_varies,
             mixed_pixels: self.range_mixed_pixels,
+            reach: self.range_reach,
         }
     }
 

@@ -1,7 +1,7 @@
 //! `sophie fit-lag`: the lag of a motor by the sound of a train of steps, as lines for the console of the board.
 
 use sophie_control::params::Params;
-use sophie_control::pilot::static_thrust_test::STEP_HOLD;
+use sophie_control::pilot::static_thrust_test::STEP_PLATEAU;
 use sophie_fit::motor_lag;
 use sophie_fit::rotor_sound::{self, Sound};
 use sophie_terminal::console::{self, Console};
@@ -13,7 +13,7 @@ pub fn run(args: &FitLagArgs) -> Result<bool, String> {
     let file = console::one_line(&args.sound.display().to_string());
     let sound = Sound::load(&args.sound)?;
     let found = rotor_sound::follow(&sound)
-        .and_then(|track| motor_lag::fit(&track, f64::from(STEP_HOLD)))
+        .and_then(|track| motor_lag::fit(&track, f64::from(STEP_PLATEAU)))
         .map_err(|why| format!("{file}: {why}"))?;
     let lag = found.lag();
     let value = format!("{:.3}", lag.tau);

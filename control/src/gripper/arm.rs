@@ -5,7 +5,7 @@ use super::ceiling_watch::{CeilingSample, CeilingWatch};
 use super::input::{Contact, InputFilters, Measured};
 use super::pressure_loop::PressureLoop;
 use super::{ArmInput, Config, FORCE_MIN, Pressure};
-use crate::gripper::grip::{ArmGrip, ArmState, FreeProof, HoldProof};
+use crate::gripper::grip::{ArmGrip, ArmState, FreeProof, GripProof};
 use crate::gripper::grip_fault::GripFault;
 use crate::gripper::grip_geometry::BENT_MIN;
 use crate::maths::scalar;
@@ -60,7 +60,7 @@ pub struct ArmGripper {
     at_limit: f32,
     /// Last unfiltered pressure, Pa.
     last_pressure: Option<f32>,
-    hold: HoldProof,
+    proof: GripProof,
     free: FreeProof,
 }
 
@@ -100,10 +100,10 @@ impl ArmGripper {
         }
         let holding = match self.phase {
             Phase::Grip(_) | Phase::Approach | Phase::Resume(_) => {
-                self.hold.step(&cfg.demand, pressure, self.force, dt)
+                self.proof.step(&cfg.demand, pressure, self.force, dt)
             }
             Phase::Free | Phase::Release => {
-                self.hold = HoldProof::default();
+                self.proof = GripProof::default();
                 false
             }
         };
@@ -111,7 +111,7 @@ impl ArmGripper {
             state: self.state(holding),
             pressure: self.filters.pressure(),
             force: self.force,
-            closure: self.hold.closure(),
+            closure: self.proof.closure(),
             fault: self.fault,
             response: self.response.known(),
         }
@@ -124,7 +124,7 @@ impl ArmGripper {
 
     /// The pressure is settled at the grip pressure.
     pub(super) fn is_settled(&self, cfg: &Config) -> bool {
-        self.hold.settled(&cfg.demand)
+        self.proof.settled(&cfg.demand)
     }
 
     pub(super) fn holds_position(&self) -> bool {
@@ -162,7 +162,7 @@ impl ArmGripper {
     fn close(&mut self, cfg: &Config, measured: &Measured, dt: f32) {
         if matches!(self.phase, Phase::Free | Phase::Release) {
             self.phase = Phase::Approach;
-            self.hold = HoldProof::default();
+            self.proof = GripProof::default();
             self.free = FreeProof::default();
         }
         self.tilt_missing = if measured.tilt.is_some() {

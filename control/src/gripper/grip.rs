@@ -114,7 +114,7 @@ impl GripDemand {
 
 /// Proof that one arm holds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct HoldProof {
+pub struct GripProof {
     elapsed: f32,
     mean: Option<CascadedLowPass>,
     within: HoldTimer,
@@ -126,7 +126,7 @@ pub struct HoldProof {
     holds: bool,
 }
 
-impl HoldProof {
+impl GripProof {
     /// Adds `dt` s at `pressure` (Pa; `None`: unknown) and `force` (N); returns whether the arm holds. It is proven by
     /// a mean pressure that stays within the tolerance and hardly changes for the dwell time, below the largest force; a
     /// pressure below that of a hold, or unknown, for the dwell time revokes the proof, and one above it gives it back.
@@ -213,7 +213,7 @@ mod tests {
     const DT: f32 = 0.01;
 
     /// Runs `seconds` at the pressure of each time.
-    fn along(proof: &mut HoldProof, pressure: impl Fn(f32) -> f32, seconds: f32) -> bool {
+    fn along(proof: &mut GripProof, pressure: impl Fn(f32) -> f32, seconds: f32) -> bool {
         let mut holds = false;
         for step in 0..(seconds / DT + 0.5) as u32 {
             holds = proof.step(&DEMAND, Some(pressure(step as f32 * DT)), 60.0, DT);
@@ -221,7 +221,7 @@ mod tests {
         holds
     }
 
-    fn run(proof: &mut HoldProof, pressure: Option<f32>, force: f32, seconds: f32) -> bool {
+    fn run(proof: &mut GripProof, pressure: Option<f32>, force: f32, seconds: f32) -> bool {
         let mut holds = false;
         for _ in 0..(seconds / DT + 0.5) as u32 {
             holds = proof.step(&DEMAND, pressure, force, DT);
@@ -233,7 +233,7 @@ mod tests {
     /// changes by 450 · 16 t exp(-4 t) Pa/s, less than 76 from 1.18 s on.
     #[test]
     fn a_grip_is_proven_once_settled_and_closure_is_when_it_came_in_for_good() {
-        let mut proof = HoldProof::default();
+        let mut proof = GripProof::default();
         assert!(!run(&mut proof, Some(500.0), 60.0, 2.0));
         assert!(!run(&mut proof, Some(950.0), 60.0, 0.5));
         // The first visit does not count.
@@ -252,7 +252,7 @@ mod tests {
             for middle in [860.0, 950.0, 1040.0] {
                 let shaken = |t: f32| middle + by * (core::f32::consts::TAU * hz * t).sin();
                 assert!(
-                    along(&mut HoldProof::default(), shaken, 1.5),
+                    along(&mut GripProof::default(), shaken, 1.5),
                     "{hz} Hz, {middle} Pa"
                 );
             }
@@ -263,26 +263,26 @@ mod tests {
     fn a_pressure_that_passes_through_proves_nothing() {
         for rate in [-400.0, -100.0, 100.0, 400.0] {
             let passing = |t: f32| 950.0 + rate * (t - 2.0);
-            let proof = &mut HoldProof::default();
+            let proof = &mut GripProof::default();
             for end in [1.0, 2.0, 3.0, 4.0] {
                 assert!(!along(proof, |t| passing(t + end - 1.0), 1.0), "{rate} Pa/s");
             }
         }
         for (middle, proven) in [(790.0, false), (830.0, true), (1070.0, true), (1110.0, false)] {
-            assert!(run(&mut HoldProof::default(), Some(middle), 60.0, 2.0) == proven);
+            assert!(run(&mut GripProof::default(), Some(middle), 60.0, 2.0) == proven);
         }
     }
 
     #[test]
     fn a_force_at_its_limit_proves_nothing() {
-        assert!(!run(&mut HoldProof::default(), Some(950.0), 161.0, 5.0));
-        assert!(!run(&mut HoldProof::default(), Some(f32::NAN), 60.0, 5.0));
+        assert!(!run(&mut GripProof::default(), Some(950.0), 161.0, 5.0));
+        assert!(!run(&mut GripProof::default(), Some(f32::NAN), 60.0, 5.0));
     }
 
     /// As the rotors stop, a tendon that rubs in its channel leaves half as much again for seconds.
     #[test]
     fn more_pressure_is_no_doubt_and_less_is_forgiven_once_it_is_back() {
-        let mut proof = HoldProof::default();
+        let mut proof = GripProof::default();
         assert!(run(&mut proof, Some(950.0), 60.0, 2.0));
         assert!(run(&mut proof, Some(1500.0), 60.0, 5.0));
         assert!(run(&mut proof, Some(650.0), 60.0, 5.0));

@@ -11,15 +11,15 @@ pub const DRIVE_MIN: f32 = 0.05;
 /// Largest drive, share of full drive.
 pub const DRIVE_MAX: f32 = 1.0;
 /// Default time at a steady drive, s: the voltage settles within one, a scale within two.
-pub const HOLD: f32 = 5.0;
+pub const PLATEAU: f32 = 5.0;
 /// Longest time at a steady drive, s: motors at full drive get hot beyond.
-pub const HOLD_MAX: f32 = 10.0;
+pub const PLATEAU_MAX: f32 = 10.0;
 /// Default time at each drive of a train, s: ten time constants of a slow rotor.
-pub const STEP_HOLD: f32 = 1.0;
+pub const STEP_PLATEAU: f32 = 1.0;
 /// Longest time at each drive of a train, s.
-pub const STEP_HOLD_MAX: f32 = 2.0;
+pub const STEP_PLATEAU_MAX: f32 = 2.0;
 /// Shortest time at a drive, s.
-pub const HOLD_MIN: f32 = 0.5;
+pub const PLATEAU_MIN: f32 = 0.5;
 /// Pairs of steps in a train, up and down.
 pub const STEPS: u32 = 5;
 /// Largest step, share of full drive: what holds the vehicle takes the jolt.
@@ -35,7 +35,7 @@ pub struct StaticThrustTest {
     /// The other drive of a train, share of full drive; `None`: steady.
     pub step_to: Option<f32>,
     /// Time at each drive, s.
-    pub hold: f32,
+    pub plateau: f32,
 }
 
 impl StaticThrustTest {
@@ -45,7 +45,7 @@ impl StaticThrustTest {
             rotors,
             drive,
             step_to: None,
-            hold: HOLD,
+            plateau: PLATEAU,
         }
     }
 
@@ -55,7 +55,7 @@ impl StaticThrustTest {
             rotors,
             drive,
             step_to: Some(step_to),
-            hold: STEP_HOLD,
+            plateau: STEP_PLATEAU,
         }
     }
 
@@ -66,11 +66,11 @@ impl StaticThrustTest {
         let (most, step) = match self.step_to {
             Some(to) => {
                 let small = (to - self.drive).abs() <= STEP_MAX + f32::EPSILON;
-                (STEP_HOLD_MAX, drives.contains(&to) && small)
+                (STEP_PLATEAU_MAX, drives.contains(&to) && small)
             }
-            None => (HOLD_MAX, true),
+            None => (PLATEAU_MAX, true),
         };
-        rotor && step && drives.contains(&self.drive) && (HOLD_MIN..=most).contains(&self.hold)
+        rotor && step && drives.contains(&self.drive) && (PLATEAU_MIN..=most).contains(&self.plateau)
     }
 
     /// Time of the rise to the first drive, s.
@@ -81,7 +81,7 @@ impl StaticThrustTest {
     /// Its whole time, s.
     pub fn longest(&self) -> f32 {
         let holds = if self.step_to.is_some() { 1 + 2 * STEPS } else { 1 };
-        self.rise() + self.hold * holds as f32
+        self.rise() + self.plateau * holds as f32
     }
 
     /// What the rotors do `time` s after the start.
@@ -89,7 +89,7 @@ impl StaticThrustTest {
         let held = time - self.rise();
         let drive = match self.step_to {
             _ if held < 0.0 => RAMP * time,
-            Some(to) if (held / self.hold) as u32 % 2 == 1 => to,
+            Some(to) if (held / self.plateau) as u32 % 2 == 1 => to,
             _ => self.drive,
         };
         StaticThrust {
@@ -141,10 +141,16 @@ mod tests {
             let step_to = Some(drive);
             assert!(!StaticThrustTest { step_to, ..train }.is_allowed(), "{drive}");
         }
-        for hold in [0.0, 0.4, 10.1, f32::NAN] {
-            assert!(!StaticThrustTest { hold, ..steady }.is_allowed(), "{hold}");
+        for plateau in [0.0, 0.4, 10.1, f32::NAN] {
+            assert!(!StaticThrustTest { plateau, ..steady }.is_allowed(), "{plateau}");
         }
-        assert!(!StaticThrustTest { hold: 2.5, ..train }.is_allowed());
+        assert!(
+            !StaticThrustTest {
+                plateau: 2.5,
+                ..train
+            }
+            .is_allowed()
+        );
         assert!(!StaticThrustTest::train(Rotors::All, 0.3, 0.9).is_allowed());
         assert!(!StaticThrustTest::steady(Rotors::One(4), 0.5).is_allowed());
     }

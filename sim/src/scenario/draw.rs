@@ -175,7 +175,7 @@ pub(super) fn middle(quantity: &Quantity, nominal: &Scenario) -> Option<Vec<f64>
 /// The numbers of `quantity` at these shares of its spreads, of all and of each number; `None` without a spread.
 fn numbers(quantity: &Quantity, nominal: &Scenario, share: impl Fn(&str) -> f64) -> Option<Vec<f64>> {
     let mut from = (quantity.truth)(nominal);
-    if from.is_empty() && matches!(quantity.all, Some(Spread::Within(..))) {
+    if from.is_empty() && matches!(quantity.all, Some(Spread::Within(..) | Spread::Decades(..))) {
         // An optional key without a nominal value: the spread needs none.
         from.push(0.0);
     }

@@ -843,6 +843,11 @@ pub const KEYS: &[Key] = &[
         sensors.range_step
     ),
     optional!(
+        "sensors.range_reach_m",
+        Range::new(1.0, 8.0, "m"),
+        sensors.range_reach
+    ),
+    optional!(
         "sensors.flow_noise_mrad",
         Range::new(0.0, 20.0, "mrad").times(1e-3),
         sensors.flow_noise

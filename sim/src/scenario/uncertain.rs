@@ -18,6 +18,8 @@ pub enum Spread {
     Plus(f64, f64),
     /// Evenly between two numbers, whatever it is, in the key's unit.
     Within(f64, f64),
+    /// The same with its logarithm: each decade as often as another. Both positive.
+    Decades(f64, f64),
 }
 
 impl Spread {
@@ -29,6 +31,7 @@ impl Spread {
             Self::Times(low, high) => from * between(low, high),
             Self::Plus(low, high) => from + between(low, high),
             Self::Within(low, high) => between(low, high),
+            Self::Decades(low, high) => low * libm::pow(high / low, share),
         }
     }
 
@@ -40,6 +43,7 @@ impl Spread {
             Self::Plus(low, high) if low == -high => format!("± {high}"),
             Self::Plus(low, high) => format!("{low:+} to {high:+}"),
             Self::Within(low, high) => format!("{low} to {high}"),
+            Self::Decades(low, high) => format!("{low} to {high}, each decade as often"),
         }
     }
 }
@@ -1094,8 +1098,8 @@ pub const QUANTITIES: &[Quantity] = &[
     },
     Quantity {
         key: "world.light_klux",
-        all: Some(Spread::Within(0.1, 100.0)),
-        source: "a hall to noon: range 2.5 m to 1.0 to 1.2 m (INAV, issues 10487 and 7622)",
+        all: Some(Spread::Decades(0.1, 100.0)),
+        source: "a hall at 0.1 to 1, overcast at 10, noon at 100: range 2.5 m to 1.0 to 1.2 m (INAV, issues 10487 and 7622)",
         truth: |s| s.world.optics.light.map(|lux| 1e-3 * lux).into_iter().collect(),
         ..FIXED
     },

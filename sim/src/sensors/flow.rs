@@ -4,7 +4,7 @@
 //! | quantity | value | source |
 //! |---|---|---|
 //! | field of view, nearest, fastest | 42°, 8 cm, 7.4 rad/s | PMW3901's data sheet, the maker's table of the MTF-02 |
-//! | range | 2 cm to 2.5 m | the same table |
+//! | range | 2 cm to 2.5 m, or as the scenario says | the same table; 8 m of the MTF-01 |
 //! | counts | 10.5 a degree | INAV's default for a PMW3901 |
 //! | noise, scale, delay, gaps | below | assumed, as in the feasibility study |
 
@@ -45,8 +45,11 @@ pub const FLOW_NOISE: f64 = 0.12 * 1e-3 * PERIOD_MS as f64;
 const SCALE: f64 = 0.02;
 /// Time between two pictures, ms.
 const LOOK_MS: u64 = 4;
-/// Reach of the range sensor, m; white noise, m; error of its scale, RMS share.
-const REACH: (f64, f64) = (0.02, 2.5);
+/// Nearest range, m.
+const NEAREST: f64 = 0.02;
+/// Farthest range indoors over a surface that scatters 90 % of the light, m.
+pub const REACH: f64 = 2.5;
+/// White noise of the range, m; error of its scale, RMS share.
 const RANGE_NOISE: f64 = 0.015;
 const RANGE_SCALE: f64 = 0.005;
 /// Length of a gap without flow, s, and time between two gaps, s.
@@ -64,6 +67,8 @@ pub struct FlowErrors {
     pub quality_varies: bool,
     /// The range is a mean of all that its beam meets.
     pub mixed_pixels: bool,
+    /// How far the range reaches, m; `None`: [`REACH`].
+    pub reach: Option<f64>,
 }
 
 /// The module.
@@ -77,6 +82,7 @@ pub struct FlowModule {
     /// The range is by [`echo`], not by geometry alone.
     echoes: bool,
     mixed_pixels: bool,
+    reach: f64,
     flow_noise: f64,
     quality_varies: bool,
     /// Position of both sensors from the centre of mass, m, body.
@@ -121,6 +127,7 @@ impl FlowModule {
             optics: Optics::default(),
             echoes: false,
             mixed_pixels: false,
+            reach: REACH,
             flow_noise: FLOW_NOISE,
             quality_varies: false,
             lens,
@@ -173,6 +180,7 @@ impl FlowModule {
             optics,
             echoes: optics.light.is_some() || optics.pipe.gloss > 0.0 || errors.mixed_pixels,
             mixed_pixels: errors.mixed_pixels,
+            reach: errors.reach.unwrap_or(REACH),
             flow_noise: errors.noise.unwrap_or(FLOW_NOISE),
             quality_varies: errors.quality_varies,
             ..self
@@ -256,7 +264,7 @@ impl FlowModule {
             return;
         };
         let flow = Message::Flow { quality, counts };
-        let within = |d: &f64| (REACH.0 * 1e3..=REACH.1 * 1e3).contains(d);
+        let within = |d: &f64| (NEAREST * 1e3..=self.reach * 1e3).contains(d);
         let range = distance.filter(within).map_or(
             Message::Range {
                 quality: 0,
@@ -289,7 +297,7 @@ impl FlowModule {
         }
         let echo = echo::of(&self.pipe, &self.optics, now, self.mixed_pixels)?;
         let share = self.optics_rng.random::<f64>();
-        (share < echo.probability()).then_some(echo.range)
+        (share < echo.probability(self.reach)).then_some(echo.range)
     }
 
     /// A range of `mm` rounded to the module's resolution, mm.

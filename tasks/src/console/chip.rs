@@ -33,7 +33,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
 
     /// Restarts into the chip's boot loader; arming is refused until then.
     pub(super) async fn enter_loader(&mut self) {
-        if let Err(status) = crate::storage::storing::hold_arming(self.links).await {
+        if let Err(status) = crate::storage::storing::inhibit_arming(self.links).await {
             return self.refuse("not left", status).await;
         }
         self.out
@@ -87,7 +87,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         if self.brown_out_level().is_none_or(|look| look.ok) {
             return self.out.line(format_args!("not set: nothing to do")).await;
         }
-        if let Err(why) = crate::storage::storing::hold_arming(self.links).await {
+        if let Err(why) = crate::storage::storing::inhibit_arming(self.links).await {
             return self.refuse("not set", why).await;
         }
         match self.chip.set_brown_out().await {

@@ -87,7 +87,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
                 ))
                 .await;
         }
-        if let Err(why) = storing::hold_arming(self.links).await {
+        if let Err(why) = storing::inhibit_arming(self.links).await {
             return self.refuse("not set", why).await;
         }
         let record = match key {

@@ -20,7 +20,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
                 ))
                 .await;
         }
-        if let Err(why) = storing::hold_arming(self.links).await {
+        if let Err(why) = storing::inhibit_arming(self.links).await {
             return self.refuse("not saved", why).await;
         }
         match storing::save(self.links, &mut self.storage, &self.params).await {

@@ -273,7 +273,7 @@ async fn obey<const N: usize>(
             let stored = store(links, storage, &params).await;
             link.with_server(at, |server, _| server.stored(stored));
         }
-        Some(Order::Restart) if storing::hold_arming(links).await.is_ok() => chip.restart(),
+        Some(Order::Restart) if storing::inhibit_arming(links).await.is_ok() => chip.restart(),
         Some(Order::SetBrownOut) => {
             let set = set_brown_out(links, chip).await;
             link.with_server(at, |server, _| server.brown_out_done(set));
@@ -297,7 +297,7 @@ async fn set_brown_out(links: &Links, chip: &mut impl Chip) -> Result<(), &'stat
     if level.is_none_or(|level| level.ok) {
         return Err("nothing to do");
     }
-    storing::hold_arming(links).await.map_err(not_now)?;
+    storing::inhibit_arming(links).await.map_err(not_now)?;
     if chip.set_brown_out().await.is_err() {
         links.report(ArmingInhibit::Storing, false);
         return Err("the chip's option bytes did not take it");
@@ -451,7 +451,7 @@ async fn renew<const N: usize>(links: &Links, link: &Link<'_, N>, storage: &mut 
     let Some(record) = link.with(|shared| shared.common.signing.to_store(now)).flatten() else {
         return;
     };
-    if storing::hold_arming(links).await.is_err() {
+    if storing::inhibit_arming(links).await.is_err() {
         return;
     }
     let stored = storing::save_signing(links, storage, Some(record)).await;
@@ -474,7 +474,7 @@ fn give(links: &Links, at: Instant, requests: CommanderRequests) {
 /// Stores the server's parameters. Arming is refused meanwhile, and afterwards while they differ from those in force:
 /// the vehicle must fly with the values that a ground station reads.
 async fn store(links: &Links, storage: &mut impl Storage, params: &Params) -> Result<(), &'static str> {
-    storing::hold_arming(links).await.map_err(not_now)?;
+    storing::inhibit_arming(links).await.map_err(not_now)?;
     storing::save(links, storage, params)
         .await
         .map_err(|error| error.text())?;

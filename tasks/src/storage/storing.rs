@@ -43,7 +43,7 @@ pub fn stopped(links: &Links) -> Result<(), NotNow> {
 ///
 /// # Errors
 /// The reason against storing.
-pub async fn hold_arming(links: &Links) -> Result<(), NotNow> {
+pub async fn inhibit_arming(links: &Links) -> Result<(), NotNow> {
     stopped(links)?;
     // The inhibit has no owner: the line that finishes first would clear it for both.
     if links.hardware().contains(ArmingInhibit::Storing) {

@@ -72,5 +72,5 @@ fn recording(walk: &mut Walk<'_>, test: &StaticThrustTest) -> Result<Option<Moto
 
 fn heard(file: &Path, test: &StaticThrustTest) -> Result<MotorLag, String> {
     let track = rotor_sound::follow(&Sound::load(file)?)?;
-    motor_lag::fit(&track, f64::from(test.hold))
+    motor_lag::fit(&track, f64::from(test.plateau))
 }

@@ -4,7 +4,7 @@
 use std::ops::RangeInclusive;
 
 use sophie_control::params::Params;
-use sophie_control::pilot::static_thrust_test::HOLD;
+use sophie_control::pilot::static_thrust_test::PLATEAU;
 use sophie_fit::thrust::{self, SCATTER_MAX, ThrustFit, WORST_MAX};
 use sophie_fit::thrust_data::{GRAVITY, Reading};
 
@@ -93,7 +93,7 @@ fn battery(
                 break None;
             }
             *run += 1;
-            match tied::run(walk, rotor, percent, HOLD, *run)? {
+            match tied::run(walk, rotor, percent, PLATEAU, *run)? {
                 Ok(measured) => {
                     if let Some(reading) = read(walk, params, rotor, percent, &measured)? {
                         break Some(reading);

@@ -72,18 +72,18 @@ pub(super) fn number() -> u32 {
     (since.as_millis() / 100 % 8_000_000) as u32 + 1
 }
 
-/// Runs `rotor` (0 to 3), or all, at `percent` of full drive for `hold` s as run `number`; why it ended early, or what was
+/// Runs `rotor` (0 to 3), or all, at `percent` of full drive for `plateau` s as run `number`; why it ended early, or what was
 /// measured.
 pub(super) fn run(
     walk: &mut Walk<'_>,
     rotor: Option<usize>,
     percent: f64,
-    hold: f32,
+    plateau: f32,
     number: u32,
 ) -> Result<Result<Measured, String>, Stop> {
     let rotors = rotor.map_or(Rotors::All, Rotors::One);
     let test = StaticThrustTest {
-        hold,
+        plateau,
         ..StaticThrustTest::steady(rotors, (0.01 * percent) as f32)
     };
     run_test(walk, &test, number)
@@ -100,7 +100,7 @@ pub(super) fn run_test(
         Rotors::One(rotor) => (rotor + 1) as f32,
     };
     let step_to = 100.0 * test.step_to.unwrap_or_default();
-    let order = [turning, 100.0 * test.drive, step_to, test.hold, number as f32];
+    let order = [turning, 100.0 * test.drive, step_to, test.plateau, number as f32];
     let streams = [SYS_STATUS_DATA::ID, SOPHIE_ARMS_DATA::ID];
     walk.vehicle.stream(&streams, PERIOD_US)?;
     let ended = renewed(walk, &order, test);
@@ -120,7 +120,10 @@ fn renewed(
     order: &[f32],
     test: &StaticThrustTest,
 ) -> Result<Result<Measured, String>, Stop> {
-    let (length, counted) = ((1e3 * test.longest()) as u32, (1e3 * COUNTED * test.hold) as u32);
+    let (length, counted) = (
+        (1e3 * test.longest()) as u32,
+        (1e3 * COUNTED * test.plateau) as u32,
+    );
     let mut measured = Measured::default();
     let command = MavCmd::MAV_CMD_SOPHIE_STATIC_THRUST;
     if let Some(refused) = walk.order(command, order)? {

@@ -28,7 +28,7 @@ fn heard(scenario: &Scenario, seed: u64) -> Result<MotorLag, String> {
     let test = StaticThrustTest::train(Rotors::One(0), 0.3, 0.6);
     let phone = phone::beside(scenario, &test, 1.7, 15.0, Streams::new(seed));
     let track = rotor_sound::follow(&Sound::of_wav(&phone.wav())?)?;
-    motor_lag::fit(&track, f64::from(test.hold))
+    motor_lag::fit(&track, f64::from(test.plateau))
 }
 
 /// Errors of the rise over the truth: RMS below that of an even spread of 13 %; 95 % intervals hold the truth in nine of

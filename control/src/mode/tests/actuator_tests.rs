@@ -17,7 +17,7 @@ use crate::pilot::actuator_test::{
     SPIN_DRIVE, SPIN_DRIVE_MAX, SPIN_TIME, Spin,
 };
 use crate::pilot::rc::{ArmChoice, Sticks};
-use crate::pilot::static_thrust_test::{HOLD, RAMP, Rotors, StaticThrustTest};
+use crate::pilot::static_thrust_test::{PLATEAU, RAMP, Rotors, StaticThrustTest};
 
 const SPIN: ActuatorTest = ActuatorTest::Spin(Spin::at(2, SPIN_DRIVE));
 const PLACE: ActuatorTest = ActuatorTest::Place(Place {
@@ -280,7 +280,7 @@ fn a_static_thrust_test_rises_to_its_drive_holds_it_and_ends() {
         (r.out.actuator_test.state, r.out.rotors),
         (ActuatorTestState::Done, Setpoint::Stop)
     );
-    assert!((held as f32 * DT - HOLD).abs() < 0.05, "{held} steps");
+    assert!((held as f32 * DT - PLATEAU).abs() < 0.05, "{held} steps");
 }
 
 #[test]
@@ -445,7 +445,7 @@ fn order() -> impl Strategy<Value = ActuatorTest> {
         prop::option::weighted(0.3, 0.0f32..1.2),
         0.0f32..12.0,
     )
-        .prop_map(|(rotor, drive, step_to, hold)| {
+        .prop_map(|(rotor, drive, step_to, plateau)| {
             let rotors = if rotor == 5 {
                 Rotors::All
             } else {
@@ -455,7 +455,7 @@ fn order() -> impl Strategy<Value = ActuatorTest> {
                 rotors,
                 drive,
                 step_to,
-                hold,
+                plateau,
             })
         });
     let words = prop_oneof![

@@ -5,7 +5,7 @@ use sophie_control::pilot::actuator_test::{
     Spin,
 };
 use sophie_control::pilot::remote::{RemoteOrder, RemoteRefusal, RemoteRequest};
-use sophie_control::pilot::static_thrust_test::{HOLD, Rotors, STEP_HOLD, StaticThrustTest};
+use sophie_control::pilot::static_thrust_test::{PLATEAU, Rotors, STEP_PLATEAU, StaticThrustTest};
 
 use sophie_control::calibration::procedure::Procedure;
 
@@ -215,12 +215,12 @@ impl Services {
             return self.renew(received, run);
         }
         let step_to = Some(or_zero(other)).filter(|other| *other != 0.0);
-        let default = if step_to.is_some() { STEP_HOLD } else { HOLD };
+        let default = if step_to.is_some() { STEP_PLATEAU } else { PLATEAU };
         let test = StaticThrustTest {
             rotors,
             drive: percent / 100.0,
             step_to: step_to.map(|percent| percent / 100.0),
-            hold: if seconds > 0.0 { seconds } else { default },
+            plateau: if seconds > 0.0 { seconds } else { default },
         };
         if !test.is_allowed() {
             return Some(self.deny(ActuatorTestRefusal::OutOfRange.text()));

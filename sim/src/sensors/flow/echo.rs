@@ -3,11 +3,11 @@
 //! Of a patch of diffuse reflectivity ρ at r, met at the incidence i, the sensor collects ρ cos i / r². Sunlight that the
 //! same patches scatter adds shot noise, so that the least signal grows with the root of 1 + ρ L / L₀, and the reach is
 //!
-//! r_max = 2.5 m · √(ρ cos i / 0.9) · (1 + ρ L / (0.9 L₀))^-1/4.
+//! r_max = R · √(ρ cos i / 0.9) · (1 + ρ L / (0.9 L₀))^-1/4.
 //!
 //! | | | source |
 //! |---|---|---|
-//! | reach in the dark, ρ 0.9 | 2.5 m | the maker's table of the MTF-02: 90 %, 600 lux (2.4 m here) |
+//! | reach R in the dark, ρ 0.9 | 2.5 m, or 8 m | the makers' tables of the MTF-02 and the MTF-01: 90 %, 600 lux (2.4 m here) |
 //! | L₀ | 3,900 lux | 1.1 m at 100,000 lux: 1.0 to 1.2 m in the sun (INAV, issues 10487 and 7622) |
 //! | share of returns | 1 at 0.9 of the reach, 0 at 1.1 | assumed |
 //! | gloss | beyond 12° of incidence its share follows the mirrored ray | 10 to 15° (assumed); glossy black reads 1 to 10 m at centimetres |
@@ -21,8 +21,7 @@ use super::optics::Optics;
 use super::range_beam::HALF_BEAM;
 use crate::plant::contact::Pipe;
 
-/// Reach in the dark, m, and the reflectivity that it is stated for.
-const REACH_DARK: f64 = 2.5;
+/// Reflectivity that the reach is stated for.
 const REACH_REFLECTIVITY: f64 = 0.9;
 /// Light at which the sun's shot noise equals the sensor's own, lux.
 const HALF_LIGHT: f64 = 3.9e3;
@@ -38,15 +37,15 @@ const FADES: (f64, f64) = (0.9, 1.1);
 pub struct Echo {
     /// Range, m.
     pub range: f64,
-    /// Range over the reach for such a signal in this light.
-    pub of_reach: f64,
+    /// Over a white surface in the dark, the range that has as strong a signal over the noise, m.
+    pub as_white: f64,
 }
 
 impl Echo {
-    /// Probability that the sensor has a return.
+    /// Probability that a sensor that reaches `reach` m over a white surface in the dark has a return.
     #[must_use]
-    pub fn probability(&self) -> f64 {
-        ((FADES.1 - self.of_reach) / (FADES.1 - FADES.0)).clamp(0.0, 1.0)
+    pub fn probability(&self, reach: f64) -> f64 {
+        ((FADES.1 - self.as_white / reach) / (FADES.1 - FADES.0)).clamp(0.0, 1.0)
     }
 }
 
@@ -99,7 +98,6 @@ pub fn of(pipe: &Pipe, optics: &Optics, (from, attitude): (DVec3, DQuat), mixed:
         return None;
     }
     let noise = (1.0 + ambient / rays / (REACH_REFLECTIVITY * HALF_LIGHT)).sqrt();
-    let least = REACH_REFLECTIVITY / (REACH_DARK * REACH_DARK) * noise;
     let range = if mixed {
         returns.iter().map(|r| r.range * r.signal).sum::<f64>() / signal
     } else {
@@ -107,7 +105,7 @@ pub fn of(pipe: &Pipe, optics: &Optics, (from, attitude): (DVec3, DQuat), mixed:
     };
     Some(Echo {
         range,
-        of_reach: (least / (signal / rays)).sqrt(),
+        as_white: (REACH_REFLECTIVITY * noise * rays / signal).sqrt(),
     })
 }
 
@@ -152,6 +150,7 @@ fn median(returns: &mut [Return], half: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::plant::contact::PipeShape;
+    use crate::sensors::flow::REACH;
     use crate::sensors::flow::optics::Look;
 
     const PIPE: Pipe = Pipe {
@@ -189,7 +188,7 @@ mod tests {
             ..Optics::default()
         };
         let mut height = 0.1;
-        while seen(3.0, height, &optics, false).unwrap().probability() > 0.5 {
+        while seen(3.0, height, &optics, false).unwrap().probability(REACH) > 0.5 {
             height += 0.01;
         }
         height
@@ -242,7 +241,7 @@ mod tests {
         assert_eq!(seen(0.075, 2.3, &glossy, true), None);
         let crown = seen(0.0, 3.0, &glossy, true).unwrap();
         assert!(
-            (crown.range - 1.0).abs() < 0.01 && crown.of_reach < 1.0,
+            (crown.range - 1.0).abs() < 0.01 && crown.as_white < REACH,
             "{crown:?}"
         );
         // Met at 45 to 70 degrees it falls to the ground farther off.
