@@ -18,4 +18,5 @@ pub(crate) mod pose_noise;
 pub mod position_estimator;
 pub mod range_hit;
 pub(crate) mod range_scale;
+pub(crate) mod texture;
 pub(crate) mod vertical_fallback;

@@ -5,6 +5,7 @@ use super::frozen_range::Frozen;
 use super::history::StateSnapshot;
 use super::pipe_footprint::{Depth, PipeFootprint};
 use super::range_scale::{Below, RangeScale};
+use super::texture::Texture;
 use crate::maths::elapsed::seconds;
 use crate::maths::frames::about_down;
 use crate::maths::scalar;
@@ -53,6 +54,8 @@ const LEFT_BEHIND: (f32, u64) = (2.0, 20_000_000);
 const WIDE: f32 = 1.2;
 /// Range below which flow is not judged, m: there the noise of the estimated velocity is as large as a slow turn.
 const JUDGED: f32 = 0.45;
+/// Relative uncertainty of the scene's distance by its textures up to which flow is judged: half a scale that is borne.
+const KNOWN_MIX: f32 = 0.15;
 /// Time after a range step for which flow is not judged, µs: three time constants of the high-pass in `Agreement`.
 const UNSURE_TIME: u64 = 600_000;
 
@@ -185,6 +188,8 @@ pub struct FlowRangeFusion {
     same_flows: u32,
     angle: [f32; 2],
     agreements: [Agreement; 2],
+    /// Which of pipe and ground the flow follows while it sees both.
+    texture: Texture,
     /// Last time at which the depth was uncertain, µs.
     unsure_us: u64,
     disagrees: bool,
@@ -453,15 +458,17 @@ impl FlowRangeFusion {
         let near = far(self.surface_z);
         let surface_point = to.position + beam(to.q, near, yaw_offset);
         let seen = match self.band {
-            Some(band) => band.depth(to.position, surface_point, far(self.base)),
+            Some(band) => band.depth(to.position, surface_point, far(self.base), self.texture.weight()),
             None => Depth {
                 distance: near,
+                by_weight: 0.0,
                 doubt: 0.0,
                 lean: Vec3::ZERO,
             },
         };
         Depth {
             distance: CALIBRATED * seen.distance,
+            by_weight: seen.by_weight / CALIBRATED,
             ..seen
         }
     }
@@ -485,6 +492,7 @@ impl FlowRangeFusion {
         }
         let Depth {
             distance: depth,
+            by_weight,
             doubt,
             lean,
         } = self.depth(to, cos, yaw_offset);
@@ -508,7 +516,15 @@ impl FlowRangeFusion {
         if self.agreed > 0 || self.flank > 0 || distance < JUDGED {
             self.unsure_us = flow.until_us;
         }
-        let sure = flow.until_us.saturating_sub(self.unsure_us) > UNSURE_TIME;
+        // Relative uncertainty by the textures: before it is known which of them the flow follows, no scale is judged.
+        let mixed = (by_weight * depth).abs() * self.texture.deviation();
+        let sure = flow.until_us.saturating_sub(self.unsure_us) > UNSURE_TIME && mixed < KNOWN_MIX;
+        self.texture.update(
+            [roll - predicted[0], pitch - predicted[1]],
+            [-displacement.y * by_weight, displacement.x * by_weight],
+            FLOW_NOISE,
+            flow.seconds,
+        );
         let mut disagrees = false;
         for ((agreement, measured), predicted) in pairs {
             let (measured, predicted) = (measured * per, predicted * per);
@@ -526,7 +542,7 @@ impl FlowRangeFusion {
         );
         let off = about_down(to.q.rotate(seen - displacement), yaw_offset) * per;
         let speed = FLOW_NOISE * depth * per;
-        let scale = (SCALE_NOISE + doubt) * (seen.x.abs() + seen.y.abs()) * per;
+        let scale = (SCALE_NOISE + doubt + mixed) * (seen.x.abs() + seen.y.abs()) * per;
         Some(Seen {
             off: [off.x, off.y],
             variance: speed * speed + scale * scale,

@@ -22,8 +22,10 @@ const AHEAD: f32 = 2.0;
 /// Effective distance of the flow's scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Depth {
-    /// Harmonic mean of the distance, m.
+    /// Harmonic mean of the distance, weighted by texture, m.
     pub distance: f32,
+    /// Change of its inverse for a [weight](crate::navigation::texture::Texture) of the pipe of one more, 1/m.
+    pub by_weight: f32,
     /// Relative uncertainty of it by the place of the footprint.
     pub doubt: f32,
     /// Horizontal offset of the near part within the view, in the estimate's axes, 1: as that part comes nearer it
@@ -146,26 +148,27 @@ impl PipeFootprint {
     }
 
     /// Scene of the view from `place` with its centre at `surface_point`: rays across the round band, and the ground
-    /// beside it, `far` m away.
-    pub fn depth(&self, place: Vec3, surface_point: Vec3, far: f32) -> Depth {
+    /// beside it, `far` m away. The band's texture has this `weight`, 0 to 1, the ground's the rest.
+    pub fn depth(&self, place: Vec3, surface_point: Vec3, far: f32, weight: f32) -> Depth {
         let side = self.side(place);
         let slope = (surface_point - place).dot(self.across)
             / scalar::clamp(surface_point.z - place.z, NEAREST, 100.0);
         let near = scalar::clamp(self.top - place.z, NEAREST, far);
-        let of = |side: f32| self.seen_from(side, slope, near, far);
-        let ((mean, moment), (left, _), (right, _)) = (of(side), of(side - PLACE), of(side + PLACE));
+        let of = |side: f32| self.seen_from(side, slope, near, far).weighted(weight);
+        let ([mean, moment, by_weight], [left, ..], [right, ..]) =
+            (of(side), of(side - PLACE), of(side + PLACE));
         Depth {
             distance: 1.0 / mean,
+            by_weight,
             doubt: (left - mean).abs().max((right - mean).abs()) / mean,
             lean: self.across * (moment / mean),
         }
     }
 
-    /// Mean of 1/distance, 1/m, and its moment about the centre of the view, for a view that is `side` m beside the
-    /// centre line, `near` m over the top, and tilted by `slope`.
-    fn seen_from(&self, side: f32, slope: f32, near: f32, far: f32) -> (f32, f32) {
+    /// Rays of a view that is `side` m beside the centre line, `near` m over the top, and tilted by `slope`.
+    fn seen_from(&self, side: f32, slope: f32, near: f32, far: f32) -> Rays {
         let deep = near + self.radius;
-        let (mut sum, mut moment) = (0.0, 0.0);
+        let mut rays = Rays::default();
         for ray in 0..RAYS {
             let off = VIEW * ((ray as f32 + 0.5) / RAYS as f32 - 0.5);
             let t = slope + off;
@@ -173,12 +176,41 @@ impl PipeFootprint {
             let (a, b) = (1.0 + t * t, deep - side * t);
             let square = b * b - a * (side * side + deep * deep - self.radius * self.radius);
             let root = square * scalar::inv_sqrt(square);
-            let z = if square >= 0.0 { (b - root) / a } else { far };
+            let (of, z) = if square >= 0.0 {
+                (&mut rays.pipe, (b - root) / a)
+            } else {
+                (&mut rays.ground, far)
+            };
             let per = 1.0 / scalar::clamp(z, NEAREST, far);
-            sum += per;
-            moment += off * per;
+            let [count, sum, moment] = of;
+            *count += 1.0;
+            *sum += per;
+            *moment += off * per;
         }
-        (sum / RAYS as f32, moment / RAYS as f32)
+        rays
+    }
+}
+
+/// Rays that meet the pipe and the ground: their number, the sum of 1/distance, 1/m, and its moment about the centre of the
+/// view.
+#[derive(Clone, Copy, Debug, Default)]
+struct Rays {
+    pipe: [f32; 3],
+    ground: [f32; 3],
+}
+
+impl Rays {
+    /// Mean of 1/distance with this `weight` of the pipe, its moment, and its derivative by the weight.
+    fn weighted(&self, weight: f32) -> [f32; 3] {
+        let ([p, pipe, right], [g, ground, left]) = (self.pipe, self.ground);
+        let rest = 1.0 - weight;
+        let per = 1.0 / (weight * p + rest * g);
+        let mean = (weight * pipe + rest * ground) * per;
+        [
+            mean,
+            (weight * right + rest * left) * per,
+            (pipe - ground - mean * (p - g)) * per,
+        ]
     }
 }
 
@@ -207,7 +239,7 @@ mod tests {
     fn the_view_is_as_near_as_what_fills_it() {
         // Its middle is at 1 m, the ground 1.9 m below the vehicle.
         let seen =
-            |y: f32, z: f32, slope: f32| band().depth(Vec3::new(0.0, y, z), surface_point(y - slope * z), -z);
+            |y: f32, z: f32, slope: f32| band().depth(Vec3::new(0.0, y, z), surface_point(y - slope * z), -z, 0.5);
         let depth = |y: f32, z: f32, slope: f32| seen(y, z, slope).distance;
         // From 0.4 m its tangents, 15.8° to each side, are 74 % of the view; from 0.7 m 47 %.
         let over = depth(1.0, -1.9, 0.0);
@@ -231,6 +263,13 @@ mod tests {
             doubt(1.0),
             doubt(1.2)
         );
+        // By the texture: between the pipe, the ground, and the mean of both; without the other surface it says nothing.
+        let by = |weight: f32| band().depth(Vec3::new(0.0, 1.0, -1.9), surface_point(1.0), 1.9, weight);
+        let [painted, rusty] = [0.02, 0.98].map(|weight| by(weight).distance);
+        assert!(painted > 1.5 && (0.4..0.45).contains(&rusty), "{painted} {rusty}");
+        let slope = (1.0 / by(0.51).distance - 1.0 / by(0.49).distance) / 0.02;
+        assert!((by(0.5).by_weight - slope).abs() < 1e-2 * slope, "{slope}");
+        assert!(seen(1.8, -1.9, 0.0).by_weight.abs() < 1e-6);
         // From the right of it what is near lies to the left; above its middle, and beyond the view, on neither side.
         let lean = |y: f32| seen(y, -1.9, 0.0).lean.y;
         assert!(
