@@ -18,5 +18,6 @@ pub(crate) mod pose_noise;
 pub mod position_estimator;
 pub mod range_hit;
 pub(crate) mod range_scale;
+pub(crate) mod surface_step;
 pub(crate) mod texture;
 pub(crate) mod vertical_fallback;

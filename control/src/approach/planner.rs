@@ -117,6 +117,8 @@ pub struct ApproachPlanner {
     /// Heights of the steps onto the pipe and off it at the first crossing, m: infinite until then, and if the surface
     /// beside it was out of reach.
     steps: [f32; 2],
+    /// The last step off the pipe is the one of the first crossing.
+    first_off: bool,
     /// Longest range so far, m.
     farthest: f32,
     other: Option<Other>,
@@ -172,6 +174,7 @@ impl ApproachPlanner {
             edges: Edges::default(),
             seen: v.range_hit.count,
             steps: [f32::INFINITY; 2],
+            first_off: false,
             farthest: 0.0,
             other: None,
             middle: Vec3::ZERO,
@@ -324,10 +327,18 @@ impl ApproachPlanner {
         }
         let before = self.edges.surface_depth();
         let edge = self.take_range(v).filter(|_| !self.has_target);
+        if let (Some(Edge::Off(_)), true, true) = (edge, self.edges.continues(), self.first_off) {
+            let [_, off] = &mut self.steps;
+            *off = self.edges.height().unwrap_or(f32::INFINITY);
+        }
+        self.first_off &= edge.is_none() || self.edges.continues();
         let at = self.local(v.position);
         if let Some(edge) = edge {
             self.other = self.other.filter(|other| !self.at_known(other.from));
-            let found = self.compare(edge, at).err().filter(|_| !self.climbs() && asks);
+            // A step onto something is compared as it begins: with a jump of the range just before it would be too high.
+            let again = self.edges.continues() && matches!(edge, Edge::Onto(_));
+            let judged = asks && !self.climbs() && !again;
+            let found = self.compare(edge, at).err().filter(|_| judged);
             let found = found.map(|doubt| Other {
                 doubt,
                 from: before,
@@ -472,6 +483,7 @@ impl ApproachPlanner {
                 (self.half, self.crown_z) = (0.5 * width, self.edges.top());
                 let [onto, off] = &mut self.steps;
                 if onto.is_finite() && off.is_infinite() {
+                    self.first_off = true;
                     *off = self.edges.height().unwrap_or(f32::INFINITY);
                 }
                 Some(0.5 * (at.y + from))

@@ -5,6 +5,7 @@ use super::frozen_range::Frozen;
 use super::history::StateSnapshot;
 use super::pipe_footprint::{Depth, PipeFootprint};
 use super::range_scale::{Below, RangeScale};
+use super::surface_step::SurfaceStep;
 use super::texture::Texture;
 use crate::maths::elapsed::seconds;
 use crate::maths::frames::about_down;
@@ -29,9 +30,8 @@ const SCALE_NOISE: f32 = 0.05;
 const RANGE_NOISE: f32 = 0.02;
 /// Age beyond which a range is not the present height, µs.
 const RANGE_AGE: u64 = 300_000;
-/// Departure of a range from the height that is a step of the surface, m, and the ranges in a row that agree on it.
+/// Departure of a range from the height that is a step of the surface, m.
 const STEP: f32 = 0.12;
-const STEP_RANGES: u32 = 3;
 /// Ranges that differ by less belong to the same surface, m.
 const SAME: f32 = 0.08;
 /// Share by which the height of a narrow object follows each range while its flank alone was seen.
@@ -169,9 +169,8 @@ pub struct FlowRangeFusion {
     surface_z: f32,
     base: f32,
     other: f32,
-    /// Candidate step, m, and the ranges that agree on it.
-    step: f32,
-    agreed: u32,
+    /// A step that has begun.
+    step: SurfaceStep,
     /// Excess of steps over [`STEPS_RATE`], time of the last step, and end of the range's rejection, µs.
     steps: f32,
     stepped_us: u64,
@@ -290,7 +289,7 @@ impl FlowRangeFusion {
         (self.surface_z, self.base, self.other) = (0.0, 0.0, 0.0);
         // Steps, flank and places of the axes before are dropped: a surface that is not known to be wide is at the
         // present hit.
-        (self.agreed, self.step, self.flank) = (0, 0.0, 0);
+        (self.step, self.flank) = (SurfaceStep::default(), 0);
         self.band = None;
         let height = distance * cos + q.rotate(self.lens).z;
         let below = Vec3::new(0.0, 0.0, -height) + q.rotate(self.lens) + beam(q, distance, 0.0);
@@ -349,7 +348,7 @@ impl FlowRangeFusion {
         }
         let flank = raised && off < 0.0 && below.is_flank(-off);
         if off.abs() <= STEP || flank {
-            (self.agreed, self.surface_point) = (0, surface_point);
+            (self.step, self.surface_point) = (SurfaceStep::default(), surface_point);
             // Point at which the beam passes the band's height: the ground is met farther off.
             let at = |top: f32| then.position + beam(then.q, (top - then.position.z) / cos, yaw_offset);
             self.band = self.band.map(|band| band.bounded(at(band.top), raised));
@@ -381,9 +380,12 @@ impl FlowRangeFusion {
             self.update_scale(distance * cos - drop, then.q, below);
             return Some((off, RANGE_NOISE * RANGE_NOISE + doubt * doubt));
         }
-        self.agreed = if (off - self.step).abs() <= SAME {
-            self.agreed + 1
-        } else {
+        let near = (distance * cos).min(self.surface_z - then.position.z);
+        let known = [self.base, self.other]
+            .into_iter()
+            .any(|z| (z - surface).abs() <= SAME);
+        let over = self.step.take(surface_point, near, known);
+        if self.step.departs() {
             // The edge is at the higher surface's hit: a tilted beam meets the ground a hand's breadth beside the
             // edge.
             self.stepped_at = if off > 0.0 {
@@ -391,10 +393,8 @@ impl FlowRangeFusion {
             } else {
                 self.surface_point
             };
-            1
-        };
-        self.step = off;
-        if self.agreed >= STEP_RANGES {
+        }
+        if over {
             let (before, onto) = (self.surface_z, off > 0.0);
             let known = self.change_surface(surface, then.at_us);
             let fell = self.scale.begun() && self.surface_z - before > 2.0 * self.radius;
@@ -421,7 +421,7 @@ impl FlowRangeFusion {
 
     /// Switches to another surface; true if it is a known one.
     fn change_surface(&mut self, surface: f32, now: u64) -> bool {
-        self.agreed = 0;
+        self.step = SurfaceStep::default();
         // A known surface is used again.
         let known = [self.base, self.other];
         let again = known.iter().find(|z| (**z - surface).abs() <= STEP);
@@ -487,7 +487,10 @@ impl FlowRangeFusion {
         let (at, distance) = self.range.filter(|_| !self.range_faulty())?;
         let (least, most) = FLOW_HEIGHT;
         let fresh = flow.until_us.abs_diff(at) <= RANGE_AGE;
-        if !fresh || cos < COS_MIN || flow.quality < QUALITY_MIN || !(least..=most).contains(&distance) {
+        // Over an edge that is not known yet the scene is as far as either surface.
+        let unknown = self.step.begun() && self.band.is_none();
+        let dark = cos < COS_MIN || flow.quality < QUALITY_MIN;
+        if !fresh || dark || unknown || !(least..=most).contains(&distance) {
             return None;
         }
         let Depth {
@@ -513,7 +516,7 @@ impl FlowRangeFusion {
         ];
         let per = 1.0 / flow.seconds;
         let pairs = self.agreements.iter_mut().zip(angle).zip(predicted);
-        if self.agreed > 0 || self.flank > 0 || distance < JUDGED {
+        if self.step.begun() || self.flank > 0 || distance < JUDGED {
             self.unsure_us = flow.until_us;
         }
         // Relative uncertainty by the textures: before it is known which of them the flow follows, no scale is judged.
@@ -587,7 +590,8 @@ mod tests {
             ..StateSnapshot::default()
         };
         for (y, distance) in [(0.5, 1.9), (0.7, 0.4)] {
-            for _ in 0..5 {
+            for i in 0..5u8 {
+                let y = y + 0.015 * f32::from(i);
                 let _ = flow_range.height((&at(0, y - 0.02), &at(0, y)), distance, false, 0.0);
             }
         }
@@ -600,10 +604,7 @@ mod tests {
             quality: 100,
         };
         assert_eq!(flow_range.begin(&flow, Quat::IDENTITY), Some(1.0));
-        assert_eq!(
-            (flow_range.flank, flow_range.agreed, flow_range.step),
-            (0, 0, 0.0)
-        );
+        assert_eq!((flow_range.flank, flow_range.step), (0, SurfaceStep::default()));
         assert!(
             flow_range.surface_point.norm() < 1e-6,
             "{:?}",

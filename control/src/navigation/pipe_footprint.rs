@@ -238,8 +238,9 @@ mod tests {
     #[test]
     fn the_view_is_as_near_as_what_fills_it() {
         // Its middle is at 1 m, the ground 1.9 m below the vehicle.
-        let seen =
-            |y: f32, z: f32, slope: f32| band().depth(Vec3::new(0.0, y, z), surface_point(y - slope * z), -z, 0.5);
+        let seen = |y: f32, z: f32, slope: f32| {
+            band().depth(Vec3::new(0.0, y, z), surface_point(y - slope * z), -z, 0.5)
+        };
         let depth = |y: f32, z: f32, slope: f32| seen(y, z, slope).distance;
         // From 0.4 m its tangents, 15.8° to each side, are 74 % of the view; from 0.7 m 47 %.
         let over = depth(1.0, -1.9, 0.0);

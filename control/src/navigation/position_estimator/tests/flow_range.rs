@@ -284,7 +284,8 @@ fn the_ground_is_the_surface_to_which_the_beam_returns() {
         ..StateSnapshot::default()
     };
     let look = |flow_range: &mut FlowRangeFusion, y: f32, distance: f32| {
-        for _ in 0..5 {
+        for i in 0..5u8 {
+            let y = y + 0.015 * f32::from(i);
             let _ = flow_range.height((&at(0, y - 0.02), &at(0, y)), distance, false, 0.0);
         }
     };
@@ -354,7 +355,8 @@ fn a_pipe_is_left_behind_by_way_and_by_time() {
             ..StateSnapshot::default()
         };
         let look = |flow_range: &mut FlowRangeFusion, us: u64, (x, y): (f32, f32), distance: f32| {
-            for _ in 0..5 {
+            for i in 0..5u8 {
+                let y = y + 0.015 * f32::from(i);
                 let _ = flow_range.height((&at(us, x, y - 0.02), &at(us, x, y)), distance, false, 0.0);
             }
         };
