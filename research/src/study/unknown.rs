@@ -120,6 +120,9 @@ impl Request {
         let text = self.scenario_text(seed, &drawn);
         let mut scenario = Scenario::parse(&text, &format!("vehicle {seed}"), &Overrides::default())
             .map_err(|error| error.to_string())?;
+        if self.known == Known::Exact {
+            scenario.tell_all();
+        }
         if self.judge == Rule::Holding {
             for step in &mut scenario.steps {
                 if let Step::Hold { lapse, .. } = step {

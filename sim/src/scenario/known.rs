@@ -109,6 +109,16 @@ fn learn(scenario: &mut Scenario, quantity: &Quantity, calibration: Option<&Cali
 }
 
 impl Scenario {
+    /// Sets the parameters to every truth that a calibration could find, without its error: beside what `exact` knows of a
+    /// vehicle the arms' mean stiffness, the tendons' slack, the pressure sensors and the pipe.
+    pub fn tell_all(&mut self) {
+        for quantity in QUANTITIES {
+            if quantity.exact || quantity.calibration.is_some() {
+                learn(self, quantity, None);
+            }
+        }
+    }
+
     /// The scenario with the vehicle and the pipe that the parameters assume: what a builder can check before the first
     /// flight. Where they assume nothing, the vehicle has the middle of the builders' spread of an effect that this scenario
     /// has, as the literature gives it, and all else is nominal.

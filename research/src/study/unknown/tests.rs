@@ -46,6 +46,24 @@ impl Drop for Temp {
 }
 
 #[test]
+fn what_is_known_exactly_are_pipe_and_pressure_sensors_too() {
+    let exact = Request {
+        known: Known::Exact,
+        ..REQUEST
+    };
+    let (s, _) = exact.draw(7).unwrap();
+    let told = [s.params.pipe_diameter, s.params.pipe_friction, s.params.mass].map(f64::from);
+    let true_ones = [s.world.pipe_diameter, s.world.pipe_friction, s.vehicle.body.mass];
+    for (told, truth) in told.into_iter().zip(true_ones) {
+        assert!((told / truth - 1.0).abs() < 1e-5, "{told} {truth}");
+    }
+    let nominal = Scenario::default_mission();
+    assert!(s.world.pipe_friction != nominal.world.pipe_friction);
+    let gains = s.differences().into_iter().filter(|d| d.key.starts_with("faults.pressure_gain"));
+    assert_eq!(gains.count(), 0, "trims as the gains are");
+}
+
+#[test]
 fn a_seed_is_one_vehicle_and_seeds_differ() {
     let drawn = |seed| REQUEST.draw(seed).unwrap().1;
     assert_eq!(drawn(7), drawn(7));
