@@ -32,6 +32,8 @@ pub const HIGH: f32 = 0.6;
 pub const LOW: f32 = 0.4;
 /// Climb after a range misfit, m: with a scale of 1.6 it is still [`HIGH`].
 pub const CLEAR: f32 = 1.0;
+/// Height over the ground to which it climbs at most, m: flow is used up to 2.5 m.
+pub const CEILING: f32 = 2.3;
 /// Climb without a known crown, m.
 pub const RISE: f32 = 0.4;
 /// Largest speed of a climb between attempts, and of the descent, m/s.

@@ -240,10 +240,10 @@ impl ApproachPlanner {
         self.committed().then_some(position)
     }
 
-    /// A climb after a misleading range, to leave the pipe.
-    pub fn cleared(p: &Params, v: &View, heading: f32, reset_count: u8) -> Self {
+    /// A climb after a misleading range, to leave the pipe: no higher than flow sees the ground.
+    pub fn cleared(&self, p: &Params, v: &View, heading: f32, reset_count: u8) -> Self {
         Self {
-            up: -CLEAR,
+            up: -clamp(CEILING - self.farthest, 0.0, CLEAR),
             ..Self::again(p, v, heading, reset_count, true)
         }
     }
@@ -334,7 +334,9 @@ impl ApproachPlanner {
         self.first_off &= edge.is_none() || self.edges.continues();
         let at = self.local(v.position);
         if let Some(edge) = edge {
-            self.other = self.other.filter(|other| !self.at_known(other.from));
+            // What began as too low a step may have been a part of it.
+            let whole = self.edges.continues() && self.compare(edge, at).is_ok();
+            self.other = self.other.filter(|other| !whole && !self.at_known(other.from));
             // A step onto something is compared as it begins: with a jump of the range just before it would be too high.
             let again = self.edges.continues() && matches!(edge, Edge::Onto(_));
             let judged = asks && !self.climbs() && !again;
@@ -406,7 +408,7 @@ impl ApproachPlanner {
             .map_or(0.0, |point| point.z - v.position.z);
         self.farthest = self.farthest.max(range);
         match v.range_hit.surface_point {
-            Some(point) => self.edges.step(self.local(point)),
+            Some(point) => self.edges.step(self.local(point), range),
             // No target in reach: farther than every surface.
             None => self.edges.step_beyond(self.local(v.position)),
         }

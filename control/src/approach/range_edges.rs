@@ -6,9 +6,10 @@ use crate::maths::vector::Vec3;
 const STEP: f32 = 0.12;
 /// Share by which the surface depth follows each range of the same surface.
 const FOLLOW: f32 = 0.5;
-/// Way within which a further step to the same side belongs to the one before, m: a beam of 6° that mixes pipe and ground
-/// reads something between them over 4 to 6 cm.
-const PASSING: f32 = 0.06;
+/// Way within which a further step to the same side belongs to the one before: a beam of 6° that mixes pipe and ground
+/// reads something between them over its width, in parts of the range to the nearer, and two ranges' way, m.
+const BEAM: f32 = 0.105;
+const PASSING: f32 = 0.02;
 /// Depth used for a range with no target in reach, m.
 const BEYOND: f32 = 50.0;
 
@@ -22,14 +23,15 @@ pub enum Edge {
 }
 
 impl Edge {
-    /// The beam still passes this edge where it has stepped by `step` to `hit`.
-    fn is_passed_at(&self, step: &Self, hit: Vec3) -> bool {
+    /// A beam that is `near` m long down to the nearer surface still passes this edge where it has stepped by `step` to `hit`.
+    fn is_passed_at(&self, step: &Self, hit: Vec3, near: f32) -> bool {
         let at = match (self, step) {
             (Self::Onto(at), Self::Onto(_)) | (Self::Off(at), Self::Off(_)) => *at,
             _ => return false,
         };
         let way = Vec3::new(hit.x - at.x, hit.y - at.y, 0.0);
-        way.norm_squared() < PASSING * PASSING
+        let passing = BEAM * near + PASSING;
+        way.norm_squared() < passing * passing
     }
 }
 
@@ -51,8 +53,8 @@ pub struct Edges {
 }
 
 impl Edges {
-    /// Takes the next hit of the beam. A step that goes on while the beam passes is returned again.
-    pub fn step(&mut self, surface_point: Vec3) -> Option<Edge> {
+    /// Takes the next hit of the beam, `range` m below the vehicle. A step that goes on while the beam passes is returned again.
+    pub fn step(&mut self, surface_point: Vec3, range: f32) -> Option<Edge> {
         let Some(surface_depth) = self.surface_depth else {
             (self.surface_depth, self.top, self.last) =
                 (Some(surface_point.z), surface_point.z, surface_point);
@@ -77,7 +79,7 @@ impl Edges {
         };
         let passing = self
             .step
-            .filter(|before| before.is_passed_at(&step, surface_point));
+            .filter(|before| before.is_passed_at(&step, surface_point, range - off.max(0.0)));
         self.continues = passing.is_some();
         if !self.continues {
             (self.step, self.before) = (Some(step), surface_depth);
@@ -97,7 +99,7 @@ impl Edges {
 
     /// Takes a range with no target in reach, of a vehicle at `place`.
     pub fn step_beyond(&mut self, place: Vec3) -> Option<Edge> {
-        self.step(Vec3::new(place.x, place.y, BEYOND))
+        self.step(Vec3::new(place.x, place.y, BEYOND), BEYOND - place.z)
     }
 
     /// Depth of the present surface, m.
@@ -129,7 +131,7 @@ mod tests {
             let y = 0.01 * f32::from(step);
             let on = (0.3..0.6).contains(&(y + 0.04));
             let (z, surface_point) = if on { (0.4, y + 0.04) } else { (1.9, y + 0.19) };
-            match edges.step(Vec3::new(0.0, surface_point, z)) {
+            match edges.step(Vec3::new(0.0, surface_point, z), z) {
                 Some(Edge::Onto(at)) => found[0] = Some(at.y),
                 Some(Edge::Off(at)) => found[1] = Some(at.y),
                 None => (),

@@ -89,6 +89,12 @@ impl Axis {
         self.bias
     }
 
+    /// Variance of the position, m².
+    pub fn position_variance(&self) -> f32 {
+        let [pp, ..] = self.with_position;
+        pp
+    }
+
     /// The velocity's deviation is below `deviation` m/s.
     pub fn speed_within(&self, deviation: f32) -> bool {
         let [vv, ..] = self.rest;

@@ -30,6 +30,16 @@ const SCALE_NOISE: f32 = 0.05;
 const RANGE_NOISE: f32 = 0.02;
 /// Age beyond which a range is not the present height, µs.
 const RANGE_AGE: u64 = 300_000;
+/// Deviations from the height beyond which a range beside an edge is a mixture of both surfaces; over the ground one that is too
+/// near, which a mixture always is.
+const GATE: f32 = 3.0;
+const NEAR_GATE: f32 = 1.5;
+/// Mixtures in a row, half a second at 50 Hz: an edge of 6 cm passes at 0.12 m/s.
+const MIXTURES: u32 = 25;
+/// Ranges for which the error of a place on the pipe's back stays: half a second at 50 Hz.
+const LASTING: f32 = 25.0;
+/// Width of the beam at 1 m, m: 6°.
+const BEAM: f32 = 0.105;
 /// Departure of a range from the height that is a step of the surface, m.
 const STEP: f32 = 0.12;
 /// Ranges that differ by less belong to the same surface, m.
@@ -169,8 +179,9 @@ pub struct FlowRangeFusion {
     surface_z: f32,
     base: f32,
     other: f32,
-    /// A step that has begun.
+    /// A step that has begun, and mixtures of two surfaces in a row.
     step: SurfaceStep,
+    mixtures: u32,
     /// Excess of steps over [`STEPS_RATE`], time of the last step, and end of the range's rejection, µs.
     steps: f32,
     stepped_us: u64,
@@ -299,14 +310,14 @@ impl FlowRangeFusion {
         (fresh && sound).then_some(height)
     }
 
-    /// Innovation of the height of the lens at `then` by a range of `distance`, m, with its variance, m²; `None` while
-    /// the surface is ambiguous. Beside a fresh pose (`posed`) the surface follows the height instead. `earlier` gives
-    /// the motion of the beam; the axes are turned by `yaw_offset`, rad.
+    /// Innovation of the height of the lens at `then`, known to this variance, m², by a range of `distance`, m, with its
+    /// variance, m²; `None` while the surface is ambiguous. Beside a fresh pose (`posed`) the surface follows the height
+    /// instead. `earlier` gives the motion of the beam; the axes are turned by `yaw_offset`, rad.
     pub fn height(
         &mut self,
         (earlier, then): (&StateSnapshot, &StateSnapshot),
         distance: f32,
-        posed: bool,
+        (known_to, posed): (f32, bool),
         yaw_offset: f32,
     ) -> Option<(f32, f32)> {
         let cos = then.q.down_in_body().z;
@@ -353,19 +364,31 @@ impl FlowRangeFusion {
             let at = |top: f32| then.position + beam(then.q, (top - then.position.z) / cos, yaw_offset);
             self.band = self.band.map(|band| band.bounded(at(band.top), raised));
             self.band = self.band.filter(|band| raised || !band.is_mistaken());
+            let noise = RANGE_NOISE * RANGE_NOISE;
+            // Beside an edge the beam may see a part of the other surface.
             if !raised {
+                // Ground that is too near is in part the pipe.
+                let gate = if off > 0.0 { NEAR_GATE } else { GATE };
+                if self.band.is_some() && self.is_mixture(off, gate, known_to + noise) {
+                    return None;
+                }
                 let below = if self.unproven.is_some() {
                     Below::Narrow
                 } else {
                     Below::Plain
                 };
                 self.update_scale(distance * cos, then.q, below);
-                return Some((off, RANGE_NOISE * RANGE_NOISE));
+                return Some((off, noise));
             }
             let band = self.band.get_or_insert(below);
             band.top = self.surface_z;
-            let (drop, doubt) = band.drop(surface_point);
+            let (drop, doubt) = band.drop(surface_point, 0.5 * BEAM * distance);
             let back = surface - drop;
+            let variance = noise + LASTING * doubt * doubt;
+            let likely = known_to + noise + doubt * doubt;
+            if self.flank == 0 && self.is_mixture(self.surface_z - back, GATE, likely) {
+                return None;
+            }
             let below = if self.flank > 0 {
                 Below::Known
             } else {
@@ -378,7 +401,7 @@ impl FlowRangeFusion {
             }
             let off = self.surface_z - back;
             self.update_scale(distance * cos - drop, then.q, below);
-            return Some((off, RANGE_NOISE * RANGE_NOISE + doubt * doubt));
+            return Some((off, variance));
         }
         let near = (distance * cos).min(self.surface_z - then.position.z);
         let known = [self.base, self.other]
@@ -396,7 +419,13 @@ impl FlowRangeFusion {
         }
         if over {
             let (before, onto) = (self.surface_z, off > 0.0);
-            let known = self.change_surface(surface, then.at_us);
+            let within = STEP.max(GATE * scalar::sqrt(known_to + RANGE_NOISE * RANGE_NOISE));
+            if off.abs() <= within {
+                // No other surface: the height is off.
+                self.step = SurfaceStep::default();
+                return Some((off, RANGE_NOISE * RANGE_NOISE));
+            }
+            let known = self.change_surface(surface, within, then.at_us);
             let fell = self.scale.begun() && self.surface_z - before > 2.0 * self.radius;
             self.unproven = self.unproven.filter(|_| !fell);
             let seen = if known { Below::Known } else { Below::New };
@@ -419,12 +448,20 @@ impl FlowRangeFusion {
         None
     }
 
-    /// Switches to another surface; true if it is a known one.
-    fn change_surface(&mut self, surface: f32, now: u64) -> bool {
+    /// A range that is `off`, m, by more than `gate` deviations is a mixture of both surfaces, unless that lasts longer than
+    /// an edge passes the beam: then the height is wrong.
+    fn is_mixture(&mut self, off: f32, gate: f32, variance: f32) -> bool {
+        let apart = off * off > gate * gate * variance;
+        self.mixtures = if apart { self.mixtures.saturating_add(1) } else { 0 };
+        (1..=MIXTURES).contains(&self.mixtures)
+    }
+
+    /// Switches to another surface; true if it is a known one, which is at most `within` m off.
+    fn change_surface(&mut self, surface: f32, within: f32, now: u64) -> bool {
         self.step = SurfaceStep::default();
         // A known surface is used again.
         let known = [self.base, self.other];
-        let again = known.iter().find(|z| (**z - surface).abs() <= STEP);
+        let again = known.iter().find(|z| (**z - surface).abs() <= within);
         let before = self.surface_z;
         self.surface_z = again.copied().unwrap_or(surface);
         // Down is positive. The surface that the beam falls to is the ground: if the height has drifted since, a
@@ -592,7 +629,7 @@ mod tests {
         for (y, distance) in [(0.5, 1.9), (0.7, 0.4)] {
             for i in 0..5u8 {
                 let y = y + 0.015 * f32::from(i);
-                let _ = flow_range.height((&at(0, y - 0.02), &at(0, y)), distance, false, 0.0);
+                let _ = flow_range.height((&at(0, y - 0.02), &at(0, y)), distance, (1e-4, false), 0.0);
             }
         }
         assert!(flow_range.flank > 0 && flow_range.unproven.is_some() && flow_range.surface_point.x > 6.9);

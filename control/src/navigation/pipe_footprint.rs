@@ -111,15 +111,15 @@ impl PipeFootprint {
         self.pushed > 2.0 * self.radius
     }
 
-    /// Drop of its back at `surface_point` below its top, m, and the uncertainty of that by the place, m. A band that
-    /// may be wide is flat.
-    pub fn drop(&self, surface_point: Vec3) -> (f32, f32) {
+    /// Drop of its back at `surface_point` below its top, m, and the uncertainty of that by the place and by a beam that
+    /// reaches `beside` m to each side, m. A band that may be wide is flat.
+    pub fn drop(&self, surface_point: Vec3, beside: f32) -> (f32, f32) {
         if !self.sure {
             return (0.0, PLACE);
         }
         let side = self.side(surface_point).abs().min(EDGE * self.radius);
         let drop = self.fallen(side);
-        (drop, self.fallen(side + PLACE) - drop)
+        (drop, self.fallen(side + PLACE + beside) - drop)
     }
 
     /// A surface `below` m under its top may be its own flank.
@@ -300,9 +300,9 @@ mod tests {
                     assert!(off.abs() < 1e-6, "{radius} {side} {onto} {speed}");
                 }
                 // On its crown, half way to its edge and at a fifth of its diameter beneath it.
-                let (drop, _) = band.drop(surface_point(1.0));
+                let (drop, _) = band.drop(surface_point(1.0), 0.0);
                 assert!(drop < 1e-6, "{drop}");
-                let (drop, doubt) = band.drop(surface_point(1.0 + 0.6 * radius));
+                let (drop, doubt) = band.drop(surface_point(1.0 + 0.6 * radius), 0.0);
                 assert!(
                     (drop - 0.2 * radius).abs() < 1e-4 && doubt > 0.015,
                     "{drop} {doubt}"
@@ -353,11 +353,11 @@ mod tests {
         }
         // What is met beside it is wide, or it is elsewhere: flat, as far as is known.
         let table = PipeFootprint::at_edge(band(), surface_point(1.15), false, RIGHT, 0.0);
-        assert!(table.drop(surface_point(1.1)).0 > 0.02);
+        assert!(table.drop(surface_point(1.1), 0.0).0 > 0.02);
         assert!(
             table
                 .bounded(surface_point(1.3), true)
-                .drop(surface_point(1.25))
+                .drop(surface_point(1.25), 0.0)
                 .0
                 < 1e-6
         );

@@ -457,8 +457,9 @@ impl Track {
         // The lever arm is rigid: the height error of the lens is that of the vehicle.
         let [earlier, then] = [earlier, then].map(|moment| moment.of(flow_range.lens, self.yaw_offset));
         let [_, _, axis] = &mut self.axes;
+        let height = (axis.position_variance(), posed);
         let Some((innovation, variance)) =
-            flow_range.height((&earlier, &then), distance, posed, self.yaw_offset)
+            flow_range.height((&earlier, &then), distance, height, self.yaw_offset)
         else {
             return;
         };

@@ -200,8 +200,9 @@ impl Approach {
         self.again(Reason::RangeMisfit, view, e, step);
         if before && !self.aborted_in_contact {
             (self.abort_reason, self.pending_abort_reason) = (None, Some(Reason::RangeMisfit));
-            self.planner =
-                ApproachPlanner::cleared(&step.context.params, view, heading(step, e), e.reset_count);
+            self.planner = self
+                .planner
+                .cleared(&step.context.params, view, heading(step, e), e.reset_count);
         }
     }
 

@@ -59,7 +59,10 @@ fn what_is_known_exactly_are_pipe_and_pressure_sensors_too() {
     }
     let nominal = Scenario::default_mission();
     assert!(s.world.pipe_friction != nominal.world.pipe_friction);
-    let gains = s.differences().into_iter().filter(|d| d.key.starts_with("faults.pressure_gain"));
+    let gains = s
+        .differences()
+        .into_iter()
+        .filter(|d| d.key.starts_with("faults.pressure_gain"));
     assert_eq!(gains.count(), 0, "trims as the gains are");
 }
 

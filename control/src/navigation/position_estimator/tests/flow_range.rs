@@ -286,7 +286,7 @@ fn the_ground_is_the_surface_to_which_the_beam_returns() {
     let look = |flow_range: &mut FlowRangeFusion, y: f32, distance: f32| {
         for i in 0..5u8 {
             let y = y + 0.015 * f32::from(i);
-            let _ = flow_range.height((&at(0, y - 0.02), &at(0, y)), distance, false, 0.0);
+            let _ = flow_range.height((&at(0, y - 0.02), &at(0, y)), distance, (1e-4, false), 0.0);
         }
     };
     look(&mut flow_range, 0.5, 1.9);
@@ -357,7 +357,12 @@ fn a_pipe_is_left_behind_by_way_and_by_time() {
         let look = |flow_range: &mut FlowRangeFusion, us: u64, (x, y): (f32, f32), distance: f32| {
             for i in 0..5u8 {
                 let y = y + 0.015 * f32::from(i);
-                let _ = flow_range.height((&at(us, x, y - 0.02), &at(us, x, y)), distance, false, 0.0);
+                let _ = flow_range.height(
+                    (&at(us, x, y - 0.02), &at(us, x, y)),
+                    distance,
+                    (1e-4, false),
+                    0.0,
+                );
             }
         };
         look(&mut flow_range, 0, (0.0, 0.5), 1.9);
@@ -409,12 +414,12 @@ fn a_leaning_beam_finds_the_edges_where_they_are() {
         // To the left of the vehicle; the pipe's middle is at 0.5 m.
         let near = y - 0.4 * lean.tan() - 0.5;
         let distance = if near.abs() < 0.15 { 0.4 } else { 1.9 } / lean.cos();
-        let _ = flow_range.height((&moment(y - 0.025), &moment(y)), distance, false, 0.0);
+        let _ = flow_range.height((&moment(y - 0.025), &moment(y)), distance, (1e-4, false), 0.0);
     }
     let band = flow_range.band.unwrap();
     let middle = Vec3::new(0.0, 0.5, 0.0);
     // The beam's back falls by less than it does in truth: here it is flat.
-    let (drop, _) = band.drop(middle);
+    let (drop, _) = band.drop(middle, 0.0);
     assert!(drop < 1e-3, "{drop} {band:?}");
 }
 
@@ -526,7 +531,7 @@ fn the_surface_of_a_flank_does_not_follow_the_height_for_good() {
         let mut off = 0.0;
         for _ in 0..times {
             moment.at_us += 20_000;
-            let found = flow_range.height((&moment, &moment), distance, false, 0.0);
+            let found = flow_range.height((&moment, &moment), distance, (1e-4, false), 0.0);
             off = found.map_or(0.0, |(off, _)| off);
         }
         off
