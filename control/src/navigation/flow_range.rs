@@ -369,16 +369,15 @@ impl FlowRangeFusion {
             if !raised {
                 // Ground that is too near is in part the pipe.
                 let gate = if off > 0.0 { NEAR_GATE } else { GATE };
-                if self.band.is_some() && self.is_mixture(off, gate, known_to + noise) {
-                    return None;
-                }
+                let mixture = self.band.is_some() && self.is_mixture(off, gate, known_to + noise);
                 let below = if self.unproven.is_some() {
                     Below::Narrow
                 } else {
                     Below::Plain
                 };
+                // The monitor of the scale takes mixtures too: a wrong scale looks like them.
                 self.update_scale(distance * cos, then.q, below);
-                return Some((off, noise));
+                return (!mixture).then_some((off, noise));
             }
             let band = self.band.get_or_insert(below);
             band.top = self.surface_z;
@@ -387,6 +386,7 @@ impl FlowRangeFusion {
             let variance = noise + LASTING * doubt * doubt;
             let likely = known_to + noise + doubt * doubt;
             if self.flank == 0 && self.is_mixture(self.surface_z - back, GATE, likely) {
+                self.update_scale(distance * cos - drop, then.q, Below::Narrow);
                 return None;
             }
             let below = if self.flank > 0 {
@@ -407,7 +407,10 @@ impl FlowRangeFusion {
         let known = [self.base, self.other]
             .into_iter()
             .any(|z| (z - surface).abs() <= SAME);
-        let over = self.step.take(surface_point, near, known);
+        let across = self.band.unwrap_or(below).across(surface_point);
+        // What is deeper than the ground is no mixture with it.
+        let deeper = surface - self.base > STEP;
+        let over = self.step.take(surface, across, near, known || deeper);
         if self.step.departs() {
             // The edge is at the higher surface's hit: a tilted beam meets the ground a hand's breadth beside the
             // edge.
@@ -423,6 +426,7 @@ impl FlowRangeFusion {
             if off.abs() <= within {
                 // No other surface: the height is off.
                 self.step = SurfaceStep::default();
+                self.update_scale(distance * cos, then.q, Below::Narrow);
                 return Some((off, RANGE_NOISE * RANGE_NOISE));
             }
             let known = self.change_surface(surface, within, then.at_us);

@@ -137,6 +137,11 @@ impl PipeFootprint {
         }
     }
 
+    /// Coordinate of `place` in its direction across, m.
+    pub fn across(&self, place: Vec3) -> f32 {
+        place.dot(self.across)
+    }
+
     /// Offset of its centre line from `place`, in its direction across, m.
     pub fn aside(&self, place: Vec3) -> f32 {
         -self.side(place)

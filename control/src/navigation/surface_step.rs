@@ -3,8 +3,6 @@
 //! A beam has a width. While it passes an edge a time-of-flight sensor that mixes its targets reads something between both,
 //! from the one to the other over the beam's width (docs/design/flow-and-range.md): a step is over when the beam has passed.
 
-use crate::maths::vector::Vec3;
-
 /// Ranges in a row that agree on the new surface, and the difference up to which they do, m: four deviations of two ranges.
 const AGREE: u32 = 3;
 const SAME: f32 = 0.08;
@@ -16,8 +14,8 @@ const RESTS: u32 = 25;
 /// A step that has begun.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SurfaceStep {
-    /// First hit beside the old surface, and the newest one's depth, m down.
-    first: Vec3,
+    /// Place across the edge of the first hit beside the old surface, m, and the newest hit's depth, m down.
+    first: f32,
     level: f32,
     /// Ranges since then, and those in a row that agree.
     ranges: u32,
@@ -30,22 +28,20 @@ impl SurfaceStep {
         self.ranges > 0
     }
 
-    /// Takes a hit beside the old surface, of a beam that is `near` m long down to the nearer of both; on a `known` surface it
-    /// has arrived as soon as ranges agree. True if the step is over.
-    pub fn take(&mut self, hit: Vec3, near: f32, known: bool) -> bool {
+    /// Takes a hit beside the old surface, at `depth` m down and at this place `across` the edge, m, of a beam that is `near`
+    /// m long down to the nearer of both; on a `known` surface it has arrived as soon as ranges agree. True if the step is over.
+    pub fn take(&mut self, depth: f32, across: f32, near: f32, known: bool) -> bool {
         if !self.begun() {
-            self.first = hit;
+            self.first = across;
         }
         self.ranges = self.ranges.saturating_add(1);
-        self.agreed = if self.agreed > 0 && (hit.z - self.level).abs() <= SAME {
+        self.agreed = if self.agreed > 0 && (depth - self.level).abs() <= SAME {
             self.agreed.saturating_add(1)
         } else {
             1
         };
-        self.level = hit.z;
-        let moved = hit - self.first;
-        let moved = moved.x * moved.x + moved.y * moved.y;
-        let passed = moved >= BEAM * BEAM * near * near;
+        self.level = depth;
+        let passed = (across - self.first).abs() >= BEAM * near;
         self.agreed >= AGREE && (known || passed || self.ranges >= RESTS)
     }
 
