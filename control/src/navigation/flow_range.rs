@@ -653,4 +653,40 @@ mod tests {
         );
         assert!(flow_range.unproven.is_some_and(|first| first.norm() < 1e-6));
     }
+
+    /// The beam drifts over the edge of the pipe at 5 cm/s: what it reads between both moves the height by less than 2 cm.
+    #[test]
+    fn a_mixture_of_pipe_and_ground_does_not_move_the_height() {
+        let mut flow_range = FlowRangeFusion::new(0.3, Vec3::ZERO);
+        let at = |us: u64, y: f32| StateSnapshot {
+            at_us: us,
+            position: Vec3::new(0.0, y, -1.9),
+            q: Quat::IDENTITY,
+            ..StateSnapshot::default()
+        };
+        let known_to = 1e-4;
+        let mut y = 0.5;
+        let mut shift = 0.0;
+        let mut fly = |metres: f32, speed: f32, range: &dyn Fn(f32) -> f32| {
+            let end = y + metres;
+            while y < end {
+                y += 0.02 * speed;
+                let moments = (&at(0, y - 0.1 * speed), &at(0, y));
+                let found = flow_range.height(moments, range(y), (known_to, false), 0.0);
+                // As the height follows.
+                shift += found.map_or(0.0, |(off, variance)| off * known_to / (known_to + variance));
+            }
+        };
+        // The pipe's crown is 0.4 m below at 0.95 m, its edges are at 0.8 and 1.1 m.
+        let share = |y: f32| (0.5 + (0.15 - (y - 0.95).abs()) / 0.042).clamp(0.0, 1.0);
+        let read = |y: f32| {
+            let (pipe, ground) = (share(y) / (0.4 * 0.4), (1.0 - share(y)) / (1.9 * 1.9));
+            (pipe * 0.4 + ground * 1.9) / (pipe + ground)
+        };
+        fly(0.45, 0.3, &read);
+        fly(0.3, 0.05, &read);
+        fly(0.3, 0.3, &read);
+        assert!(shift.abs() < 0.02, "{shift}");
+        assert!(!flow_range.raised() && flow_range.surface_z.abs() < 0.02);
+    }
 }

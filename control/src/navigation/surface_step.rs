@@ -50,3 +50,34 @@ impl SurfaceStep {
         self.agreed == 1
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Ranges until a step is over that falls by `step` m a range to 1.9 m, of a beam 0.4 m over the pipe that moves across by
+    /// `speed` m a range.
+    fn lasts(step: f32, speed: f32, known: bool) -> Option<u32> {
+        let mut surface = SurfaceStep::default();
+        (1..100u8).map(u32::from).find(|i| {
+            let depth = (0.55 + step * *i as f32).min(1.9);
+            surface.take(depth, speed * *i as f32, 0.4, known)
+        })
+    }
+
+    #[test]
+    fn a_step_is_over_when_the_beam_has_passed_and_ranges_agree() {
+        // At once to the other surface: 4.2 cm of way.
+        assert_eq!(lasts(2.0, 0.006, false), Some(8));
+        // Through a mixture of both that grows over the beam's width.
+        let mixed = lasts(0.13, 0.006, false).unwrap();
+        assert!((11..=14).contains(&mixed), "{mixed}");
+        // On a surface that is known as soon as three agree.
+        assert_eq!(lasts(2.0, 0.006, true), Some(3));
+    }
+
+    #[test]
+    fn a_beam_that_rests_on_an_edge_is_taken_for_past_it_after_half_a_second() {
+        assert_eq!(lasts(2.0, 0.0, false), Some(RESTS));
+    }
+}

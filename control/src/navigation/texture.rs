@@ -65,3 +65,56 @@ impl Texture {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_noise::TestNoise;
+
+    const DT: f32 = 0.02;
+    const NOISE: f32 = 2.4e-3;
+    /// Inverse distances of a pipe and of the ground, 1/m, each half of the view.
+    const PIPE: f32 = 1.0 / 0.6;
+    const GROUND: f32 = 1.0 / 2.1;
+
+    /// What is learnt in `seconds` of a sway of this `speed`, m/s at 0.8 Hz, over a pipe of this `weight`, with a speed that is
+    /// estimated `off` m/s wrong after five seconds, as a bias makes it.
+    fn learnt(weight: f32, speed: f32, off: f32, seconds: f32) -> Texture {
+        let mut noise = TestNoise(3);
+        let mut texture = Texture::default();
+        for i in 0..(seconds / DT) as u32 {
+            let phase = 5.0 * DT * i as f32;
+            let off = off * (0.2 * DT * i as f32).min(1.0);
+            let flow = |speed: f32, weight: f32| {
+                let moved = speed * DT;
+                moved * (weight * PIPE + (1.0 - weight) * GROUND)
+            };
+            let speeds = [speed * scalar::sin(phase), speed * scalar::cos(phase)];
+            let innovations =
+                speeds.map(|v| flow(v, weight) - flow(v + off, texture.weight()) + NOISE * noise.normal());
+            let sensitivities = speeds.map(|v| (v + off) * DT * (PIPE - GROUND));
+            texture.update(innovations, sensitivities, NOISE, DT);
+        }
+        texture
+    }
+
+    #[test]
+    fn the_stronger_texture_is_learnt_from_a_sway() {
+        for weight in [0.1, 0.5, 0.9] {
+            let texture = learnt(weight, 0.15, 0.0, 10.0);
+            assert!((texture.weight() - weight).abs() < 0.15, "{weight}: {texture:?}");
+            assert!(texture.deviation() < 0.12, "{weight}: {texture:?}");
+        }
+    }
+
+    #[test]
+    fn without_motion_or_by_a_steady_error_of_the_speed_nothing_is_learnt() {
+        let still = learnt(0.9, 0.0, 0.0, 10.0);
+        assert!(
+            (still.weight() - 0.5).abs() < 1e-6 && still.deviation() > 0.28,
+            "{still:?}"
+        );
+        let steady = learnt(0.5, 0.0, 0.2, 10.0);
+        assert!((steady.weight() - 0.5).abs() < 0.15, "{steady:?}");
+    }
+}
