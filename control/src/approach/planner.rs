@@ -135,8 +135,8 @@ pub struct ApproachPlanner {
     crown_y: f32,
     crown_z: f32,
     half: f32,
-    /// Crown by the previous crossing, right, m.
-    previous_crown_y: Option<f32>,
+    /// The crown is that of a crossing from this height.
+    crown_crossed: bool,
     /// Landing point along the pipe, m, and the ends found, m.
     along: f32,
     ends: [Option<f32>; 2],
@@ -153,8 +153,8 @@ pub struct ApproachPlanner {
     left: bool,
     /// The place of the pipe is reported: the search is skipped.
     has_target: bool,
-    /// Commanded velocity, m/s.
-    speed: Vec3,
+    /// Commanded horizontal velocity, m/s.
+    speed: [f32; 2],
 }
 
 impl ApproachPlanner {
@@ -186,7 +186,7 @@ impl ApproachPlanner {
             crown_y: 0.0,
             crown_z: 0.0,
             half: 0.5 * p.pipe_diameter,
-            previous_crown_y: None,
+            crown_crossed: false,
             along: 0.0,
             ends: [None; 2],
             fell: None,
@@ -197,7 +197,7 @@ impl ApproachPlanner {
             slow: 0.0,
             left: false,
             has_target: false,
-            speed: Vec3::ZERO,
+            speed: [0.0; 2],
         };
         match &v.target {
             Some(target) => planner.to(target),
@@ -326,19 +326,19 @@ impl ApproachPlanner {
             return Err(ApproachAbort::RangeStale);
         }
         let before = self.edges.surface_depth();
-        let edge = self.take_range(v).filter(|_| !self.has_target);
-        if let (Some(Edge::Off(_)), true, true) = (edge, self.edges.continues(), self.first_off) {
+        let step = self.take_range(v).filter(|_| !self.has_target);
+        if let (Some((Edge::Off(_), true)), true) = (step, self.first_off) {
             let [_, off] = &mut self.steps;
             *off = self.edges.height().unwrap_or(f32::INFINITY);
         }
-        self.first_off &= edge.is_none() || self.edges.continues();
+        self.first_off &= step.is_none_or(|(_, continues)| continues);
         let at = self.local(v.position);
-        if let Some(edge) = edge {
+        if let Some((edge, continues)) = step {
             // What began as too low a step may have been a part of it.
-            let whole = self.edges.continues() && self.compare(edge, at).is_ok();
+            let whole = continues && self.compare(edge, at).is_ok();
             self.other = self.other.filter(|other| !whole && !self.at_known(other.from));
             // A step onto something is compared as it begins: with a jump of the range just before it would be too high.
-            let again = self.edges.continues() && matches!(edge, Edge::Onto(_));
+            let again = continues && matches!(edge, Edge::Onto(_));
             let judged = asks && !self.climbs() && !again;
             let found = self.compare(edge, at).err().filter(|_| judged);
             let found = found.map(|doubt| Other {
@@ -354,6 +354,7 @@ impl ApproachPlanner {
                 return Err(other.doubt);
             }
         }
+        let edge = step.map(|(edge, _)| edge);
         let held = self.local(v.held);
         let velocity = about_down(v.velocity, -self.heading);
         let wanted = match self.phase {
@@ -368,14 +369,15 @@ impl ApproachPlanner {
         };
         // The abort reason of a doubtful range has precedence over its consequences.
         let wanted = wanted.map_err(|doubt| self.other.map_or(doubt, |other| other.doubt))?;
-        self.speed = Vec3::new(
-            scalar::slew(self.speed.x, wanted.x, SLEW * dt),
-            scalar::slew(self.speed.y, wanted.y, SLEW * dt),
-            wanted.z,
+        let [x, y] = self.speed;
+        let (x, y) = (
+            scalar::slew(x, wanted.x, SLEW * dt),
+            scalar::slew(y, wanted.y, SLEW * dt),
         );
+        self.speed = [x, y];
         let off = scalar::wrap_pi(self.heading - v.heading);
         Ok(VelocityCommand {
-            velocity: about_down(self.speed, -off),
+            velocity: about_down(Vec3::new(x, y, wanted.z), -off),
             yaw_rate: clamp_abs(HEADING_GAIN * off, YAW_RATE_MAX),
             lean: [0.0; 2],
         })
@@ -397,7 +399,7 @@ impl ApproachPlanner {
     }
 
     /// The step that a new range shows.
-    fn take_range(&mut self, v: &View) -> Option<Edge> {
+    fn take_range(&mut self, v: &View) -> Option<(Edge, bool)> {
         if v.range_hit.count == self.seen {
             return None;
         }
@@ -546,7 +548,7 @@ impl ApproachPlanner {
 
     /// Begins the crossings.
     fn turn_across(&mut self) {
-        (self.side, self.legs, self.previous_crown_y) = (1.0, 0, None);
+        (self.side, self.legs, self.crown_crossed) = (1.0, 0, false);
         self.enter(Phase::Cross);
     }
 
@@ -600,14 +602,10 @@ impl ApproachPlanner {
     fn cross(&mut self, edge: Option<Edge>, held: Vec3) -> Result<Vec3, ApproachAbort> {
         self.late(2.0 * WAY_TIME, ApproachAbort::NotCentred)?;
         if let Some(middle) = self.crossed(edge) {
-            if self
-                .previous_crown_y
-                .is_some_and(|previous| (previous - middle).abs() > AGREE)
-            {
+            if self.crown_crossed && (self.crown_y - middle).abs() > AGREE {
                 return Err(ApproachAbort::NotCentred);
             }
-            self.previous_crown_y = Some(middle);
-            self.crown_y = middle;
+            (self.crown_crossed, self.crown_y) = (true, middle);
         }
         let mut target = self.above_crown(LOW);
         target.y += self.side * (self.half + BESIDE) - self.lens.y;
@@ -615,7 +613,7 @@ impl ApproachPlanner {
             self.side = -self.side;
             self.legs = self.legs.saturating_add(1);
             if self.legs >= LEGS {
-                if self.previous_crown_y.is_none() {
+                if !self.crown_crossed {
                     return Err(ApproachAbort::PipeLost);
                 }
                 self.crossed = true;

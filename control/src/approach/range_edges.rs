@@ -22,19 +22,6 @@ pub enum Edge {
     Off(Vec3),
 }
 
-impl Edge {
-    /// A beam that is `near` m long down to the nearer surface still passes this edge where it has stepped by `step` to `hit`.
-    fn is_passed_at(&self, step: &Self, hit: Vec3, near: f32) -> bool {
-        let at = match (self, step) {
-            (Self::Onto(at), Self::Onto(_)) | (Self::Off(at), Self::Off(_)) => *at,
-            _ => return false,
-        };
-        let way = Vec3::new(hit.x - at.x, hit.y - at.y, 0.0);
-        let passing = BEAM * near + PASSING;
-        way.norm_squared() < passing * passing
-    }
-}
-
 /// Edge detector over consecutive ranges.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Edges {
@@ -45,16 +32,16 @@ pub struct Edges {
     last: Vec3,
     /// First hit on another surface, to be confirmed by the next range.
     other: Option<Vec3>,
-    /// The last step, the depth before it and its height, m.
-    step: Option<Edge>,
-    before: f32,
+    /// Height of the last step, m, where it began, forward and right, m, and whether it led onto something.
     height: f32,
-    continues: bool,
+    edge: [f32; 2],
+    onto: bool,
 }
 
 impl Edges {
-    /// Takes the next hit of the beam, `range` m below the vehicle. A step that goes on while the beam passes is returned again.
-    pub fn step(&mut self, surface_point: Vec3, range: f32) -> Option<Edge> {
+    /// Takes the next hit of the beam, `range` m below the vehicle. A step that continues while the beam passes is
+    /// returned again, with true.
+    pub fn step(&mut self, surface_point: Vec3, range: f32) -> Option<(Edge, bool)> {
         let Some(surface_depth) = self.surface_depth else {
             (self.surface_depth, self.top, self.last) =
                 (Some(surface_point.z), surface_point.z, surface_point);
@@ -72,33 +59,33 @@ impl Edges {
             return None;
         }
         // The edge is at the higher surface's hit: a tilted beam meets the ground a hand's breadth beside the edge.
-        let step = if off < 0.0 {
-            Edge::Onto(other)
+        let (onto, begin) = if off < 0.0 {
+            (true, other)
         } else {
-            Edge::Off(self.last)
+            (false, self.last)
         };
-        let passing = self
-            .step
-            .filter(|before| before.is_passed_at(&step, surface_point, range - off.max(0.0)));
-        self.continues = passing.is_some();
-        if !self.continues {
-            (self.step, self.before) = (Some(step), surface_depth);
+        let [x, y] = self.edge;
+        let way = Vec3::new(surface_point.x - x, surface_point.y - y, 0.0);
+        let passing = BEAM * (range - off.max(0.0)) + PASSING;
+        let continues = self.height > 0.0 && onto == self.onto && way.norm_squared() < passing * passing;
+        if !continues {
+            (self.edge, self.onto, self.height) = ([begin.x, begin.y], onto, 0.0);
         }
-        self.height = (surface_point.z - self.before).abs();
+        self.height += off.abs();
         (self.surface_depth, self.last, self.other) = (Some(surface_point.z), surface_point, None);
-        if off < 0.0 {
+        let [x, y] = self.edge;
+        let at = Vec3::new(x, y, begin.z);
+        let edge = if onto {
             self.top = surface_point.z;
-        }
-        self.step
-    }
-
-    /// The last step continued the one before it.
-    pub fn continues(&self) -> bool {
-        self.continues
+            Edge::Onto(at)
+        } else {
+            Edge::Off(at)
+        };
+        Some((edge, continues))
     }
 
     /// Takes a range with no target in reach, of a vehicle at `place`.
-    pub fn step_beyond(&mut self, place: Vec3) -> Option<Edge> {
+    pub fn step_beyond(&mut self, place: Vec3) -> Option<(Edge, bool)> {
         self.step(Vec3::new(place.x, place.y, BEYOND), BEYOND - place.z)
     }
 
@@ -132,8 +119,8 @@ mod tests {
             let on = (0.3..0.6).contains(&(y + 0.04));
             let (z, surface_point) = if on { (0.4, y + 0.04) } else { (1.9, y + 0.19) };
             match edges.step(Vec3::new(0.0, surface_point, z), z) {
-                Some(Edge::Onto(at)) => found[0] = Some(at.y),
-                Some(Edge::Off(at)) => found[1] = Some(at.y),
+                Some((Edge::Onto(at), _)) => found[0] = Some(at.y),
+                Some((Edge::Off(at), _)) => found[1] = Some(at.y),
                 None => (),
             }
         }
