@@ -16,6 +16,8 @@ use sophie_control::params::Params;
 use sophie_mixers::Mixer;
 
 use super::response::Response;
+use crate::plant::air::AirSpec;
+use crate::plant::air::wind::WindSpec;
 use crate::plant::contact::ARM_LENGTH;
 use crate::plant::{Actuators, GRAVITY, Plant, STEP};
 use crate::scenario::{Scenario, World};
@@ -82,6 +84,10 @@ impl Hovering {
                 gust_force: 0.0,
                 gust_moment: 0.0,
                 steady_wind: 0.0,
+                air: AirSpec {
+                    wind: WindSpec::default(),
+                    ..scenario.world.air
+                },
                 ..scenario.world.clone()
             },
             ..scenario.clone()
