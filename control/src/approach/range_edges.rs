@@ -1,14 +1,14 @@
 //! Range edges: the beam steps onto a nearer surface, or falls off it.
 
 use crate::maths::vector::Vec3;
+use crate::navigation::surface_step::BEAM;
 
 /// Least step, m: half the height of the smallest pipe, and three times the drop of a pipe's flank between two ranges.
 const STEP: f32 = 0.12;
 /// Share by which the surface depth follows each range of the same surface.
 const FOLLOW: f32 = 0.5;
-/// Way within which a further step to the same side belongs to the one before: a beam of 6° that mixes pipe and ground
-/// reads something between them over its width, in parts of the range to the nearer, and two ranges' way, m.
-const BEAM: f32 = 0.105;
+/// Way within which a further step to the same side belongs to the one before, beside the beam's width, m: two ranges'. A beam
+/// that mixes pipe and ground reads something between them while it passes.
 const PASSING: f32 = 0.02;
 /// Depth used for a range with no target in reach, m.
 const BEYOND: f32 = 50.0;

@@ -5,7 +5,7 @@ use super::frozen_range::Frozen;
 use super::history::StateSnapshot;
 use super::pipe_footprint::{Depth, PipeFootprint};
 use super::range_scale::{Below, RangeScale};
-use super::surface_step::SurfaceStep;
+use super::surface_step::{BEAM, SurfaceStep};
 use super::texture::Texture;
 use crate::maths::elapsed::seconds;
 use crate::maths::frames::about_down;
@@ -38,8 +38,6 @@ const NEAR_GATE: f32 = 1.5;
 const MIXTURES: u32 = 25;
 /// Ranges for which the error of a place on the pipe's back stays: half a second at 50 Hz.
 const LASTING: f32 = 25.0;
-/// Width of the beam at 1 m, m: 6°.
-const BEAM: f32 = 0.105;
 /// Departure of a range from the height that is a step of the surface, m.
 const STEP: f32 = 0.12;
 /// Ranges that differ by less belong to the same surface, m.

@@ -6,8 +6,8 @@
 /// Ranges in a row that agree on the new surface, and the difference up to which they do, m: four deviations of two ranges.
 const AGREE: u32 = 3;
 const SAME: f32 = 0.08;
-/// Width of the beam at 1 m, m: 6°.
-const BEAM: f32 = 0.105;
+/// Width of the range's beam at 1 m, m: 6°.
+pub const BEAM: f32 = 0.105;
 /// Ranges after which a beam that rests on an edge is taken for past it: half a second at 50 Hz.
 const RESTS: u32 = 25;
 
