@@ -242,8 +242,10 @@ impl ApproachPlanner {
 
     /// A climb after a misleading range, to leave the pipe: no higher than flow sees the ground.
     pub fn cleared(&self, p: &Params, v: &View, heading: f32, reset_count: u8) -> Self {
+        let ground = self.edges.ground_depth();
+        let height = ground.map_or(self.farthest, |ground| ground - self.local(v.position).z);
         Self {
-            up: -clamp(CEILING - self.farthest, 0.0, CLEAR),
+            up: -clamp(CEILING - height, 0.0, CLEAR),
             ..Self::again(p, v, heading, reset_count, true)
         }
     }

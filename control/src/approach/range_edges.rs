@@ -94,6 +94,15 @@ impl Edges {
         self.surface_depth.unwrap_or(BEYOND)
     }
 
+    /// Depth of the ground, m: of the present surface, or below it by the step onto it. `None` before the first range, and
+    /// where the ground is out of reach.
+    pub fn ground_depth(&self) -> Option<f32> {
+        let below = if self.onto { self.height } else { 0.0 };
+        self.surface_depth
+            .map(|depth| depth + below)
+            .filter(|depth| *depth < 0.5 * BEYOND)
+    }
+
     /// Height of the last step, m; `None` if one side of it was out of reach.
     pub fn height(&self) -> Option<f32> {
         Some(self.height).filter(|height| *height < 0.5 * BEYOND)

@@ -197,12 +197,13 @@ impl Approach {
     /// Allows one more try unless the misfit is `proven`; then climbs away.
     fn misfit(&mut self, proven: bool, view: &View, e: &Estimate, step: &mut Step<'_>) {
         let before = core::mem::replace(&mut step.context.auto_perch.misfit, true) || proven;
+        let cleared = self
+            .planner
+            .cleared(&step.context.params, view, heading(step, e), e.reset_count);
         self.again(Reason::RangeMisfit, view, e, step);
         if before && !self.aborted_in_contact {
             (self.abort_reason, self.pending_abort_reason) = (None, Some(Reason::RangeMisfit));
-            self.planner = self
-                .planner
-                .cleared(&step.context.params, view, heading(step, e), e.reset_count);
+            self.planner = cleared;
         }
     }
 
