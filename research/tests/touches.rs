@@ -1,5 +1,6 @@
 //! 1000 random touches of the pipe, half of them cancelled: none ends on the ground.
 
+use sophie_control::gripper::grip_fault::GripFault;
 use sophie_control::mode::{Mode, Reason};
 use sophie_control::pilot::rc::ArmChoice;
 use sophie_research::study::touch::{End, STAY, Touch, Touched, fly, fly_as};
@@ -271,8 +272,8 @@ fn an_oblique_pipe_is_no_grip_and_the_reason_is_named() {
         (20.0, false, Some(Reason::PipeOblique)),
         (-26.0, false, Some(Reason::PipeOblique)),
         (30.0, false, Some(Reason::PipeOblique)),
-        // The arms lie along the pipe, and bend as little as on soft tendons.
-        (90.0, false, Some(Reason::ForceLimit)),
+        // The arms lie along the pipe: nothing stops them where they feel something.
+        (90.0, false, Some(Reason::ArmFault(Some(GripFault::Unfelt)))),
     ] {
         let touch = Touch {
             yaw: heading.to_radians(),

@@ -34,7 +34,7 @@ const DRAWN: [Drawn; 8] = [
     drawn("vehicle", "gain_k", 0.5, [3.0, 9.0]),
     drawn("vehicle", "motor_tau_s", 0.3, [0.03, 0.1]),
     drawn("world", "pipe_diameter_m", 0.5, [0.2, 0.45]),
-    drawn("params", "rate_p", 0.5, [4.0, 30.0]),
+    drawn("params", "rate_pitch_p", 0.5, [4.0, 30.0]),
     drawn("params", "attitude_p", 0.3, [2.0, 9.0]),
 ];
 

@@ -68,8 +68,8 @@ fn bad_files_are_refused_in_one_line_that_names_them() {
             ":1: steps[0] = perch: allowed only touching the pipe",
         ),
         (
-            b"[params]\nrate_p = 1e9",
-            ":2: params.rate_p = 1e9: allowed 0 to ",
+            b"[params]\nrate_pitch_p = 1e9",
+            ":2: params.rate_pitch_p = 1e9: allowed 0 to ",
         ),
     ] {
         let file = temp.file("bad.toml", content);

@@ -231,7 +231,7 @@ fn signs(r: &Value) {
     for ((c, mixer), yaw) in cells(0).iter().zip(cells(1)).zip(cells(6)) {
         match (c.as_str().unwrap(), mixer.as_str().unwrap()) {
             ("B", "flexible") | ("A", "sign-aware") => {
-                assert!(yaw.as_f64().unwrap() < 6.0, "{c} {mixer} {yaw}")
+                assert!(yaw.as_f64().unwrap() < 9.0, "{c} {mixer} {yaw}")
             }
             ("A", _) => assert_eq!(yaw, "lost", "{mixer}"),
             _ => {}

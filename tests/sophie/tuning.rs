@@ -29,19 +29,19 @@ const CASES: [Case; 10] = [
         change: |_| (),
     },
     Case {
-        what: "`rate_p` 32, too high",
+        what: "`rate_pitch_p` 32, too high",
         seen: "shakes as soon as it lifts",
-        change: |s| s.params.rate_p = 32.0,
+        change: |s| s.params.rate_pitch_p = 32.0,
     },
     Case {
-        what: "`rate_p` 3, too low",
+        what: "`rate_pitch_p` 3, too low",
         seen: "swings slowly, follows late",
-        change: |s| s.params.rate_p = 3.0,
+        change: |s| s.params.rate_pitch_p = 3.0,
     },
     Case {
-        what: "`rate_i` 90, too high",
+        what: "`rate_pitch_i` 90, too high",
         seen: "swings, faster than by hand",
-        change: |s| s.params.rate_i = 90.0,
+        change: |s| s.params.rate_pitch_i = 90.0,
     },
     Case {
         what: "`attitude_p` 10, too high",

@@ -30,7 +30,7 @@ pub mod static_thrust;
 mod step_clock;
 
 pub use crate::attitude::messages::{Attitude, ImuReading, ImuSample};
-pub use control::{Command, Control, RESTING_ROLL_GAIN};
+pub use control::{Command, Control};
 pub use messages::{Demand, MixOutput, lift};
 pub use mixing::{ArmReading, Mixing, MixingStep, Surroundings};
 pub use sensing::Sensing;

@@ -86,7 +86,7 @@ impl Gains {
         *disturbance += 1.0;
         let finite = state.iter().all(|gain| gain.is_finite());
         Self {
-            state: if finite && p.rate_p > 0.0 {
+            state: if finite && p.rate_pitch_p.min(p.rate_roll_p) > 0.0 {
                 state
             } else {
                 [0.0; STATES]
@@ -113,12 +113,13 @@ fn continuous(p: &Params) -> Square<ORDER> {
     let LoopGains {
         attitude_p,
         setpoint_cutoff: filter,
-        rate_p,
+        rate_p: [roll_p, pitch_p],
         lag,
         ..
     } = LoopGains::of(p);
     let motor = 1.0 / lag;
-    let rate = motor * rate_p;
+    // One law for both directions, made for the slower turn: the faster one leaves it more room.
+    let rate = motor * roll_p.min(pitch_p);
     let angle = rate * attitude_p;
     let gust = 1.0 / GUST;
     let mut rows = [
@@ -173,7 +174,7 @@ mod tests {
     fn model(p: &Params) -> Matrix {
         let loops = LoopGains::of(p);
         let filter = f64::from(loops.setpoint_cutoff);
-        let (angle, rate) = (f64::from(loops.attitude_p), f64::from(loops.rate_p));
+        let (angle, rate) = (f64::from(loops.attitude_p), f64::from(loops.rate_p[1]));
         let motor = 1.0 / f64::from(loops.lag);
         let mut m = zeros(STATES + 1, STATES + 1);
         m[0][1] = 1.0;
@@ -293,8 +294,14 @@ mod tests {
         [
             Params { attitude_p: 3.0, ..p },
             Params { attitude_p: 8.0, ..p },
-            Params { rate_p: 7.0, ..p },
-            Params { rate_p: 16.0, ..p },
+            Params {
+                rate_pitch_p: 7.0,
+                ..p
+            },
+            Params {
+                rate_pitch_p: 16.0,
+                ..p
+            },
             Params {
                 motor_tau: 0.025,
                 ..p
@@ -327,12 +334,12 @@ mod tests {
     #[test]
     fn loops_of_any_parameters_give_finite_gains() {
         for attitude_p in [0.5, 12.0] {
-            for rate_p in [0.0, 0.1, 40.0] {
+            for rate_pitch_p in [0.0, 0.1, 40.0] {
                 for motor_tau in [0.005, 0.3] {
                     for setpoint_lpf_hz in [0.15, 16.0] {
                         let p = Params {
                             attitude_p,
-                            rate_p,
+                            rate_pitch_p,
                             motor_tau,
                             setpoint_lpf_hz,
                             ..Params::DEFAULT

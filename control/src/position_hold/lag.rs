@@ -30,13 +30,15 @@ impl Lag {
     /// At rest at the tilt `a`, m/s².
     pub fn at(p: &Params, a: [f32; 2]) -> Self {
         let gains = Gains::of(p);
+        let [roll_p, pitch_p] = gains.rate_p;
         Self {
             first: a,
             second: a,
             turning: [0.0; 2],
             cutoff: gains.setpoint_cutoff,
             attitude_p: gains.attitude_p,
-            rate_p: gains.rate_p,
+            // One model for both directions, as of the gains: that of the slower turn.
+            rate_p: roll_p.min(pitch_p),
             motor_tau: gains.lag,
         }
     }

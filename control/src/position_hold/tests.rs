@@ -86,10 +86,12 @@ impl World {
         let lag = p.setpoint_cutoff;
         let dt = DT / f32::from(UNDER);
         for _ in 0..UNDER {
-            for ((t, s), u) in self.tilt.iter_mut().zip(&mut self.stages).zip(aim) {
+            let [roll_p, pitch_p] = p.rate_p;
+            let rate_p = [pitch_p, roll_p];
+            for (((t, s), u), rate_p) in self.tilt.iter_mut().zip(&mut self.stages).zip(aim).zip(rate_p) {
                 s[0] += lag * (u - s[0]) * dt;
                 s[1] += lag * (s[0] - s[1]) * dt;
-                let asked = p.rate_p * (p.attitude_p * (s[1] - t[0]) - t[1]);
+                let asked = rate_p * (p.attitude_p * (s[1] - t[0]) - t[1]);
                 t[2] += (asked - t[2]) / self.lag * dt;
                 t[1] += t[2] * dt;
                 t[0] += t[1] * dt;

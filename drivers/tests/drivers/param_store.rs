@@ -73,7 +73,7 @@ fn keeps_what_differs<const W: usize, const P: usize>() {
     assert_eq!(save(&flash, Params::default()), Ok(()));
     assert_eq!(flash.0.borrow().steps, 0, "nothing differs, nothing is written");
 
-    let first = set(&[("infill", 8.0), ("rate_p", 12.5), ("accel_bias_z", -0.25)]);
+    let first = set(&[("infill", 8.0), ("rate_pitch_p", 12.5), ("accel_bias_z", -0.25)]);
     assert_eq!(save(&flash, first), Ok(()));
     assert_eq!(load(&flash), (first, sound(3)));
     let steps = flash.0.borrow().steps;
@@ -102,7 +102,7 @@ fn every_kind_of_flash_keeps_what_differs_from_the_defaults() {
 fn goes_round<const W: usize, const P: usize>(pages: usize, saves: u32) -> usize {
     let flash = Flash::<W, P>::blank(pages);
     for i in 0..saves {
-        let params = set(&[("infill", 4.0 + (i % 600) as f32 * 0.01), ("rate_p", 5.0)]);
+        let params = set(&[("infill", 4.0 + (i % 600) as f32 * 0.01), ("rate_pitch_p", 5.0)]);
         assert_eq!(save(&flash, params), Ok(()), "save {i}");
         assert_eq!(load(&flash).0, params, "save {i}");
         assert!(!load(&flash).1.unreadable, "save {i}");
@@ -159,7 +159,13 @@ fn survives_cuts<const W: usize, const P: usize>(pages: usize, before: &[Params]
 
 #[test]
 fn power_may_go_at_every_step_of_every_save() {
-    let at = |i: usize| set(&[("infill", 4.0 + 0.1 * i as f32), ("rate_p", 5.0), ("rate_i", 3.0)]);
+    let at = |i: usize| {
+        set(&[
+            ("infill", 4.0 + 0.1 * i as f32),
+            ("rate_pitch_p", 5.0),
+            ("rate_pitch_i", 3.0),
+        ])
+    };
     let mut cuts = 0;
     // Twice round the log: appends, new pages, moves of a page's last item, erases.
     for saves in 0..40 {
@@ -219,7 +225,12 @@ fn a_key_lies_beside_the_parameters_and_neither_changes_the_other() {
 
 /// As many as a page of [`SMALL`] bytes holds beside the key.
 fn all_changed_small() -> Params {
-    set(&[("infill", 8.0), ("rate_p", 5.0), ("rate_i", 3.0), ("gain_k", 5.0)])
+    set(&[
+        ("infill", 8.0),
+        ("rate_pitch_p", 5.0),
+        ("rate_pitch_i", 3.0),
+        ("gain_k", 5.0),
+    ])
 }
 
 #[test]
@@ -303,7 +314,7 @@ fn what_firmware_with_other_parameters_stored_is_read_as_far_as_it_is_known() {
         record("infill", 7.5),
         record("a_parameter_of_old", 1.0),
         record("mass", 500.0),
-        record("rate_p", f32::NAN),
+        record("rate_pitch_p", f32::NAN),
         record("motor_protocol", 151.0),
         record("gain_k", 5.0),
     ]
@@ -566,7 +577,7 @@ fn lives_with<const W: usize, const P: usize>(bytes: Vec<u8>) -> (Params, Loaded
         "{} reads",
         flash.0.borrow().reads
     );
-    let wanted = set(&[("infill", 5.5), ("rate_i", 2.0)]);
+    let wanted = set(&[("infill", 5.5), ("rate_pitch_i", 2.0)]);
     assert_eq!(save(&flash, wanted), Ok(()));
     assert_eq!(load(&flash), (wanted, after(loaded.signing, 2)));
     (params, loaded)
@@ -626,7 +637,7 @@ proptest! {
         saves in 1usize..60, flips in proptest::collection::vec(0usize..2048 * 8, 1..20),
     ) {
         let flash = Flash::<4, SMALL>::blank(4);
-        let at = |i: usize| set(&[("infill", 4.0 + 0.1 * i as f32), ("rate_p", 5.0)]);
+        let at = |i: usize| set(&[("infill", 4.0 + 0.1 * i as f32), ("rate_pitch_p", 5.0)]);
         for i in 0..saves {
             assert_eq!(save(&flash, at(i)), Ok(()));
         }

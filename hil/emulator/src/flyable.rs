@@ -62,7 +62,7 @@ mod tests {
     fn a_scenario_that_the_image_cannot_fly_is_refused_by_name() {
         let mut scenario = Scenario::default_mission_with(&Default::default());
         assert_eq!(check(&scenario), Ok(()));
-        scenario.params.rate_p = 9.0;
+        scenario.params.rate_pitch_p = 9.0;
         assert_eq!(check(&scenario), Ok(()));
         scenario.sensors.position = PositionSensor::Pose;
         assert!(check(&scenario).unwrap_err().contains("position pose"));

@@ -87,7 +87,7 @@ mod tests {
     #[test]
     fn saved_parameters_are_loaded() {
         let params = Params {
-            rate_p: 11.0,
+            rate_pitch_p: 11.0,
             ..Params::default()
         };
         let bytes = sectors(Kind::MatekH743, 0x4_0000, &params).unwrap();

@@ -9,7 +9,7 @@ const GAIN_MARGIN: f64 = 1.0 / 0.7;
 /// Degrees: an ESC frame, bus and frame interval of 4 ms outside the model take 9 at a crossover of 40 rad/s, a motor
 /// 30 % slower than stated as much again.
 const PHASE_MARGIN: f64 = 18.0;
-const GAINS: [&str; 3] = ["rate_p", "rate_p", "rate_yaw_p"];
+const GAINS: [&str; 3] = ["rate_roll_p", "rate_pitch_p", "rate_yaw_p"];
 /// Parameters that set the attitude's share in the gain.
 const ATTITUDE_GAINS: [&str; 3] = ["attitude_p", "attitude_p", "attitude_yaw_p"];
 
@@ -59,7 +59,7 @@ fn arm_mode(margins: &[Margins; 3], built: &Built) -> Row {
     let [roll, pitch, _] = margins;
     let bandwidth = roll.crossover.max(pitch.crossover) / std::f64::consts::TAU;
     Row::new("arm mode", built.arm_mode(), "Hz", Limit::AtLeast(bandwidth))
-        .advise("fit stiffer arms, or lower rate_p")
+        .advise("fit stiffer arms, or lower rate_roll_p and rate_pitch_p")
 }
 
 #[cfg(test)]
@@ -79,7 +79,7 @@ mod tests {
     #[test]
     fn the_default_gains_pass_and_one_that_oscillates_fails() {
         assert_eq!(failing(|_| ()), Vec::<String>::new());
-        let failed = failing(|s| s.params.rate_p = 30.0);
+        let failed = failing(|s| s.params.rate_pitch_p = 30.0);
         assert!(
             failed.iter().any(|name| name == "pitch gain margin"),
             "{failed:?}"
@@ -88,12 +88,12 @@ mod tests {
 
     #[test]
     fn a_loop_without_gain_and_one_that_only_turns_back_fail() {
-        let failed = failing(|s| (s.params.rate_p, s.params.rate_i) = (0.0, 0.0));
+        let failed = failing(|s| (s.params.rate_roll_p, s.params.rate_roll_i) = (0.0, 0.0));
         assert!(
             failed.iter().any(|name| name == "roll phase margin"),
             "{failed:?}"
         );
-        let failed = failing(|s| (s.params.rate_p, s.params.attitude_p) = (4.0, 12.0));
+        let failed = failing(|s| (s.params.rate_roll_p, s.params.attitude_p) = (4.0, 12.0));
         assert!(
             failed.iter().any(|name| name == "roll phase margin"),
             "{failed:?}"

@@ -53,7 +53,7 @@ fn the_check_names_why_a_vehicle_cannot_fly() {
             ],
         ),
         (
-            "[params]\nrate_p = 30",
+            "[params]\nrate_pitch_p = 30",
             &["pitch gain margin", "pitch phase margin"],
         ),
         ("[vehicle]\nconfiguration = 'A'", &["yaw derivative"]),

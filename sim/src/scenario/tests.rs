@@ -155,9 +155,9 @@ fn the_stack_knows_the_vehicle_unless_params_say_otherwise() {
         (s.params.flow_x, s.params.flow_y, s.params.flow_z),
         (-0.08, 0.05, 0.0)
     );
-    let s = parse("[vehicle]\ninfill = 8\n[params]\ninfill = 6\nrate_p = 9").unwrap();
+    let s = parse("[vehicle]\ninfill = 8\n[params]\ninfill = 6\nrate_pitch_p = 9").unwrap();
     assert_eq!(
-        (s.vehicle.infill, s.params.infill, s.params.rate_p),
+        (s.vehicle.infill, s.params.infill, s.params.rate_pitch_p),
         (8.0, 6.0, 9.0)
     );
 }

@@ -45,7 +45,7 @@ fn motors_that_are_slower_than_told_swing_and_are_held_gently_or_by_hand() {
         .iter()
         .filter(|s| (from..from + 20.0).contains(&s.t))
         .collect();
-    assert!(rates(&after) < 25.0, "{}", rates(&after));
+    assert!(rates(&after) < 28.0, "{}", rates(&after));
 }
 
 /// What the false alarms of the watch rest on: about 8 deg/s.

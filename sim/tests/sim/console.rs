@@ -221,8 +221,8 @@ fn a_parameter_is_found_changed_saved_and_in_force_after_the_restart() {
         "set motor_protocol 200\r",
         "set infill 8\r",
         "set motor_protocol pwm\r",
-        "set rate_p 11\r",
-        "reset rate_p\r",
+        "set rate_pitch_p 11\r",
+        "reset rate_pitch_p\r",
         "changes\r",
         "save\r",
     ]

@@ -34,6 +34,6 @@ fn every_rate_flies_alike_and_hands_on_at_1_khz() {
         assert!((19_990..=20_000).contains(&runs), "{rate} Hz: {runs} samples");
         assert!(e.worst_pitch < 1.0 && e.worst_yaw < 3.0, "{rate} Hz: {e:?}");
         // The rates differ by one sample of delay in the part.
-        assert!((e.rms_roll - 1.87).abs() < 0.1, "{rate} Hz: {e:?}");
+        assert!((e.rms_roll - 1.65).abs() < 0.1, "{rate} Hz: {e:?}");
     }
 }

@@ -173,7 +173,7 @@ fn a_sensor_built_in_wrong_is_calibrated_at_the_console_and_then_hovers() {
     let not = hover(Params::DEFAULT);
     println!("not calibrated: {not:?}");
     assert!(
-        not.worst_roll.max(not.worst_pitch) > 20.0 && not.worst_yaw > 90.0,
+        not.worst_roll.max(not.worst_pitch) > 15.0 && not.worst_yaw > 90.0,
         "{not:?}"
     );
 }

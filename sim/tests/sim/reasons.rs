@@ -39,9 +39,9 @@ fn the_reason_for_a_weak_vehicle_is_its_thrust_to_weight() {
 #[test]
 fn the_reason_for_an_oscillating_vehicle_is_its_swings() {
     for params in [
-        "attitude_p = 12\nrate_p = 40",
-        "rate_p = 40",
-        "attitude_p = 12\nrate_p = 25",
+        "attitude_p = 12\nrate_roll_p = 40\nrate_pitch_p = 40",
+        "rate_pitch_p = 40",
+        "attitude_p = 12\nrate_pitch_p = 25",
     ] {
         // Each leaves the ground, where its feet shake it, within the pilot's patience.
         let line = reason(&format!("seed = 2\n{HOP}[params]\n{params}\n"));

@@ -55,9 +55,9 @@ mod tests {
 
     #[test]
     fn only_a_likely_meaning_is_offered() {
-        let names = || ["infill", "rate_p", "rate_i", "save", "set"].into_iter();
+        let names = || ["infill", "rate_pitch_p", "rate_pitch_i", "save", "set"].into_iter();
         assert_eq!(nearest("infil", names()), Some("infill"));
-        assert_eq!(nearest("rate_q", names()), Some("rate_p"));
+        assert_eq!(nearest("rate_pitch_q", names()), Some("rate_pitch_p"));
         assert_eq!(nearest("svae", names()), None, "half of it is wrong");
         assert_eq!(nearest("saves", names()), Some("save"));
         assert_eq!(nearest("elephant", names()), None);

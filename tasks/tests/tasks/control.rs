@@ -141,12 +141,12 @@ fn stop_idle_and_a_wrench_pass_as_they_are() {
 
 #[test]
 fn a_rate_that_is_not_there_is_asked_for_and_integrated_only_where_it_is_given() {
-    // 10 1/s · 0.5 rad/s · 0.021 kg m² is 0.105 N m; a second of 8 1/s² adds 4 rad/s², 0.084 N m.
+    // 20 1/s · 0.5 rad/s · 0.021 kg m² is 0.21 N m; a second of 50 1/s² adds 15 rad/s², the most, 0.315 N m.
     let mut bench = Bench::new();
-    assert!(near(bench.wrench(1, ROLLING).roll, 0.105));
+    assert!(near(bench.wrench(1, ROLLING).roll, 0.21));
     let wrench = bench.wrench(999, ROLLING);
     assert!(
-        near(wrench.roll, 0.189) && wrench.pitch == 0.0 && wrench.thrust == 10.0,
+        near(wrench.roll, 0.525) && wrench.pitch == 0.0 && wrench.thrust == 10.0,
         "{wrench:?}"
     );
     // Nothing is given by a mixer that is silent, gave nothing, or is older than 10 ms.
@@ -161,13 +161,13 @@ fn a_rate_that_is_not_there_is_asked_for_and_integrated_only_where_it_is_given()
     for mix in [None, Some(nothing)] {
         let mut bench = Bench::new();
         bench.mix = mix;
-        assert!(near(bench.wrench(1000, ROLLING).roll, 0.105), "{mix:?}");
+        assert!(near(bench.wrench(1000, ROLLING).roll, 0.21), "{mix:?}");
     }
     let mut bench = Bench::new();
     bench.wrench(1, ROLLING);
     bench.mix = None;
-    // 8 1/s² · 0.5 rad/s · 11 ms · 0.021 kg m² is less than 0.001 N m.
-    assert!(near(bench.wrench(999, ROLLING).roll, 0.105));
+    // 50 1/s² · 0.5 rad/s · 11 ms · 0.021 kg m² is 0.006 N m.
+    assert!(near(bench.wrench(999, ROLLING).roll, 0.216));
 }
 
 #[test]
@@ -178,8 +178,8 @@ fn integrals_outlive_a_change_between_rate_and_angle_but_no_stop_or_escape() {
         thrust: 10.0,
     };
     for (between, then, left) in [
-        (None, LEVEL, 0.084),
-        (None, rest, 0.084),
+        (None, LEVEL, 0.315),
+        (None, rest, 0.315),
         // A wound-up integral would throw the vehicle to that side.
         (None, ESCAPE, 0.0),
         (Some(ESCAPE), LEVEL, 0.0),

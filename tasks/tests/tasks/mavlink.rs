@@ -677,13 +677,16 @@ fn the_console_does_not_save_over_what_was_stored_by_the_parameter_protocol() {
     bench.set_infill(8.0);
     bench.run(2000);
     assert_eq!(bench.board.stored.get().unwrap().infill, 8.0);
-    bench.asks("set rate_p 11\r");
+    bench.asks("set rate_pitch_p 11\r");
     let said = bench.asks("save\r");
     assert!(
         said.contains("not saved: others were stored over MAVLink, restart first and set yours again"),
         "{said:?}"
     );
-    assert_eq!(bench.board.stored.get().unwrap().rate_p, Params::DEFAULT.rate_p);
+    assert_eq!(
+        bench.board.stored.get().unwrap().rate_pitch_p,
+        Params::DEFAULT.rate_pitch_p
+    );
     assert_eq!(bench.board.restarts.get(), 0);
     // A restart is what brings both together.
     assert!(bench.asks("restart\r").contains("restarting"));

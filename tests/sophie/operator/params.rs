@@ -79,8 +79,8 @@ fn a_bad_file_is_refused_before_the_board_is_asked() {
             "p.toml:2: params.infill = 12: allowed 4 to 10 %",
         ),
         (
-            "[params]\ninfill = 8\nrate_p = \"high\"\n",
-            "p.toml:3: params.rate_p",
+            "[params]\ninfill = 8\nrate_pitch_p = \"high\"\n",
+            "p.toml:3: params.rate_pitch_p",
         ),
         ("[vehicle]\ninfill = 8\n", "unknown key: nearest allowed params"),
         ("", "[params] is missing"),
@@ -146,7 +146,7 @@ fn a_board_that_falls_silent_leaves_no_file_and_is_told() {
     assert_eq!(fs::read_dir(&temp.0).unwrap().count(), 0);
     // A comparison has no answer then: its status 1 is kept for a difference.
     board.hands(|hands| hands.mute = false);
-    temp.file("p.toml", b"[params]\ninfill = 8\nrate_p = 11\n");
+    temp.file("p.toml", b"[params]\ninfill = 8\nrate_pitch_p = 11\n");
     patiently(&temp, &board, "diff", "p.toml").complains(2, "fell silent");
     // In the midst of a load: that a part may be stored is said. Here the old value has come to the board.
     board.hands(|hands| (hands.mute, hands.dies_at) = (false, Some(("infill", 8.0))));
@@ -160,11 +160,11 @@ fn a_board_that_falls_silent_leaves_no_file_and_is_told() {
     let done = patiently(&temp, &board, "load", "p.toml");
     assert_eq!(
         done.said,
-        "infill 6.9 -> 8 %\nrate_p 10 -> 11 1/s\nsaved; the board has restarted\nall 2 are in force\n",
+        "infill 6.9 -> 8 %\nrate_pitch_p 10 -> 11 1/s\nsaved; the board has restarted\nall 2 are in force\n",
         "{done:?}"
     );
     assert_eq!(done.status, Some(0));
-    assert_eq!((board.stored().infill, board.stored().rate_p), (8.0, 11.0));
+    assert_eq!((board.stored().infill, board.stored().rate_pitch_p), (8.0, 11.0));
 }
 
 /// A frame of another station that sets `name`.
@@ -187,13 +187,16 @@ fn the_line_may_be_in_any_state_and_lose_bytes_and_frames() {
     let (temp, board) = (Temp::new("params-line"), Board::new(Hands::default()));
     let dumped = params(&temp, &board, "dump", "whole.toml");
     assert_eq!((dumped.status, &*dumped.complaint), (Some(0), ""), "{dumped:?}");
-    temp.file("p.toml", b"[params]\ninfill = 8\nrate_p = 11\n");
+    temp.file("p.toml", b"[params]\ninfill = 8\nrate_pitch_p = 11\n");
     // Half a frame, or a command of the console, is not obeyed.
     let frame = sets("infill", 9.0);
     for left in [&frame[..20], &frame[..frame.len() - 1], b"set infill 9\rsave\r"] {
         board.send_and_leave(left);
         let done = params(&temp, &board, "diff", "p.toml");
-        assert_eq!(done.said, "infill 6.9 -> 8 %\nrate_p 10 -> 11 1/s\n", "{done:?}");
+        assert_eq!(
+            done.said, "infill 6.9 -> 8 %\nrate_pitch_p 10 -> 11 1/s\n",
+            "{done:?}"
+        );
     }
     board.hands(|hands| (hands.loses, hands.drops) = (Some(307), Some(13)));
     let dumped = params(&temp, &board, "dump", "p2.toml");
@@ -205,10 +208,10 @@ fn the_line_may_be_in_any_state_and_lose_bytes_and_frames() {
         done.status == Some(0) && done.said.ends_with("all 2 are in force\n"),
         "{done:?}"
     );
-    assert_eq!((board.stored().infill, board.stored().rate_p), (8.0, 11.0));
+    assert_eq!((board.stored().infill, board.stored().rate_pitch_p), (8.0, 11.0));
     let others = Params {
         infill: 6.9,
-        rate_p: 10.0,
+        rate_pitch_p: 10.0,
         ..board.stored()
     };
     assert!(others == Params::DEFAULT, "another parameter was set");

@@ -383,12 +383,15 @@ mod tests {
     #[test]
     fn changed_parameters_are_told_and_missing_numbers_are_null() {
         let mut record = synthetic::record();
-        record.scenario.params.rate_p = 9.0;
+        record.scenario.params.rate_pitch_p = 9.0;
         record.scenario.vehicle.body.mass = 2.0;
         record.scenario.world.pipe_shape.sag = 0.01;
         record.grip[0].closure = f64::NAN;
         let v = json(&record);
-        assert_eq!(v["settings"]["params"], serde_json::json!({ "rate_p": 9.0 }));
+        assert_eq!(
+            v["settings"]["params"],
+            serde_json::json!({ "rate_pitch_p": 9.0 })
+        );
         let keys = serde_json::json!({ "vehicle.mass_kg": 2.0, "world.pipe_sag_m": 0.01 });
         assert_eq!(v["settings"]["changed_keys"], keys);
         assert!(v["grip"][0]["closure_s"].is_null());

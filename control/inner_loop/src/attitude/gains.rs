@@ -27,10 +27,10 @@ pub struct Gains {
     pub attitude_p: f32,
     /// Cut-off of the setpoint's prefilter, rad/s.
     pub setpoint_cutoff: f32,
-    /// Rate to angular acceleration, 1/s.
-    pub rate_p: f32,
-    /// Integral of the rate to angular acceleration, 1/s².
-    pub rate_i: f32,
+    /// Rate to angular acceleration, roll and pitch, 1/s.
+    pub rate_p: [f32; 2],
+    /// Integral of the rate to angular acceleration, roll and pitch, 1/s².
+    pub rate_i: [f32; 2],
     /// Amplification of fast moments, less 1: 0 to 1.4.
     pub lead: f32,
     /// Lag of a moment behind its demand, s, lead and motors together.
@@ -48,8 +48,8 @@ impl Gains {
         Self {
             attitude_p: pace * p.attitude_p,
             setpoint_cutoff: pace * TAU * p.setpoint_lpf_hz,
-            rate_p: pace * p.rate_p,
-            rate_i: pace * pace * p.rate_i,
+            rate_p: [pace * p.rate_roll_p, pace * p.rate_pitch_p],
+            rate_i: [pace * pace * p.rate_roll_i, pace * pace * p.rate_pitch_i],
             lead: amplified - 1.0,
             lag,
             pace,
@@ -75,7 +75,11 @@ mod tests {
             let gains = of(motor_tau);
             assert_eq!(
                 (gains.attitude_p, gains.rate_p, gains.rate_i),
-                (p.attitude_p, p.rate_p, p.rate_i)
+                (
+                    p.attitude_p,
+                    [p.rate_roll_p, p.rate_pitch_p],
+                    [p.rate_roll_i, p.rate_pitch_i]
+                )
             );
             assert_eq!((gains.lead, gains.lag), (0.0, motor_tau));
         }
@@ -88,7 +92,7 @@ mod tests {
             (gains.lead - 1.0).abs() < 1e-5 && (gains.lag - 0.05).abs() < 1e-6,
             "{gains:?}"
         );
-        assert!(gains.pace > 0.9999 && gains.rate_p > 9.999, "{gains:?}");
+        assert!(gains.pace > 0.9999 && gains.rate_p[1] > 9.999, "{gains:?}");
     }
 
     /// Twice the usual loop's lag, 0.08 s, is left: everything takes twice the time.
@@ -96,8 +100,8 @@ mod tests {
     fn motors_that_are_slower_still_stretch_the_loops() {
         let gains = of(0.13 * LEAD_MAX);
         assert!((gains.lead - 1.4).abs() < 1e-5, "{gains:?}");
-        assert!((gains.rate_p / 10.0 - gains.pace).abs() < 1e-6, "{gains:?}");
+        assert!((gains.rate_p[1] / 10.0 - gains.pace).abs() < 1e-6, "{gains:?}");
         assert!((gains.pace - 0.5).abs() < 1e-4, "{gains:?}");
-        assert!((gains.rate_i - 2.0).abs() < 1e-3, "{gains:?}");
+        assert!((gains.rate_i[1] - 2.0).abs() < 1e-3, "{gains:?}");
     }
 }

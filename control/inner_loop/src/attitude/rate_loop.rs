@@ -60,9 +60,10 @@ impl RateLoop {
     /// A loop at rest for steps at `rate_hz` (Hz, > 0).
     pub fn new(p: &Params, rate_hz: f32) -> Self {
         let gains = Gains::of(p);
+        let ([roll_p, pitch_p], [roll_i, pitch_i]) = (gains.rate_p, gains.rate_i);
         Self {
-            p: Vec3::new(gains.rate_p, gains.rate_p, p.rate_yaw_p),
-            i: Vec3::new(gains.rate_i, gains.rate_i, p.rate_yaw_i),
+            p: Vec3::new(roll_p, pitch_p, p.rate_yaw_p),
+            i: Vec3::new(roll_i, pitch_i, p.rate_yaw_i),
             d: Vec3::new(p.rate_d, p.rate_d, 0.0),
             d_rate: TAU * p.rate_d_cutoff,
             inertia: Vec3::new(p.inertia_roll, p.inertia_pitch, p.inertia_yaw),
@@ -172,9 +173,9 @@ mod tests {
 
     #[test]
     fn proportional_moment_by_hand() {
-        // 0.5 rad/s of error: 0.5 · 10 1/s · 0.021 kg·m² = 0.105 N·m, plus one step of integral.
+        // 0.5 rad/s of error: 0.5 · 20 1/s · 0.021 kg·m² = 0.21 N·m, plus one step of integral.
         let m = rate_loop().step(Vec3::new(0.5, 0.0, 0.0), Vec3::ZERO, FREE, true, 1e-3);
-        assert!((m.x - 0.105).abs() < 2e-4 && m.y.abs() < 1e-9);
+        assert!((m.x - 0.21).abs() < 6e-4 && m.y.abs() < 1e-9);
     }
 
     #[test]
@@ -231,7 +232,7 @@ mod tests {
         let mut l = RateLoop::new(&Params { rate_d: 0.1, ..UNLED }, 1000.0);
         l.step(Vec3::ZERO, Vec3::ZERO, FREE, false, 1e-3);
         let m = l.step(Vec3::new(1.0, 0.0, 0.0), Vec3::ZERO, FREE, false, 1e-3);
-        assert!((m.x - 0.21).abs() < 1e-4);
+        assert!((m.x - 0.42).abs() < 2e-4);
         let damped = l.step(
             Vec3::new(1.0, 0.0, 0.0),
             Vec3::new(0.05, 0.0, 0.0),
@@ -239,12 +240,12 @@ mod tests {
             false,
             1e-3,
         );
-        assert!(damped.x < 0.95 * 0.21);
+        assert!(damped.x < 0.95 * 0.42);
     }
 
     #[test]
     fn what_the_rate_exceeds_the_setpoint_by_is_taken_away() {
-        // (0.2 - 0.5) rad/s · 10 1/s · 0.021 kg·m².
+        // (0.2 - 0.5) rad/s · 20 1/s · 0.021 kg·m².
         let m = rate_loop().step(
             Vec3::new(0.2, 0.0, 0.0),
             Vec3::new(0.5, 0.0, 0.0),
@@ -252,7 +253,7 @@ mod tests {
             false,
             1e-3,
         );
-        assert!((m.x + 0.063).abs() < 1e-5, "{m:?}");
+        assert!((m.x + 0.126).abs() < 1e-5, "{m:?}");
     }
 
     #[test]
@@ -260,17 +261,17 @@ mod tests {
         let mut l = rate_loop();
         let mut m = Vec3::ZERO;
         for _ in 0..500 {
-            m = l.step(Vec3::new(1.0, 0.0, 0.4), Vec3::ZERO, FREE, true, 1e-3);
+            m = l.step(Vec3::new(0.4, 0.0, 0.4), Vec3::ZERO, FREE, true, 1e-3);
         }
-        // 8 1/s² · 1 rad/s · 0.5 s and 1.5 1/s² · 0.4 rad/s · 0.5 s.
+        // 50 1/s² · 0.4 rad/s · 0.5 s and 1.5 1/s² · 0.4 rad/s · 0.5 s.
         let sum = l.integral();
         assert!(
-            (sum.x - 4.0).abs() < 0.01 && (sum.z - 0.3).abs() < 1e-3,
+            (sum.x - 10.0).abs() < 0.02 && (sum.z - 0.3).abs() < 1e-3,
             "{sum:?}"
         );
-        assert!((m.x - 0.021 * (10.0 + 4.0)).abs() < 1e-3, "{m:?}");
+        assert!((m.x - 0.021 * (8.0 + 10.0)).abs() < 1e-3, "{m:?}");
         for _ in 0..500 {
-            l.step(Vec3::new(-1.0, 0.0, -0.4), Vec3::ZERO, FREE, true, 1e-3);
+            l.step(Vec3::new(-0.4, 0.0, -0.4), Vec3::ZERO, FREE, true, 1e-3);
         }
         let sum = l.integral();
         assert!(sum.x.abs() < 0.01 && sum.z.abs() < 1e-3, "{sum:?}");

@@ -16,8 +16,6 @@ use crate::params::Params;
 
 /// Largest share of a rotor's thrust for roll and for pitch on the pipe.
 const RESTING_SHARES: [f32; 2] = [0.6, 0.4];
-/// Roll moment on the pipe over that in the air: about the pipe's axis the vehicle has four times its own inertia.
-pub const RESTING_ROLL_GAIN: f32 = 2.0;
 
 /// A setpoint and its time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -183,7 +181,7 @@ impl Control {
         let (roll_max, pitch_max) = (roll * thrust * sideways, pitch * thrust * ahead);
         Wrench {
             thrust,
-            roll: scalar::clamp_abs(RESTING_ROLL_GAIN * moment.x, roll_max),
+            roll: scalar::clamp_abs(moment.x, roll_max),
             pitch: scalar::clamp_abs(moment.y, pitch_max),
             yaw: 0.0,
         }

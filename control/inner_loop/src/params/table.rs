@@ -224,10 +224,14 @@ params! {
     setpoint_lpf_hz = 1.5915494, "Hz", 0.15 ..= 16.0;
     /// Largest body rate that the attitude loop asks for.
     rate_max = 3.5, "rad/s", 0.5 ..= 12.0;
-    /// Rate to angular acceleration, roll and pitch.
-    rate_p = 10.0, "1/s", 0.0 ..= 40.0;
-    /// Integral gain, roll and pitch.
-    rate_i = 8.0, "1/s2", 0.0 ..= 100.0;
+    /// Rate to angular acceleration, roll.
+    rate_roll_p = 20.0, "1/s", 0.0 ..= 60.0;
+    /// Integral gain, roll: takes up what turns the vehicle off a pipe's crown as the rotors near it.
+    rate_roll_i = 50.0, "1/s2", 0.0 ..= 200.0;
+    /// Rate to angular acceleration, pitch: bending arms leave less room than for roll.
+    rate_pitch_p = 10.0, "1/s", 0.0 ..= 40.0;
+    /// Integral gain, pitch.
+    rate_pitch_i = 8.0, "1/s2", 0.0 ..= 100.0;
     /// Derivative gain on the measured rate, roll and pitch.
     rate_d = 0.0, "1", 0.0 ..= 1.0;
     /// Cut-off of the derivative's low-pass filter.

@@ -75,7 +75,7 @@ fn scenario(job: Job) -> Scenario {
     s.vehicle.coupled_arms = job.arms == Arms::Heavy;
     s.vehicle.arm_damping = job.arms.damping();
     if let Command::Hard(rate_p) = job.command {
-        (s.params.attitude_p, s.params.rate_p) = (12.0, rate_p as f32);
+        (s.params.attitude_p, s.params.rate_roll_p) = (12.0, rate_p as f32);
         (s.params.setpoint_lpf_hz, s.params.rate_max) = (100.0 / TAU, 12.0);
     }
     s

@@ -146,16 +146,16 @@ mod tests {
             ..Params::default()
         };
         let laws = Laws::of(&p);
-        // p 10 1/s, i 8 1/s², attitude 4.5 1/s: at 1 rad/s (10 + 8/j)(1 + 4.5/j) 0.021 = (-26 - 53 j) 0.021.
+        // p 20 1/s, i 50 1/s², attitude 4.5 1/s: at 1 rad/s (20 + 50/j)(1 + 4.5/j) 0.021 = (-205 - 140 j) 0.021.
         let slow = laws.at(0, 1e-3) / 0.021;
-        assert!((slow - Complex::new(-26.0, -53.0)).length() < 0.3, "{slow}");
+        assert!((slow - Complex::new(-205.0, -140.0)).length() < 1.0, "{slow}");
         // Yaw: (3 + 1.5/j)(1 + 1.2/j) 0.063 = (1.2 - 5.1 j) 0.063, without notch.
         let yaw = laws.at(2, 1e-3) / 0.063;
         assert!((yaw - Complex::new(1.2, -5.1)).length() < 0.03, "{yaw}");
-        // At the filter's cut-off of 90 Hz the gain is 0.707 of 0.21 and the phase beyond -90°.
+        // At the filter's cut-off of 90 Hz the gain is 0.707 of 0.42 and the phase beyond -90°.
         let fast = laws.at(0, std::f64::consts::TAU * 0.09);
         assert!(
-            (fast.length() / 0.21 - 0.707).abs() < 0.02 && fast.to_angle() < -1.6,
+            (fast.length() / 0.42 - 0.707).abs() < 0.02 && fast.to_angle() < -1.6,
             "{fast}"
         );
     }

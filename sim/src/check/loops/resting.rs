@@ -1,13 +1,13 @@
-//! The roll loop of a vehicle on a pipe, with [`RESTING_ROLL_GAIN`] times its moment.
+//! The roll loop of a vehicle on a pipe, without its integral.
 //!
 //! In the air P = A/(I s), A motors and arms. Standing, the body rocks on its pads at ±w about the middle between them, h
 //! below its centre of mass: P' = P I s² / (J s² + c s + k), J = I + m h², k = Σ k_pad w² - m g h, c = Σ c_pad w². Sliding on
 //! both pads it turns about the pipe's axis, H below: P' = P I s² / (J s² - W H), J = I + m H², whatever the thrust, which
-//! points through the axis. Without an integral the loop's stiffness is K = g p_att p I, with the doubled gain g: a slide
-//! grows as long as K < W H, and no faster than the larger root of J s² + g p I s + K - W H.
+//! points through the axis. Without an integral the loop's stiffness is K = p_att p I: a slide grows as long as K < W H, and no
+//! faster than the larger root of J s² + p I s + K - W H.
 
 use sophie_control::attitude::gains::Gains;
-use sophie_control::chain::{CONTROL_RATE_HZ, RESTING_ROLL_GAIN};
+use sophie_control::chain::CONTROL_RATE_HZ;
 use sophie_control::params::Params;
 
 use super::laws::Laws;
@@ -44,7 +44,7 @@ pub fn resting_margins(scenario: &Scenario, place: Place, share: f64) -> Margins
                 Place::Standing => standing(scenario, share, omega),
             };
             let loop_gain = vehicle.at(angle).rotate(laws.at(ROLL, angle)).rotate(delay);
-            (omega, loop_gain.rotate(factor) * f64::from(RESTING_ROLL_GAIN))
+            (omega, loop_gain.rotate(factor))
         })
         .collect();
     Margins::of(&curve)
@@ -62,7 +62,7 @@ pub fn slide(scenario: &Scenario, diameter: f64) -> (f64, f64) {
         + BELLY_Z;
     let inertia = body.inertia[ROLL] + body.mass * lever * lever;
     let gains = Gains::of(p);
-    let damping = f64::from(RESTING_ROLL_GAIN * gains.rate_p * p.inertia_roll);
+    let damping = f64::from(gains.rate_p[ROLL] * p.inertia_roll);
     let stiffness = f64::from(gains.attitude_p) * damping - body.mass * GRAVITY * lever;
     let growth = |c: f64, k: f64| {
         let root = (c * c - 4.0 * inertia * k).max(0.0).sqrt();
@@ -95,7 +95,10 @@ fn standing(scenario: &Scenario, share: f64, omega: f64) -> Complex {
 
 /// Integrals stand still on the pipe.
 fn still(p: &Params) -> Params {
-    Params { rate_i: 0.0, ..*p }
+    Params {
+        rate_roll_i: 0.0,
+        ..*p
+    }
 }
 
 #[cfg(test)]
@@ -104,7 +107,7 @@ mod tests {
 
     #[test]
     fn a_slide_grows_slower_with_the_loop() {
-        // On 0.3 m: H 0.187 m, J 0.084 kg m², W H 3.31 N m: 6.3 1/s. With 2 · 4.5 · 10 · 0.021 = 1.89 N m/rad and 0.42 N m s:
+        // On 0.3 m: H 0.187 m, J 0.084 kg m², W H 3.31 N m: 6.3 1/s. With 4.5 · 20 · 0.021 = 1.89 N m/rad and 0.42 N m s:
         // 0.084 s² + 0.42 s - 1.42 = 0 at 2.3 1/s.
         let (with, without) = slide(&Scenario::default_mission(), 0.3);
         assert!(
@@ -126,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn the_doubled_moment_leaves_a_margin_wherever_it_acts() {
+    fn roll_keeps_a_margin_on_the_pads_and_between_them() {
         let s = Scenario::default_mission();
         for place in [Place::Air, Place::Standing] {
             for share in [0.375, 0.9] {

@@ -219,7 +219,8 @@ fn gentle(p: &Params) -> Control {
     let [attitude_p, rate_p, attitude_yaw_p, rate_yaw_p] = GENTLE;
     Control::new(&Params {
         attitude_p: attitude_p.min(p.attitude_p),
-        rate_p: rate_p.min(p.rate_p),
+        rate_roll_p: rate_p.min(p.rate_roll_p),
+        rate_pitch_p: rate_p.min(p.rate_pitch_p),
         attitude_yaw_p: attitude_yaw_p.min(p.attitude_yaw_p),
         rate_yaw_p: rate_yaw_p.min(p.rate_yaw_p),
         rate_d: 0.0,

@@ -82,16 +82,16 @@ fn bad_values_name_file_line_key_value_and_allowed_range() {
             "perch.toml:2: pilot.believes_pipe_top_m = 0.2: allowed 0.5 to 10 m",
         ),
         (
-            "[params]\nrate_p = 99",
-            "perch.toml:2: params.rate_p = 99: allowed 0 to 40 1/s",
+            "[params]\nrate_pitch_p = 99",
+            "perch.toml:2: params.rate_pitch_p = 99: allowed 0 to 40 1/s",
         ),
         (
             "[params]\ngain_k = 0",
             "perch.toml:2: params.gain_k = 0: allowed 1 to 10",
         ),
         (
-            "[params]\nrate_p = true",
-            "perch.toml:2: params.rate_p = true: allowed 0 to 40 1/s",
+            "[params]\nrate_pitch_p = true",
+            "perch.toml:2: params.rate_pitch_p = true: allowed 0 to 40 1/s",
         ),
         (
             "[params]\nrc_protocol = 0.4",
@@ -144,8 +144,8 @@ fn unknown_keys_name_the_nearest() {
         ),
         (
             "[params]\nrate_pp = 1",
-            "perch.toml:2: params.rate_pp = 1: unknown key: nearest allowed params.rate_p, params.rate_d, \
-             params.rate_i",
+            "perch.toml:2: params.rate_pp = 1: unknown key: nearest allowed params.rate_d, params.rate_max, \
+             params.rate_yaw_p",
         ),
         (
             "steps = [{ do = 'arm' }, { do = 'take-off', height = 2 }]",

@@ -127,11 +127,11 @@ fn what_was_wound_up_goes_with_every_change_but_one_between_rate_and_angle() {
         let mut bench = Bench::new();
         bench.run(1000, ROLLING, 0);
         let wound = bench.control.rate.integral().x;
-        assert!((wound - 4.0).abs() < 0.01, "{wound}");
+        assert!((wound - 15.0).abs() < 0.01, "{wound}");
         bench.run(1, between, 0);
         bench.run(1, then, 0);
         let left = bench.control.rate.integral().x;
-        assert!(left.abs() > 3.9 || !kept, "{between:?}, {then:?}: {left}");
+        assert!(left.abs() > 14.9 || !kept, "{between:?}, {then:?}: {left}");
         assert!(left.abs() < 0.1 || kept, "{between:?}, {then:?}: {left}");
     }
 }
@@ -169,7 +169,7 @@ fn on_the_pipe_each_moment_keeps_within_its_own_lever() {
 }
 
 #[test]
-fn on_the_pipe_a_lean_meets_twice_the_moment_of_the_air() {
+fn on_the_pipe_a_lean_meets_the_moment_of_the_air() {
     // Little enough for no limit: 1 mrad.
     let (roll, pitch, yaw_rate, thrust) = (1e-3, 1e-3, 0.0, 8.0);
     let angle = Setpoint::Angle {
@@ -185,7 +185,7 @@ fn on_the_pipe_a_lean_meets_twice_the_moment_of_the_air() {
         panic!("not at rest")
     };
     assert!(
-        air.roll > 0.0 && (pipe.roll / air.roll - 2.0).abs() < 0.01,
+        air.roll > 0.0 && (pipe.roll / air.roll - 1.0).abs() < 0.01,
         "{pipe:?} {air:?}"
     );
     assert!((pipe.pitch / air.pitch - 1.0).abs() < 0.01, "{pipe:?} {air:?}");
