@@ -18,8 +18,7 @@ pub fn of(step: &Step, assist: Assist) -> f64 {
         Step::FlyToPipe => 90.0,
         // With room for several tries.
         Step::Touch => 180.0,
-        Step::Clamp { .. } => 60.0,
-        Step::Perch { .. } => 120.0,
+        Step::Clamp { .. } | Step::Perch { .. } => 240.0,
         Step::Hold { seconds, lapse, .. } => Step::hold_time(seconds, lapse) + 1.0,
         Step::Open => 15.0,
         Step::Release => 45.0,

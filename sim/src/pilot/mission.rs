@@ -121,8 +121,9 @@ pub struct Mission {
     pub(super) height: f64,
     /// Throttle set by hand when not flying.
     pub(super) throttle: f64,
-    /// Number of failed touches.
+    /// Number of failed touches, and of grips that the vehicle has given up.
     pub(super) missed: u32,
+    pub(super) grips: u32,
     /// The displayed reason of the failsafe that ended the flight.
     pub(super) trouble: Option<String>,
 }
@@ -153,6 +154,7 @@ impl Mission {
             height: 0.0,
             throttle: 0.0,
             missed: 0,
+            grips: 0,
             trouble: None,
         }
     }
@@ -168,7 +170,7 @@ impl Mission {
         self.hold_switch &= self.assist == Assist::Autonomous;
         self.enter(Phase::Start);
         self.step_time = 0.0;
-        self.missed = 0;
+        (self.missed, self.grips) = (0, 0);
         self.height = -seen.position.z;
     }
 

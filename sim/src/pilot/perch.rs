@@ -24,8 +24,8 @@ const UNSETTLED: f64 = 2.0;
 const DESCENT: f64 = 0.15;
 const LAST_DESCENT: f64 = 0.25;
 /// Height of the centre of mass over the pipe's top at the gate, where the pilot waits until he is over the
-/// crown, and the height at which the belly touches, m.
-const GATE: f64 = 0.11;
+/// crown, and the height at which the belly touches, m. Lower, the pipe's ground effect throws the vehicle aside while he waits.
+const GATE: f64 = 0.16;
 const BELLY: f64 = 0.05;
 /// Share of the tolerances that applies at the gate at first, and the time, s, over which it grows to 1.
 const STRICT: f64 = 0.6;
@@ -56,8 +56,9 @@ const STOPPED_TIME: f64 = 0.3;
 /// weight on the rotors the slightest lean makes it slide.
 const FIRM_THROTTLE: f64 = 0.36;
 const FIRM_EASE: f64 = 0.5;
-/// Tries after which the pilot gives up.
+/// Tries after which the pilot gives up, and those of a grip that the vehicle itself has given up.
 const TRIES: u32 = 8;
+const GRIPS: u32 = 3;
 /// Speed of the throttle on the pipe, 1/s.
 const EASE: f64 = 0.25;
 /// Throttle at which the arms are opened: enough to steer by, but most of the weight still presses the belly onto
@@ -252,6 +253,11 @@ impl Mission {
                     "slid off the pipe {TRIES} times, last {beside:.2} m beside it"
                 ));
             }
+            self.enter(Phase::GoAround);
+        }
+        if self.phase == Phase::Wait && v.mode == Some(Mode::Escaping) && self.grips + 1 < GRIPS {
+            self.perch_switch = false;
+            self.grips += 1;
             self.enter(Phase::GoAround);
         }
         if self.phase == Phase::Wait

@@ -144,7 +144,7 @@ impl Scenario {
         Self {
             name: String::new(),
             seed: 1,
-            time_limit: 300.0,
+            time_limit: 480.0,
             vehicle: Vehicle::default(),
             known: Known::default(),
             params: Params::default(),

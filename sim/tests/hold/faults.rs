@@ -145,7 +145,8 @@ fn flown(seed: u64, fault: Fault, part: Part, at: f64) -> Option<String> {
         lean.to_degrees()
     );
     // The vehicle has perched and departed, or the pilot flies it.
-    let ends_well = record.outcome.accomplished || (why.contains("handed back") && part != Part::Release);
+    let departs = record.samples.iter().any(|s| s.t < at && s.mode == Mode::Perched);
+    let ends_well = record.outcome.accomplished || (why.contains("handed back") && !departs);
     let bounded = lean < LEAN && speed < SPEED && low > LOW;
     let missed = fault.named().is_some_and(|(_, within)| {
         let owed = |s: &Sample| matches!(s.mode, Mode::Approach | Mode::Hold);

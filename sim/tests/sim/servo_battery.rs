@@ -54,7 +54,7 @@ fn no_perch_begins_on_a_low_servo_battery_and_nothing_is_said_of_one_that_no_one
     let low = format!("servo_batt_div = 11\nservo_batt_low = {}", 6.815 * gain(1));
     let flight = |params: &str| {
         flown(&format!(
-            "time_limit_s = 60\nsteps = [{{ do = 'arm' }}, {{ do = 'take-off' }}, {{ do = 'hover', seconds = 10 }}, \
+            "time_limit_s = 120\nsteps = [{{ do = 'arm' }}, {{ do = 'take-off' }}, {{ do = 'hover', seconds = 10 }}, \
              {{ do = 'fly-to-pipe' }}, {{ do = 'touch' }}, {{ do = 'perch' }}]\n\
              [vehicle]\nservo_charge_percent = 4\n[params]\n{params}\n"
         ))
