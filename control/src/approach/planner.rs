@@ -229,9 +229,14 @@ impl ApproachPlanner {
         }
     }
 
-    /// A companion says where the pipe is.
-    pub fn follows_target(&self) -> bool {
-        self.has_target
+    /// It needs the place of the pipe that a companion says.
+    pub fn asks_target(&self) -> bool {
+        self.has_target && self.asks()
+    }
+
+    /// It needs to see the pipe, or to be told where it is.
+    fn asks(&self) -> bool {
+        !self.leaves && self.phase != Phase::Commit
     }
 
     /// Position of the crown in the estimate's axes, m; `None` before the descent.
@@ -321,7 +326,7 @@ impl ApproachPlanner {
     /// The reason for which the attempt ends.
     pub fn step(&mut self, v: &View, dt: f32) -> Result<VelocityCommand, ApproachAbort> {
         self.since += dt;
-        let asks = !self.leaves && self.phase != Phase::Commit;
+        let asks = self.asks();
         if asks && self.has_target {
             self.follow(v, dt)?;
         } else if asks && v.range_hit.age > RANGE_AGE {

@@ -16,8 +16,9 @@ use crate::navigation::estimate::Estimate;
 use crate::pilot::stick_positions::{centred, keeps_hold};
 use crate::position_hold::{PositionHold, VelocityCommand};
 
-/// Time for which the place of the pipe may come back later than the position, s: a companion sends it less often.
-const TARGET_WAIT: f32 = 0.5;
+/// Time for which the place of the pipe may be missing, s, as long as a position may at first: a camera loses a tag, and a pipe
+/// stays where it is.
+const TARGET_WAIT: f32 = 3.0;
 
 /// State of the mode [`crate::mode::Mode::Approach`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,7 +32,8 @@ pub struct Approach {
     pending_abort_reason: Option<Reason>,
     /// The try ended by a contact.
     aborted_in_contact: bool,
-    /// Time for which it still waits for the pipe once the position is back, s; 0 while it does not wait.
+    /// It waits for the position; time for which it has waited for the place of the pipe, s.
+    adrift: bool,
     waits: f32,
 }
 
@@ -100,6 +102,7 @@ impl Approach {
             abort_reason: None,
             pending_abort_reason: None,
             aborted_in_contact: false,
+            adrift: false,
             waits: 0.0,
         };
         approach.step(&estimate, step);
@@ -132,20 +135,19 @@ impl Approach {
     }
 
     fn step(&mut self, estimate: &Estimate, step: &mut Step<'_>) {
-        let waited = self.waits > 0.0;
-        let blind = self.planner.follows_target() && step.inputs.target.is_none();
-        self.waits = if step.inputs.position_adrift() {
-            TARGET_WAIT
-        } else if blind {
-            clamp(self.waits - step.dt, 0.0, TARGET_WAIT)
+        let adrift = step.inputs.position_adrift();
+        let blind = self.planner.asks_target() && step.inputs.target.is_none();
+        self.adrift |= adrift;
+        self.waits = if blind && !adrift {
+            clamp(self.waits + step.dt, 0.0, TARGET_WAIT)
         } else {
             0.0
         };
-        if self.waits > 0.0 {
-            self.wait(estimate, step);
+        if adrift || (blind && self.waits < TARGET_WAIT) {
+            self.wait(estimate, !adrift, step);
             return;
         }
-        if waited {
+        if core::mem::take(&mut self.adrift) {
             self.position_hold.anchor_at(estimate);
             let seen = view(&self.position_hold, estimate, step);
             self.again(Reason::PositionStale, &seen, estimate, step);
@@ -181,17 +183,22 @@ impl Approach {
             .step(estimate, &step.body_motion(), &command, true, step.dt);
     }
 
-    /// Stays level against the learnt wind without a position, and rises: a decimetre by which the height is off must not
-    /// become a touch.
-    fn wait(&mut self, estimate: &Estimate, step: &mut Step<'_>) {
-        step.context.note(Some(Reason::PositionStale));
+    /// Holds a `known` position. Without one it stays level against the learnt wind, and rises: a decimetre by which the height is
+    /// off must not become a touch.
+    fn wait(&mut self, estimate: &Estimate, known: bool, step: &mut Step<'_>) {
+        let (why, rise) = if known {
+            (Reason::TargetStale, 0.0)
+        } else {
+            (Reason::PositionStale, BACK_SPEED)
+        };
+        step.context.note(Some(why));
         let rise = VelocityCommand {
-            velocity: Vec3::new(0.0, 0.0, -BACK_SPEED),
+            velocity: Vec3::new(0.0, 0.0, -rise),
             ..VelocityCommand::default()
         };
         self.wanted = self
             .position_hold
-            .step(estimate, &step.body_motion(), &rise, false, step.dt);
+            .step(estimate, &step.body_motion(), &rise, known, step.dt);
     }
 
     /// Allows one more try unless the misfit is `proven`; then climbs away.

@@ -286,6 +286,11 @@ fn a_place_of_the_pipe_that_is_stale_far_or_jumps_ends_it_by_its_name() {
         let mut w = told();
         w.expect(1.0, Mode::Approach);
         w.r.inputs.target = target;
+        if reason == Reason::TargetStale {
+            w.expect(2.9, Mode::Approach);
+            assert_eq!(w.r.out.reason, Some(reason));
+            w.expect(0.1, Mode::Approach);
+        }
         w.expect(0.03, Mode::Hold);
         assert_eq!(w.r.out.reason, Some(reason));
         // Nor does it begin with one: a new turn of the switch says why.
@@ -311,6 +316,25 @@ fn a_place_of_the_pipe_that_is_stale_far_or_jumps_ends_it_by_its_name() {
         (w.r.out.mode, w.r.out.reason),
         (Mode::Hold, Some(Reason::TargetJumps))
     );
+}
+
+/// A tag out of view for 2.5 s, more often than there are tries: it holds meanwhile, and the plan goes on to the touch.
+#[test]
+fn a_place_of_the_pipe_that_comes_back_in_time_is_waited_for() {
+    let mut w = told();
+    w.expect(1.0, Mode::Approach);
+    let place = w.r.inputs.target;
+    let mut waits = 0;
+    while w.r.out.mode == Mode::Approach {
+        w.r.inputs.target = None;
+        w.run(2.5);
+        w.r.inputs.target = place;
+        w.run(0.5);
+        waits += 1;
+        assert!(waits < 4 * TRIES, "{:?}", w.r.out.reason);
+    }
+    assert_eq!(w.r.out.mode, Mode::Contact);
+    assert!(waits > TRIES, "{waits}");
 }
 
 type Hand = fn(&mut Sticks);
@@ -550,7 +574,7 @@ fn a_position_that_comes_back_in_time_is_waited_for_and_another_try_follows() {
     w.r.expect(1.0, Mode::Approach);
     w.expect(0.3, Mode::Approach);
     let mut r = w.r.clone();
-    r.run(0.4);
+    r.run(2.8);
     assert_eq!(
         (r.out.mode, r.out.reason),
         (Mode::Hold, Some(Reason::TargetStale))
