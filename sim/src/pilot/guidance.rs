@@ -1,7 +1,7 @@
 //! Control law of the pilot: position to velocity to lean, height to climb rate to throttle, heading to yaw stick.
 //!
-//! Velocity crossover 0.46 Hz, as people have over a plant like 1/s² (3 rad/s: McRuer and Krendel, AGARDograph 188, 1974), lean at
-//! most 14°. Two trims take up the steady wind and the throttle of hover.
+//! Velocity crossover 0.38 Hz, 2.4 rad/s, below the 3 rad/s of people over a plant like 1/s² (McRuer and Krendel, AGARDograph 188,
+//! 1974), lean at most 14°. Two trims take up the steady wind and the throttle of hover.
 
 use glam::{DVec2, DVec3};
 use sophie_control::params::Params;
