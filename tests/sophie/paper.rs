@@ -230,9 +230,9 @@ fn signs(r: &Value) {
     let cells = |i: usize| column(r, "beyond", "Tracking", i);
     for ((c, mixer), yaw) in cells(0).iter().zip(cells(1)).zip(cells(6)) {
         match (c.as_str().unwrap(), mixer.as_str().unwrap()) {
-            ("B", "flexible") | ("A", "sign-aware") => {
-                assert!(yaw.as_f64().unwrap() < 9.0, "{c} {mixer} {yaw}")
-            }
+            ("B", "flexible") => assert!(yaw.as_f64().unwrap() < 6.0, "{c} {mixer} {yaw}"),
+            // Roll's moments turn it by up to 8 degrees.
+            ("A", "sign-aware") => assert!(yaw.as_f64().unwrap() < 9.0, "{c} {mixer} {yaw}"),
             ("A", _) => assert_eq!(yaw, "lost", "{mixer}"),
             _ => {}
         }
