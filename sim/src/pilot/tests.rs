@@ -59,7 +59,7 @@ fn a_hover_stays_within_15_cm_rms_in_light_gusts_and_steady_wind() {
 }
 
 /// 1.4 m/s²: the drag of a vehicle of the campaigns in 6 m/s. Gains alone stand 1 m off, too far to learn the trim as on
-/// the way.
+/// the way; with the trim he stays within half of that.
 #[test]
 fn a_strong_wind_is_leaned_against_from_afar() {
     let s = scenario(3, &with(&[Step::Hover { seconds: 60.0 }]));

@@ -37,15 +37,17 @@ fn slow_motors_that_are_known_are_held_as_the_others() {
 
 #[test]
 fn motors_that_are_slower_than_told_swing_and_are_held_gently_or_by_hand() {
-    let record = fly(&slow(3, 60.0, 0.10, 0.05), &mut Silent);
-    // Four seconds after it was noticed a small swing is left, whoever flies.
-    let from = swung_at(&record).unwrap() + 4.0;
-    let after: Vec<&Sample> = record
-        .samples
-        .iter()
-        .filter(|s| (from..from + 20.0).contains(&s.t))
-        .collect();
-    assert!(rates(&after) < 28.0, "{}", rates(&after));
+    for seed in 1..=4 {
+        let record = fly(&slow(seed, 60.0, 0.10, 0.05), &mut Silent);
+        let noticed = swung_at(&record).unwrap();
+        let within = |from: f64, to: f64| -> Vec<&Sample> {
+            let times = noticed + from..noticed + to;
+            record.samples.iter().filter(|s| times.contains(&s.t)).collect()
+        };
+        // Four seconds after it was noticed less than half is left, whoever flies: 26 deg/s of 91 in the mean of seeds 1 to 10.
+        let (before, after) = (rates(&within(-3.0, 0.0)), rates(&within(4.0, 24.0)));
+        assert!(after < 0.5 * before, "{seed}: {before} {after}");
+    }
 }
 
 /// What the false alarms of the watch rest on: about 8 deg/s.
