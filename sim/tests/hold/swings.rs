@@ -37,17 +37,20 @@ fn slow_motors_that_are_known_are_held_as_the_others() {
 
 #[test]
 fn motors_that_are_slower_than_told_swing_and_are_held_gently_or_by_hand() {
-    for seed in 1..=4 {
+    let mut sum = 0.0;
+    for seed in 1..=10 {
         let record = fly(&slow(seed, 60.0, 0.10, 0.05), &mut Silent);
         let noticed = swung_at(&record).unwrap();
         let within = |from: f64, to: f64| -> Vec<&Sample> {
             let times = noticed + from..noticed + to;
             record.samples.iter().filter(|s| times.contains(&s.t)).collect()
         };
-        // Four seconds after it was noticed less than half is left, whoever flies: 26 deg/s of 91 in the mean of seeds 1 to 10.
+        // Four seconds after it was noticed less than half is left, whoever flies.
         let (before, after) = (rates(&within(-3.0, 0.0)), rates(&within(4.0, 24.0)));
         assert!(after < 0.5 * before, "{seed}: {before} {after}");
+        sum += after;
     }
+    assert!(sum / 10.0 < 28.0, "{} deg/s in the mean", sum / 10.0);
 }
 
 /// What the false alarms of the watch rest on: about 8 deg/s.
