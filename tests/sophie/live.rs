@@ -8,6 +8,7 @@ use std::process::{Child, Command, ExitStatus, Output, Stdio};
 use std::time::{Duration, Instant};
 
 use sophie_test_support::command::{Temp, command, text};
+use sophie_test_support::signals::uninterrupted;
 
 /// A flight of 21 s.
 const HOP: &[u8] =
@@ -68,7 +69,7 @@ fn await_datagram(socket: &UdpSocket, wanted: impl Fn(&[u8]) -> bool) -> std::ne
     let began = Instant::now();
     let mut bytes = [0; 2048];
     while began.elapsed() < PATIENCE {
-        let (length, from) = socket.recv_from(&mut bytes).unwrap();
+        let (length, from) = uninterrupted(|| socket.recv_from(&mut bytes)).unwrap();
         let datagram = &bytes[..length];
         assert!(whole(datagram), "{datagram:02x?}");
         if wanted(datagram) {

@@ -130,8 +130,13 @@ mod tests {
 
     fn heard(socket: &UdpSocket) -> Vec<u8> {
         let mut bytes = [0; 64];
-        let (length, _) = socket.recv_from(&mut bytes).unwrap();
-        bytes[..length].to_vec()
+        loop {
+            match socket.recv_from(&mut bytes) {
+                // A call with a time limit is not restarted after a signal.
+                Err(e) if e.kind() == ErrorKind::Interrupted => {}
+                received => return bytes[..received.unwrap().0].to_vec(),
+            }
+        }
     }
 
     #[test]

@@ -3,3 +3,4 @@
 pub mod clients;
 pub mod command;
 pub mod flights;
+pub mod signals;

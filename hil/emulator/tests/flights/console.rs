@@ -7,6 +7,7 @@ use std::time::Duration;
 use sophie_emulator::closed_loop::Setup;
 use sophie_emulator::terminal::{Sockets, Terminal};
 use sophie_emulator::wires::BoardFault;
+use sophie_test_support::signals::uninterrupted;
 
 use super::*;
 
@@ -16,7 +17,7 @@ fn type_in(user: &mut TcpStream, command: &str, answer: &str) -> String {
     let mut said = String::new();
     let mut bytes = [0; 64];
     while !said.contains(answer) {
-        let count = user.read(&mut bytes).unwrap();
+        let count = uninterrupted(|| user.read(&mut bytes)).unwrap();
         assert!(count > 0, "the board has gone: {said}");
         said.push_str(&String::from_utf8_lossy(&bytes[..count]));
     }

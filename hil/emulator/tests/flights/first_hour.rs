@@ -6,6 +6,7 @@ use std::net::{Ipv4Addr, TcpStream};
 use sophie_emulator::closed_loop::Setup;
 use sophie_emulator::terminal::Sockets;
 use sophie_emulator::wires::BoardFault;
+use sophie_test_support::signals::uninterrupted;
 
 use super::console::{terminal, wake};
 use super::script::{Typed, differs, typed};
@@ -102,7 +103,7 @@ fn until(user: &mut TcpStream, said: &mut String, from: usize, text: &str) -> Op
         if from > 0 && news.ends_with(PROMPT) {
             return None;
         }
-        let count = user.read(&mut bytes).unwrap();
+        let count = uninterrupted(|| user.read(&mut bytes)).unwrap();
         assert!(count > 0, "the board has gone: {said}");
         said.push_str(&String::from_utf8_lossy(&bytes[..count]));
     }

@@ -13,6 +13,7 @@ use sophie_emulator::terminal::Sockets;
 use sophie_mavlink::services::ftp::PAYLOAD;
 use sophie_mavlink::wire::frame::Encoder;
 use sophie_sim::scenario::World;
+use sophie_test_support::signals::uninterrupted;
 
 use super::console::terminal;
 use super::*;
@@ -72,7 +73,7 @@ fn type_on(port: u16) -> usize {
         let mut said = Vec::<u8>::new();
         let mut bytes = [0; 256];
         while said.iter().filter(|byte| **byte == b'>').count() < 2 {
-            match user.read(&mut bytes) {
+            match uninterrupted(|| user.read(&mut bytes)) {
                 Ok(0) => return answers,
                 Ok(count) => said.extend(&bytes[..count]),
                 Err(e) if matches!(e.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => break,
@@ -135,7 +136,7 @@ impl Station {
         self.line.write_all(self.encoder.frame()).ok()?;
         let mut bytes = [0; 512];
         for _ in 0..2000 {
-            let count = match self.line.read(&mut bytes) {
+            let count = match uninterrupted(|| self.line.read(&mut bytes)) {
                 Ok(0) => return None,
                 Ok(count) => count,
                 Err(e) if matches!(e.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => break,
