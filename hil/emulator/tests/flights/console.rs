@@ -83,7 +83,7 @@ pub(super) fn wake(user: &mut TcpStream) {
     let mut bytes = [0; 64];
     // Covers a restart on a busy machine.
     user.set_read_timeout(Some(Duration::from_secs(2))).unwrap();
-    while matches!(user.read(&mut bytes), Ok(count) if count > 0) {}
+    while matches!(uninterrupted(|| user.read(&mut bytes)), Ok(count) if count > 0) {}
     loop {
         user.write_all(b"\r").unwrap();
         if matches!(user.read(&mut bytes), Ok(count) if count > 0) {
