@@ -18,6 +18,7 @@ pub(crate) mod pose_noise;
 pub mod position_estimator;
 pub mod range_hit;
 pub(crate) mod range_scale;
+pub(crate) mod settled_hits;
 pub(crate) mod surface_step;
 pub(crate) mod texture;
-pub(crate) mod vertical_fallback;
+pub(crate) mod vertical_speed;

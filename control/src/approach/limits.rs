@@ -11,26 +11,31 @@ pub const CROSS_SPEED: f32 = 0.25;
 pub const BESIDE: f32 = 0.13;
 /// Crossings from which the crown is computed, with the way out to the first.
 pub const LEGS: u8 = 3;
-/// Largest difference between two crossings, or the last one and the edge on the way back, m; and the weight of the
-/// newer.
+/// Least difference between the crown and a later edge for which the approach gives up, m; and the deviations beyond which it
+/// does.
 pub const AGREE: f32 = 0.12;
-pub const NEWER: f32 = 0.7;
+pub const AGREE_DEVIATIONS: f32 = 3.0;
+/// Deviation of an edge's place, m, and of a place by flow, m/√s.
+pub const EDGE: f32 = 0.025;
+pub const DRIFT: f32 = 0.04;
+/// Distance from the crown, in half widths of the pipe, beyond which an edge is one of its sides.
+pub const ASIDE: f32 = 0.5;
+/// Ratio of the beam's ways along the pipe and across it beyond which it passes an edge lengthwise.
+pub const AHEAD: f32 = 2.0;
 /// Time without the pipe at the end of the pass along it after which the pipe has ended, s: until then a gust lets the
 /// beam return.
 pub const END_TIME: f32 = 1.5;
-/// Accepted widths of a crossing, share of the pipe's diameter.
-pub const WIDTH: (f32, f32) = (0.7, 1.35);
-/// Accepted range step at an edge, relative to the first crossing: at most 1.25 x + half a diameter, at least 0.5 x
-/// where the beam falls. Uneven ground and the flank explain the slack. A range that becomes 1.6 times too long shows
-/// a third surface below the crown, then steps of 1.6 times.
-pub const HIGHER: f32 = 1.25;
-pub const LOWEST: f32 = 0.5;
-/// Time for which such a step must last, s: a jumping range returns earlier, and has a fault of its own.
-pub const LASTING: f32 = 0.35;
+/// Accepted widths of a crossing, share of the pipe's diameter: of a pipe of 0.2 m where 0.3 m is set, half of which passes unseen in a
+/// gust, to one that a gust lets the beam follow.
+pub const WIDTH: (f32, f32) = (0.3, 1.6);
+/// Change of a level that the vehicle has crossed after which the range is inconsistent, m: the smallest pipe's diameter.
+pub const MISFIT: f32 = 0.2;
+/// Age of the height beyond which the vehicle rises, s: a vertical speed that is off by 0.1 m/s costs a quarter of [`LOW`].
+pub const LOST_TIME: f32 = 1.0;
 /// Heights over the crown, m: at the start of another attempt, and of the crossings.
 pub const HIGH: f32 = 0.6;
 pub const LOW: f32 = 0.4;
-/// Climb after a range misfit, m: with a scale of 1.6 it is still [`HIGH`].
+/// Climb after a range that is inconsistent, m: with a scale of 1.6 it is still [`HIGH`].
 pub const CLEAR: f32 = 1.0;
 /// Height over the ground to which it climbs at most, m: flow is used up to 2.5 m.
 pub const CEILING: f32 = 2.3;
@@ -48,8 +53,6 @@ pub const CORRECT_SPEED: f32 = 0.05;
 /// Range below which the descent pauses while the vehicle is off the crown by more than the second figure, m.
 pub const NEAR: f32 = 0.25;
 pub const NEAR_OFF: f32 = 0.06;
-/// Range below which the beam does not meet the flank while the vehicle is over the crown, m.
-pub const STEADY: f32 = 0.3;
 /// Range at which the vehicle waits to be over the crown, m: the least at which flow works with some margin.
 pub const GATE: f32 = 0.10;
 /// Speed back up to the gate, m/s, and the time in which a descent stops, s: half of [`DESCENT`] over the slew limit
@@ -81,8 +84,6 @@ pub const WAY_TIME: f32 = 15.0;
 pub const CENTRE_TIME: f32 = 12.0;
 pub const GATE_WAIT: f32 = 15.0;
 pub const TOUCH_WAIT: f32 = 2.5;
-/// Height over the ground of the take-off beyond which a surface may be a pipe, m.
-pub const RAISED: f32 = 0.3;
 /// Age beyond which a range is stale, s.
 pub const RANGE_AGE: f32 = 0.3;
 /// Slew limit of the horizontal velocity command, m/s²: the hold follows faster turns with twice the speed.

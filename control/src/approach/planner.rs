@@ -8,12 +8,13 @@ mod tests;
 mod to_target;
 
 use crate::approach::limits::*;
+use crate::approach::pipe_edges::{Edge, PipeEdges};
 use crate::approach::pipe_target::PipeTarget;
-use crate::approach::range_edges::{Edge, Edges};
 use crate::maths::frames::about_down;
 use crate::maths::hold_timer::HoldTimer;
 use crate::maths::scalar::{self, clamp, clamp_abs};
 use crate::maths::vector::Vec3;
+use crate::navigation::estimate::SurfaceLevels;
 use crate::navigation::range_hit::RangeHit;
 use crate::params::Params;
 use crate::position_hold::VelocityCommand;
@@ -33,10 +34,8 @@ pub enum ApproachAbort {
     NotTouched,
     /// The range is stale.
     RangeStale,
-    /// The range shows an unknown surface below the crown.
+    /// Ground or pipe are no longer at the level at which the vehicle has crossed them.
     RangeMisfit,
-    /// The range shows higher steps than the first crossing.
-    RangeLong,
     /// The reported place of the pipe is stale.
     TargetStale,
     /// The reported place is out of reach.
@@ -60,6 +59,8 @@ pub struct View {
     pub age: f32,
     /// Newest hit of the range.
     pub range_hit: RangeHit,
+    /// Levels of the surfaces below.
+    pub levels: SurfaceLevels,
     /// Reported place of the pipe; with it the range is not used.
     pub target: Option<PipeTarget>,
 }
@@ -86,14 +87,6 @@ enum Phase {
     Commit,
 }
 
-/// An unexpected range step: the abort reason for it, the surface depth before it, m down, and its duration, s.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Other {
-    doubt: ApproachAbort,
-    from: f32,
-    seconds: f32,
-}
-
 /// The planner and its state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ApproachPlanner {
@@ -112,18 +105,12 @@ pub struct ApproachPlanner {
     returns: bool,
     /// Height to climb to, m.
     up: f32,
-    edges: Edges,
+    edges: PipeEdges,
     seen: u8,
-    /// Heights of the steps onto the pipe and off it at the first crossing, m: infinite until then, and if the surface
-    /// beside it was out of reach.
-    steps: [f32; 2],
-    /// The last step off the pipe is the one of the first crossing.
-    first_off: bool,
-    /// Longest range so far, m.
-    farthest: f32,
-    other: Option<Other>,
+    /// Levels of ground and pipe at the first crossing, m down in the estimate's axes.
+    crossed_levels: Option<[f32; 2]>,
     /// Middle of the sweeps, forward and right, m; side of the present leg, half the sweep's width, m, and legs flown.
-    middle: Vec3,
+    middle: [f32; 2],
     side: f32,
     reach: f32,
     legs: u8,
@@ -131,9 +118,10 @@ pub struct ApproachPlanner {
     entered: Option<f32>,
     /// Middle of the object that the search met last, by one of its edges, right, m.
     met: Option<f32>,
-    /// The pipe's crown, right and down, m, and half the pipe's width, m.
+    /// The pipe's crown, right and down, m, the variance of the former, m², and half the pipe's width, m.
     crown_y: f32,
     crown_z: f32,
+    crown_variance: f32,
     half: f32,
     /// The crown is that of a crossing from this height.
     crown_crossed: bool,
@@ -171,13 +159,10 @@ impl ApproachPlanner {
             leaves: false,
             returns: false,
             up: -RISE,
-            edges: Edges::default(),
+            edges: PipeEdges::default(),
             seen: v.range_hit.count,
-            steps: [f32::INFINITY; 2],
-            first_off: false,
-            farthest: 0.0,
-            other: None,
-            middle: Vec3::ZERO,
+            crossed_levels: None,
+            middle: [0.0; 2],
             side: 1.0,
             reach: SWEEP,
             legs: 0,
@@ -185,6 +170,7 @@ impl ApproachPlanner {
             met: None,
             crown_y: 0.0,
             crown_z: 0.0,
+            crown_variance: 0.0,
             half: 0.5 * p.pipe_diameter,
             crown_crossed: false,
             along: 0.0,
@@ -219,13 +205,17 @@ impl ApproachPlanner {
     /// An attempt that climbs to `HIGH` over `crown_position`, as last known, and sweeps about it: an escape has
     /// carried the vehicle a metre or two away.
     pub fn back_to(crown_position: Vec3, p: &Params, v: &View, heading: f32, reset_count: u8) -> Self {
-        let planner = Self::again(p, v, heading, reset_count, false);
-        let off = planner.local(crown_position);
+        Self::again(p, v, heading, reset_count, false).about(crown_position)
+    }
+
+    /// The search is about `crown_position`, as last known, from [`HIGH`] above it.
+    fn about(self, crown_position: Vec3) -> Self {
+        let off = self.local(crown_position);
         Self {
             up: clamp(off.z - HIGH, -2.0 * HIGH, 0.0),
-            middle: Vec3::new(off.x, off.y, 0.0),
+            middle: [off.x, off.y],
             side: if off.y > 0.0 { 1.0 } else { -1.0 },
-            ..planner
+            ..self
         }
     }
 
@@ -234,21 +224,23 @@ impl ApproachPlanner {
         self.has_target && self.asks()
     }
 
-    /// It needs to see the pipe, or to be told where it is.
+    /// It needs the range, or the reported place of the pipe.
     fn asks(&self) -> bool {
         !self.leaves && self.phase != Phase::Commit
     }
 
     /// Position of the crown in the estimate's axes, m; `None` before the descent.
     pub fn crown_position(&self) -> Option<Vec3> {
-        let position = about_down(self.above_crown(0.0), self.heading) + self.origin;
-        self.committed().then_some(position)
+        self.committed().then_some(self.crown())
+    }
+
+    fn crown(&self) -> Vec3 {
+        about_down(self.above_crown(0.0), self.heading) + self.origin
     }
 
     /// A climb after a misleading range, to leave the pipe: no higher than flow sees the ground.
     pub fn cleared(&self, p: &Params, v: &View, heading: f32, reset_count: u8) -> Self {
-        let ground = self.edges.ground_depth();
-        let height = ground.map_or(self.farthest, |ground| ground - self.local(v.position).z);
+        let height = v.levels.ground - v.position.z;
         Self {
             up: -clamp(CEILING - height, 0.0, CLEAR),
             ..Self::again(p, v, heading, reset_count, true)
@@ -261,28 +253,23 @@ impl ApproachPlanner {
         if self.leaves {
             return again;
         }
-        let known = !matches!(self.phase, Phase::Climb | Phase::Search);
-        let top = if known { self.crown_z } else { self.edges.top() };
-        let over = self.origin.z + top - HIGH - v.position.z;
-        Self {
+        let again = Self {
             has_target: self.has_target,
-            steps: self.steps,
-            farthest: self.farthest,
-            up: clamp(over, -2.0 * HIGH, 0.0),
             ..again
+        };
+        if matches!(self.phase, Phase::Climb | Phase::Search) {
+            // Higher than the surface below.
+            let top = v.levels.raised.unwrap_or(v.levels.ground);
+            let up = clamp(top - HIGH - v.position.z, -2.0 * HIGH, 0.0);
+            Self { up, ..again }
+        } else {
+            again.about(self.crown())
         }
     }
 
     /// A contact in this phase is with the pipe.
     pub fn committed(&self) -> bool {
         matches!(self.phase, Phase::Descend | Phase::Commit)
-    }
-
-    /// The descent is so near that only the pipe's back can be below.
-    pub fn near_crown(&self, v: &View) -> bool {
-        let at = self.local(v.position);
-        let over = (at.y - self.crown_y).abs() < NEAR_OFF;
-        self.phase == Phase::Descend && !self.has_target && over && self.clearance(at) < STEADY
     }
 
     /// The vehicle climbs.
@@ -307,7 +294,7 @@ impl ApproachPlanner {
         let off = match (self.phase, self.met) {
             (Phase::Search, Some(met)) => here - met,
             // Over an object from the beginning: continue in the direction of the sweep.
-            (Phase::Search, None) if self.origin.z + self.edges.surface_depth() < -RAISED => self.side,
+            (Phase::Search, None) if self.edges.on() => self.side,
             (Phase::Search, None) => return None,
             _ => here - self.crown_y,
         };
@@ -332,50 +319,31 @@ impl ApproachPlanner {
         } else if asks && v.range_hit.age > RANGE_AGE {
             return Err(ApproachAbort::RangeStale);
         }
-        let before = self.edges.surface_depth();
-        let step = self.take_range(v).filter(|_| !self.has_target);
-        if let (Some((Edge::Off(_), true)), true) = (step, self.first_off) {
-            let [_, off] = &mut self.steps;
-            *off = self.edges.height().unwrap_or(f32::INFINITY);
-        }
-        self.first_off &= step.is_none_or(|(_, continues)| continues);
-        let at = self.local(v.position);
-        if let Some((edge, continues)) = step {
-            // What began as too low a step may have been a part of it.
-            let whole = continues && self.compare(edge, at).is_ok();
-            self.other = self.other.filter(|other| !whole && !self.at_known(other.from));
-            // A step onto something is compared as it begins: with a jump of the range just before it would be too high.
-            let again = continues && matches!(edge, Edge::Onto(_));
-            let judged = asks && !self.climbs() && !again;
-            let found = self.compare(edge, at).err().filter(|_| judged);
-            let found = found.map(|doubt| Other {
-                doubt,
-                from: before,
-                seconds: 0.0,
-            });
-            self.other = self.other.or(found);
-        }
-        if let Some(other) = &mut self.other {
-            other.seconds += dt;
-            if other.seconds > LASTING {
-                return Err(other.doubt);
+        let edge = self.take_range(v).filter(|_| !self.has_target);
+        self.crown_variance += DRIFT * DRIFT * dt;
+        if !self.has_target {
+            // Another try is about the crown that was known.
+            if asks && self.is_misfit(&v.levels) {
+                return Err(ApproachAbort::RangeMisfit);
             }
+            self.crown_z = v
+                .levels
+                .raised
+                .map_or(self.crown_z, |level| level - self.origin.z);
         }
-        let edge = step.map(|(edge, _)| edge);
+        let at = self.local(v.position);
         let held = self.local(v.held);
         let velocity = about_down(v.velocity, -self.heading);
         let wanted = match self.phase {
-            Phase::Climb => Ok(self.climb(at, held)),
-            Phase::Search => self.search(edge, held),
-            Phase::Over => self.over(at, held, scalar::wrap_pi(self.heading - v.heading)),
-            Phase::Fore | Phase::Aft => self.look_along(edge, held, dt),
-            Phase::Cross => self.cross(edge, held),
-            Phase::Centre => self.centre(edge, at, held),
-            Phase::Descend => self.descend(edge, (at, velocity, held), v.age, dt),
-            Phase::Commit => self.commit(at, held),
+            Phase::Climb => self.climb(at, held),
+            Phase::Search => self.search(edge, held, &v.levels)?,
+            Phase::Over => self.over(at, held, scalar::wrap_pi(self.heading - v.heading))?,
+            Phase::Fore | Phase::Aft => self.look_along(edge, held, dt)?,
+            Phase::Cross => self.cross(edge, held)?,
+            Phase::Centre => self.centre(edge, at, held)?,
+            Phase::Descend => self.descend(edge, (at, velocity, held), v.age, dt)?,
+            Phase::Commit => self.commit(at, held)?,
         };
-        // The abort reason of a doubtful range has precedence over its consequences.
-        let wanted = wanted.map_err(|doubt| self.other.map_or(doubt, |other| other.doubt))?;
         let [x, y] = self.speed;
         let (x, y) = (
             scalar::slew(x, wanted.x, SLEW * dt),
@@ -405,49 +373,58 @@ impl ApproachPlanner {
         if self.since > limit { Err(doubt) } else { Ok(()) }
     }
 
-    /// The step that a new range shows.
-    fn take_range(&mut self, v: &View) -> Option<(Edge, bool)> {
+    /// The edge that a new range shows.
+    fn take_range(&mut self, v: &View) -> Option<Edge> {
         if v.range_hit.count == self.seen {
             return None;
         }
         self.seen = v.range_hit.count;
-        let range = v
-            .range_hit
-            .surface_point
-            .map_or(0.0, |point| point.z - v.position.z);
-        self.farthest = self.farthest.max(range);
-        match v.range_hit.surface_point {
-            Some(point) => self.edges.step(self.local(point), range),
-            // No target in reach: farther than every surface.
-            None => self.edges.step_beyond(self.local(v.position)),
-        }
+        let hit = RangeHit {
+            surface_point: v.range_hit.surface_point.map(|point| self.local(point)),
+            lens: self.local(v.range_hit.lens),
+            beam: about_down(v.range_hit.beam, -self.heading),
+            ..v.range_hit
+        };
+        let levels = SurfaceLevels {
+            ground: v.levels.ground - self.origin.z,
+            raised: v.levels.raised.map(|level| level - self.origin.z),
+        };
+        self.edges.take(&hit, &levels, 0.5 * self.diameter)
     }
 
-    /// The present surface is `before`, m down, again, or the pipe, or the ground at its sides.
-    fn at_known(&self, before: f32) -> bool {
-        let [onto, off] = self.steps.map(|step| self.crown_z + step);
-        let near = |known: f32| (self.edges.surface_depth() - known).abs() < 0.5 * self.diameter;
-        self.sees_pipe() || [before, onto, off].into_iter().any(near)
+    /// Since the first crossing the ground has risen, or the pipe has another level, or none.
+    fn is_misfit(&self, levels: &SurfaceLevels) -> bool {
+        let Some([ground, pipe]) = self.crossed_levels else {
+            return false;
+        };
+        let elsewhere = |level: f32| (level - pipe).abs() > MISFIT;
+        ground - levels.ground > MISFIT || levels.raised.is_none_or(elsewhere)
     }
 
-    /// Compares the step at `edge`, seen from `at`, with the steps of the first crossing.
-    fn compare(&self, edge: Edge, at: Vec3) -> Result<(), ApproachAbort> {
-        let [onto, off] = self.steps;
-        if !(onto + off).is_finite() {
-            return Ok(());
+    /// Moves the crown to `y`, which is known to `variance`, m²; false if it cannot be there.
+    fn follow_crown(&mut self, y: f32, variance: f32) -> bool {
+        let off = y - self.crown_y;
+        let total = self.crown_variance + variance;
+        if off.abs() > AGREE && off * off > AGREE_DEVIATIONS * AGREE_DEVIATIONS * total {
+            return false;
         }
-        let most = onto.max(off);
-        let falls = matches!(edge, Edge::Off(_));
-        let from_crown = |step| self.edges.surface_depth() - step - self.edges.top() < 0.5 * self.diameter;
-        match self.edges.height() {
-            Some(step) if step > HIGHER * most + 0.5 * self.diameter => Err(ApproachAbort::RangeLong),
-            Some(step) if falls && from_crown(step) && step < LOWEST * onto.min(off) => {
-                Err(ApproachAbort::RangeMisfit)
-            }
-            // From this height the surface was within reach before.
-            None if falls && self.edges.top() + most - at.z < self.farthest => Err(ApproachAbort::RangeLong),
-            _ => Ok(()),
+        self.crown_y += off * self.crown_variance / total;
+        self.crown_variance *= variance / total;
+        true
+    }
+
+    /// Follows the crown by an edge of one of its sides, of which the beam's way says which it is; what it passes lengthwise near
+    /// the crown is an end of the pipe. False if it cannot be there.
+    fn follow_edge(&mut self, edge: Option<Edge>) -> bool {
+        let Some(Edge { at, way, onto }) = edge else {
+            return true;
+        };
+        let off = at.y - self.crown_y;
+        if off.abs() < ASIDE * self.half && way.x.abs() > AHEAD * way.y.abs() {
+            return true;
         }
+        let side = if (way.y < 0.0) == onto { 1.0 } else { -1.0 };
+        self.follow_crown(at.y - side * self.half, EDGE * EDGE)
     }
 
     /// Velocity from the held point to `target`, horizontally at most `speed` and vertically at most `climb`, m/s.
@@ -473,52 +450,48 @@ impl ApproachPlanner {
         Self::velocity_towards(held, target, CROSS_SPEED, CLIMB_SPEED)
     }
 
-    /// Middle of the pipe, right, m, if this `edge` ends a crossing.
-    fn crossed(&mut self, edge: Option<Edge>) -> Option<f32> {
-        match (edge?, self.entered) {
-            (Edge::Onto(at), _) => {
-                self.entered = Some(at.y);
-                let [onto, off] = &mut self.steps;
-                if off.is_infinite() {
-                    *onto = self.edges.height().unwrap_or(f32::INFINITY);
-                }
-                None
-            }
-            (Edge::Off(at), Some(from)) => {
-                self.entered = None;
-                let width = (at.y - from).abs();
-                let (least, most) = WIDTH;
-                if !(least * self.diameter..=most * self.diameter).contains(&width) {
-                    return None;
-                }
-                (self.half, self.crown_z) = (0.5 * width, self.edges.top());
-                let [onto, off] = &mut self.steps;
-                if onto.is_finite() && off.is_infinite() {
-                    self.first_off = true;
-                    *off = self.edges.height().unwrap_or(f32::INFINITY);
-                }
-                Some(0.5 * (at.y + from))
-            }
-            (Edge::Off(_), None) => None,
+    /// Middle of the pipe and half its width, right, m, if this `edge` ends a crossing.
+    fn crossed(&mut self, edge: Option<Edge>) -> Option<(f32, f32)> {
+        let Edge { at, onto, .. } = edge?;
+        if onto {
+            self.entered = Some(at.y);
+            return None;
         }
+        let from = self.entered.take()?;
+        let width = (at.y - from).abs();
+        let (least, most) = WIDTH;
+        let sound = (least * self.diameter..=most * self.diameter).contains(&width);
+        sound.then_some((0.5 * (at.y + from), 0.5 * width))
     }
 
-    fn search(&mut self, edge: Option<Edge>, held: Vec3) -> Result<Vec3, ApproachAbort> {
+    fn search(
+        &mut self,
+        edge: Option<Edge>,
+        held: Vec3,
+        levels: &SurfaceLevels,
+    ) -> Result<Vec3, ApproachAbort> {
         self.late(SEARCH_TIME, ApproachAbort::NoPipe)?;
         self.met = match edge {
-            Some(Edge::Onto(at)) => Some(at.y + self.side * self.half),
-            Some(Edge::Off(at)) => Some(at.y - self.side * self.half),
+            Some(Edge { at, onto: true, .. }) => Some(at.y + self.side * self.half),
+            Some(Edge { at, onto: false, .. }) => Some(at.y - self.side * self.half),
             None => self.met,
         };
-        if let Some(middle) = self.crossed(edge) {
-            self.crown_y = middle;
+        if let Some((middle, half)) = self.crossed(edge) {
+            (self.crown_y, self.half, self.crown_variance) = (middle, half, 0.5 * EDGE * EDGE);
             self.along = held.x;
+            let crossed = levels.raised.map(|pipe| [levels.ground, pipe]);
+            self.crossed_levels = self.crossed_levels.or(crossed);
             self.enter(Phase::Over);
         }
-        // A crossing that has entered the pipe continues to its far edge.
-        let beyond = self.entered.map_or(0.0, |_| self.diameter);
+        // A crossing that has entered the pipe, whose level may not be known yet, continues to its far edge.
+        let beyond = if self.entered.is_some() || self.edges.on() {
+            self.diameter
+        } else {
+            0.0
+        };
         let across = self.side * (self.reach + beyond) - self.lens.y;
-        let target = self.middle + Vec3::new(0.0, across, held.z);
+        let [x, y] = self.middle;
+        let target = Vec3::new(x, y + across, held.z);
         if (target.y - held.y).abs() < REACHED {
             self.reach += if self.side < 0.0 { SWEEP } else { 0.0 };
             self.side = -self.side;
@@ -561,23 +534,24 @@ impl ApproachPlanner {
 
     /// The range sees the pipe's back.
     fn sees_pipe(&self) -> bool {
-        self.has_target || (self.edges.surface_depth() - self.crown_z).abs() < 0.5 * self.diameter
+        self.has_target || self.edges.on()
     }
 
     fn look_along(&mut self, edge: Option<Edge>, held: Vec3, dt: f32) -> Result<Vec3, ApproachAbort> {
         self.late(WAY_TIME, ApproachAbort::NotCentred)?;
         let fore = self.phase == Phase::Fore;
-        let middle = self.middle.x;
+        let [middle, _] = self.middle;
         let goal = middle + if fore { LOOK } else { -LOOK };
         // The beam follows the crown, not the vehicle.
         let Vec3 { x, y, .. } = self.lens;
         let target = Vec3::new(goal - x, self.crown_y - y, self.crown_z - LOW);
         // A gust may carry the beam off the side: a pipe that the beam returns to has not ended.
-        match edge {
-            Some(Edge::Off(at)) => self.fell = Some(at.x),
-            Some(Edge::Onto(_)) => self.fell = None,
-            None => (),
-        }
+        self.fell = match edge {
+            Some(Edge { at, onto: false, .. }) => Some(at.x),
+            Some(Edge { onto: true, .. }) => None,
+            None => self.fell,
+        };
+        self.follow_edge(edge);
         let there = (target.x - held.x).abs() < REACHED;
         let sees = self.sees_pipe();
         self.lost.step(there && !sees, dt);
@@ -608,11 +582,15 @@ impl ApproachPlanner {
 
     fn cross(&mut self, edge: Option<Edge>, held: Vec3) -> Result<Vec3, ApproachAbort> {
         self.late(2.0 * WAY_TIME, ApproachAbort::NotCentred)?;
-        if let Some(middle) = self.crossed(edge) {
-            if self.crown_crossed && (self.crown_y - middle).abs() > AGREE {
+        if let Some((middle, half)) = self.crossed(edge) {
+            // One from this height says more than the one of the search.
+            if !core::mem::replace(&mut self.crown_crossed, true) {
+                (self.crown_y, self.half, self.crown_variance) = (middle, half, 0.5 * EDGE * EDGE);
+            } else if self.follow_crown(middle, 0.5 * EDGE * EDGE) {
+                self.half += 0.5 * (half - self.half);
+            } else {
                 return Err(ApproachAbort::NotCentred);
             }
-            (self.crown_crossed, self.crown_y) = (true, middle);
         }
         let mut target = self.above_crown(LOW);
         target.y += self.side * (self.half + BESIDE) - self.lens.y;
@@ -632,23 +610,9 @@ impl ApproachPlanner {
 
     fn centre(&mut self, edge: Option<Edge>, at: Vec3, held: Vec3) -> Result<Vec3, ApproachAbort> {
         self.late(CENTRE_TIME, ApproachAbort::NotCentred)?;
-        match edge {
-            // The vehicle comes from the side at which the last crossing ended, so that the edge shows the drift
-            // since.
-            Some(Edge::Onto(onto)) => {
-                let inwards = if onto.y < self.crown_y {
-                    self.half
-                } else {
-                    -self.half
-                };
-                let middle = onto.y + inwards;
-                if (middle - self.crown_y).abs() > AGREE {
-                    return Err(ApproachAbort::NotCentred);
-                }
-                self.crown_y += NEWER * (middle - self.crown_y);
-            }
-            // A gust carries the beam off the side.
-            Some(Edge::Off(_)) | None => (),
+        // The vehicle comes from the side at which the last crossing ended: the edge shows the drift since.
+        if !self.follow_edge(edge) {
+            return Err(ApproachAbort::NotCentred);
         }
         // The vehicle settles during the descent: each second here costs a centimetre of the edge's accuracy.
         if (at.y - self.crown_y).abs() < NEAR_OFF && self.sees_pipe() {
@@ -670,7 +634,9 @@ impl ApproachPlanner {
         dt: f32,
     ) -> Result<Vec3, ApproachAbort> {
         self.late(GATE_WAIT, ApproachAbort::NotCentred)?;
-        if matches!(edge, Some(Edge::Off(_))) || !self.sees_pipe() {
+        // A beam that leaves the pipe shows where the crown is, unless it does not come back.
+        let sees = self.sees_pipe();
+        if !self.follow_edge(edge) || self.lost.step(!sees, dt) > END_TIME {
             return Err(ApproachAbort::PipeLost);
         }
         let off = at.y - self.crown_y;
@@ -699,7 +665,7 @@ impl ApproachPlanner {
             (true, true) => (LOW, CLIMB_SPEED),
         };
         let braked = HEIGHT_GAIN * (self.clearance(held).min(stops) - goal);
-        command.z = if waits && range < NEAR && !blind {
+        command.z = if !sees || (waits && range < NEAR && !blind) {
             0.0
         } else {
             clamp(braked, -back, DESCENT)

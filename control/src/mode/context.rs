@@ -20,7 +20,6 @@ use crate::gripper::retained_grip::GripMemory;
 use crate::maths::hold_timer::HoldTimer;
 use crate::maths::scalar::clamp;
 use crate::navigation::estimate::Estimate;
-use crate::navigation::vertical_fallback::VerticalFallback;
 use crate::oscillation::Oscillation;
 use crate::params::Params;
 use crate::pilot::rc::Sticks;
@@ -94,8 +93,6 @@ pub struct Context {
     pub crown_offset: CrownOffset,
     /// Acceleration along world down, m/s².
     pub accel_down: f32,
-    /// Vertical speed from the integral of this acceleration, independent of the position estimate.
-    pub vertical_fallback: VerticalFallback,
     pub collective: Collective,
     pub ground_probe: GroundProbe,
     /// Number of times that the arms have tightened since they closed.
@@ -137,7 +134,6 @@ impl Context {
             fall: Fall::default(),
             crown_offset: CrownOffset::default(),
             accel_down: 0.0,
-            vertical_fallback: VerticalFallback::default(),
             collective: Collective::default(),
             ground_probe: GroundProbe::default(),
             tightened: 0,

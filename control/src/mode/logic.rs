@@ -53,11 +53,6 @@ impl ModeLogic {
     }
 
     #[cfg(test)]
-    pub(super) fn forget_vertical_fallback(&mut self) {
-        self.context.vertical_fallback = crate::navigation::vertical_fallback::VerticalFallback::default();
-    }
-
-    #[cfg(test)]
     pub(super) fn forget_thrust(&mut self) {
         self.context.thrust.forget();
     }
@@ -75,15 +70,6 @@ impl ModeLogic {
         let refused = remote.and_then(|request| self.weigh(request.order, &inputs, dt));
         let inputs = &self.context.remote.apply(inputs);
         self.context.observe(inputs, air(before), dt);
-        let accel_down = self.context.accel_down;
-        let position = inputs.position.as_ref();
-        self.context
-            .vertical_fallback
-            .step(flies_free(before), accel_down, position, dt);
-        let inputs = &Inputs {
-            position: inputs.position.map(|e| self.context.vertical_fallback.apply(e)),
-            ..*inputs
-        };
         let conditions = TestConditions::new(
             before,
             self.state.behaviour().grip_memory(),
@@ -169,13 +155,6 @@ impl ModeLogic {
             thrust_factor: context.thrust.now(),
         }
     }
-}
-
-fn flies_free(mode: Mode) -> bool {
-    matches!(
-        mode,
-        Mode::Flight | Mode::Hold | Mode::Approach | Mode::Escaping | Mode::Failsafe
-    )
 }
 
 fn air(mode: Mode) -> Air {

@@ -122,11 +122,6 @@ impl PipeFootprint {
         (drop, self.fallen(side + PLACE + beside) - drop)
     }
 
-    /// A surface `below` m under its top may be its own flank.
-    pub fn is_flank(&self, below: f32) -> bool {
-        below < self.radius + PLACE
-    }
-
     /// Drop of its round back `off` m beside its crown, m; farther out, that of its edge.
     fn fallen(&self, off: f32) -> f32 {
         let square = self.radius * self.radius - off * off;
@@ -135,11 +130,6 @@ impl PipeFootprint {
         } else {
             self.radius
         }
-    }
-
-    /// Coordinate of `place` in its direction across, m.
-    pub fn across(&self, place: Vec3) -> f32 {
-        place.dot(self.across)
     }
 
     /// Offset of its centre line from `place`, in its direction across, m.
@@ -312,7 +302,6 @@ mod tests {
                     (drop - 0.2 * radius).abs() < 1e-4 && doubt > 0.015,
                     "{drop} {doubt}"
                 );
-                assert!(band.is_flank(radius) && !band.is_flank(radius + 0.05));
             }
         }
     }

@@ -13,17 +13,18 @@ use crate::maths::frames::about_down;
 use crate::maths::scalar::{self, GRAVITY};
 use crate::maths::vector::Vec3;
 use crate::navigation::air_pressure::AirPressure;
-use crate::navigation::axis_filter::{Axis, Change};
+use crate::navigation::axis_filter::{Axis, Change, DOWN, LEANING};
 use crate::navigation::baro_height::{BaroHeight, PressureFault};
-use crate::navigation::estimate::Estimate;
+use crate::navigation::estimate::{Estimate, SurfaceLevels};
 use crate::navigation::external_pose::{ExternalPoseMonitor, PoseFault, TURN_GAIN, TURN_STEP};
 use crate::navigation::fix::Fix;
-use crate::navigation::fix_age::{DEAD_RECKONING_INVALID_AGE, LOST_AGE, UNKNOWN_AGE};
-use crate::navigation::flow_range::{FlowRangeFault, FlowRangeFusion, beam};
+use crate::navigation::fix_age::{DEAD_RECKONING_INVALID_AGE, HEIGHT_AGE, LOST_AGE, UNKNOWN_AGE};
+use crate::navigation::flow_range::{FlowRangeFault, FlowRangeFusion, Frame, beam};
 use crate::navigation::flow_range_sample::{Flow, GroundView};
 use crate::navigation::history::{StateHistory, StateSnapshot};
 use crate::navigation::inertial::{Inertial, STEP_MAX};
 use crate::navigation::range_hit::RangeHit;
+use crate::navigation::vertical_speed::{VerticalSpeed, VerticalState};
 use crate::params::Params;
 
 /// Fixes before the estimate is published, half a second at 50 Hz, and the largest deviation of the velocity then,
@@ -45,8 +46,8 @@ const FLOWS_REFUSED_MAX: u32 = 50;
 /// Range below which the vehicle stands, m, and the variance of its horizontal speed then, (m/s)².
 const STANDING: f32 = 0.05;
 const STAND_SPEED: f32 = 0.01;
-/// Time over which the motion of the beam across an edge is measured, µs.
-const EDGE_TIME: u64 = 100_000;
+/// Variance of a vertical speed of zero at rest, (m/s)².
+const REST_SPEED: f32 = 0.01;
 /// Cut-off of the lateral and the vertical disturbance, rad/s.
 const LATERAL_CUTOFF: f32 = 20.0;
 const VERTICAL_CUTOFF: f32 = 8.0;
@@ -84,6 +85,9 @@ pub struct PositionEstimator {
     flow_range: FlowRangeFusion,
     pose_monitor: ExternalPoseMonitor,
     baro_height: BaroHeight,
+    vertical_speed: VerticalSpeed,
+    /// Time of the last step, µs.
+    at_us: u64,
     /// End of the last track by flow, µs, and its axes, whose biases seed the next track.
     learnt: Option<(u64, [Axis; 3])>,
     /// Measurement times of the newest fix and the newest flow processed, µs: each is processed once.
@@ -102,6 +106,8 @@ impl PositionEstimator {
             flow_range: FlowRangeFusion::new(p.pipe_diameter, p.flow_lens()),
             pose_monitor: ExternalPoseMonitor::default(),
             baro_height: BaroHeight::default(),
+            vertical_speed: VerticalSpeed::default(),
+            at_us: 0,
             learnt: None,
             seen_us: 0,
             flow_us: 0,
@@ -144,7 +150,12 @@ impl PositionEstimator {
             return None;
         }
         let down = inertial.q.rotate(inertial.accel).z + GRAVITY;
-        self.flow_range.predict(at_us, flies.then_some(down), inertial.q);
+        let dt = seconds(core::mem::replace(&mut self.at_us, at_us), at_us);
+        self.vertical_speed
+            .step(down, flies, scalar::clamp(dt, 0.0, STEP_MAX));
+        let vertical = self.vertical_speed.state();
+        self.flow_range
+            .predict(at_us, flies.then_some(down), inertial.q, &vertical);
         // A wrongly scaled range gives no height; its changes may prove that it is right again.
         let range = match range {
             Some((at, distance)) if self.flow_range.scale.wrong() => {
@@ -192,7 +203,7 @@ impl PositionEstimator {
                 *track = height.map(|height| {
                     self.history.clear();
                     self.baro_height.forget();
-                    Track::above(at_us, height, self.learnt.as_ref())
+                    Track::above(at_us, height, self.learnt.as_ref(), &vertical)
                 });
                 // The track's own position: the interval of the next flow may begin here.
                 let position = track.as_ref().map_or(here.position, Track::position);
@@ -209,6 +220,9 @@ impl PositionEstimator {
         let reset_count = track.reset_count;
         if self.pose_monitor.fault() == Some(PoseFault::Disagrees) && !track.dead_reckoning_invalid {
             track.invalidate_dead_reckoning();
+            // The poses have bent the vertical speed, too.
+            let [_, _, axis] = &mut track.axes;
+            axis.set_speed(self.vertical_speed.inertial());
             track.dead_reckoning_invalid = true;
             self.baro_height.forget();
         }
@@ -221,7 +235,15 @@ impl PositionEstimator {
         }
         let posed = track.posed && seconds(track.pose_us, at_us) < POSE_FRESH;
         if let Some((at, distance)) = range {
-            track.take_range(&mut self.history, &mut self.flow_range, (at, distance), posed);
+            let range = (at, distance, vertical);
+            track.take_range(&mut self.history, &mut self.flow_range, range, posed);
+        }
+        if posed {
+            let dt = scalar::clamp(dt, 0.0, STEP_MAX);
+            self.vertical_speed.follow(track.velocity().z, dt);
+        }
+        if self.vertical_speed.rests() && !posed {
+            track.rest();
         }
         if let Some(flow) = flow {
             track.take_flow(&mut self.history, &mut self.flow_range, &flow, posed);
@@ -233,13 +255,14 @@ impl PositionEstimator {
         track.flow_inconsistent = flow_inconsistent;
         if track.reset_count != reset_count {
             self.baro_height.forget();
+            self.flow_range.forget_surfaces();
         }
         if let Some(at) = self.baro_height.news(at_us)
             && flies
         {
             track.take_pressure(&mut self.history, &mut self.baro_height, at);
         }
-        track.estimate(self.baro_height.carries(at_us))
+        track.estimate(self.baro_height.carries(at_us), self.flow_range.levels())
     }
 }
 
@@ -304,7 +327,7 @@ impl Track {
     }
 
     /// A track at rest `height` m above the ground, in the vehicle's own axes, with the biases of the track before.
-    fn above(at_us: u64, height: f32, before: Option<&(u64, [Axis; 3])>) -> Self {
+    fn above(at_us: u64, height: f32, before: Option<&(u64, [Axis; 3])>, vertical: &VerticalState) -> Self {
         let here = Fix {
             at_us,
             position: Vec3::new(0.0, 0.0, -height),
@@ -321,6 +344,8 @@ impl Track {
                 *axis = axis.biased_as(before, deviation, since);
             }
         }
+        let [_, _, axis] = &mut track.axes;
+        axis.start(&axis.with_own_bias(vertical));
         track
     }
 
@@ -341,8 +366,11 @@ impl Track {
         self.at_us = a.at_us;
         let force = about_down(a.q.rotate(a.accel), self.yaw_offset);
         let acceleration = force + Vec3::new(0.0, 0.0, GRAVITY);
-        for (axis, acceleration) in self.axes.iter_mut().zip(acceleration.to_array()) {
-            axis.predict(acceleration, dt);
+        // A pose's errors last: what the acceleration says in between weighs less.
+        let down = if self.posed { LEANING } else { DOWN };
+        let noises = [LEANING, LEANING, down];
+        for ((axis, acceleration), noise) in self.axes.iter_mut().zip(acceleration.to_array()).zip(noises) {
+            axis.predict(acceleration, noise, dt);
         }
         // Across the thrust axis rotors push little: the acceleration measured there comes from the air, and from the
         // arms' lean.
@@ -429,6 +457,7 @@ impl Track {
             return;
         };
         self.range_hit.surface_point = distance.map(|d| then.position + beam(then.q, d, self.yaw_offset));
+        (self.range_hit.lens, self.range_hit.beam) = (then.position, beam(then.q, 1.0, self.yaw_offset));
         self.range_hit.count = self.range_hit.count.wrapping_add(1);
         self.range_hit_us = at;
     }
@@ -439,12 +468,9 @@ impl Track {
         &mut self,
         history: &mut StateHistory,
         flow_range: &mut FlowRangeFusion,
-        (at, distance): (u64, f32),
+        (at, distance, anew): (u64, f32, VerticalState),
         posed: bool,
     ) {
-        let Some(then) = history.at(at) else {
-            return;
-        };
         if distance < STANDING && !posed {
             // Flow is blind so near, and the surface carries the vehicle or soon will: the vehicle's horizontal speed is
             // fused as zero.
@@ -453,19 +479,22 @@ impl Track {
             let [along, across] = [x, y].map(|axis| axis.correct_speed(-axis.velocity(), STAND_SPEED, lag));
             history.change(at, &[along, across, Change::default()]);
         }
-        let earlier = history.at(at.saturating_sub(EDGE_TIME)).unwrap_or(then);
-        // The lever arm is rigid: the height error of the lens is that of the vehicle.
-        let [earlier, then] = [earlier, then].map(|moment| moment.of(flow_range.lens, self.yaw_offset));
-        let [_, _, axis] = &mut self.axes;
-        let height = (axis.position_variance(), posed);
-        let Some((innovation, variance)) =
-            flow_range.height((&earlier, &then), distance, height, self.yaw_offset)
-        else {
-            return;
+        let frame = Frame {
+            at_us: self.at_us,
+            yaw_offset: self.yaw_offset,
+            posed,
+            anew,
         };
-        let change = axis.correct(innovation, variance, seconds(at, self.at_us));
-        history.change(at, &[Change::default(), Change::default(), change]);
-        self.height_us = at;
+        let [_, _, axis] = &mut self.axes;
+        let counted = flow_range.take_height(axis, history, (at, distance), &frame);
+        self.height_us = counted.map_or(self.height_us, |at| self.height_us.max(at));
+    }
+
+    /// Something carries the vehicle: it does not move down.
+    fn rest(&mut self) {
+        let [_, _, axis] = &mut self.axes;
+        axis.correct_speed(-axis.velocity(), REST_SPEED, 0.0);
+        self.height_us = self.at_us;
     }
 
     /// Fuses the newest pressure, measured at `at` µs, as height; beside range or pose only its offset is learnt.
@@ -565,13 +594,19 @@ impl Track {
         self.of(Axis::bias)
     }
 
-    fn estimate(&self, by_pressure: bool) -> Option<Estimate> {
+    fn estimate(&self, by_pressure: bool, levels: SurfaceLevels) -> Option<Estimate> {
+        let height_age = seconds(self.height_us, self.at_us);
+        // Without a height the position is invalid.
+        let lost = height_age > HEIGHT_AGE && !by_pressure;
+        let age = seconds(self.fixed_us, self.at_us).max(if lost { height_age } else { 0.0 });
         let estimate = Estimate {
             position: self.position(),
             velocity: self.velocity(),
             disturbance: self.disturbance,
             yaw_offset: self.yaw_offset,
-            age: seconds(self.fixed_us, self.at_us),
+            age,
+            height_age,
+            levels,
             by_pressure,
             reset_count: self.reset_count,
             range_hit: match self.range_hit_us {

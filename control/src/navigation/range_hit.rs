@@ -7,6 +7,10 @@ use crate::maths::vector::Vec3;
 pub struct RangeHit {
     /// Point of the hit in the estimate's axes, m; `None` with no target in reach.
     pub surface_point: Option<Vec3>,
+    /// Place of the lens then, m.
+    pub lens: Vec3,
+    /// Direction of the beam, of length 1.
+    pub beam: Vec3,
     /// Counts the ranges.
     pub count: u8,
     /// Age of the measurement, s.
@@ -18,6 +22,8 @@ impl Default for RangeHit {
     fn default() -> Self {
         Self {
             surface_point: None,
+            lens: Vec3::ZERO,
+            beam: Vec3::new(0.0, 0.0, 1.0),
             count: 0,
             age: f32::MAX,
         }

@@ -11,15 +11,14 @@ mod tests;
 use super::inertial::STEP_MAX;
 use crate::maths::elapsed::seconds;
 use crate::maths::scalar;
+use crate::navigation::vertical_speed::VerticalState;
 
 /// Noise of the acceleration, m/s²/√Hz, and walk of its bias, m/s²/√s (assumed: ten times that of a quiet sensor).
 /// Larger noise shows in the innovations, and divides the evidence.
 const ACCEL_NOISE: f32 = 0.015;
 const BIAS_WALK: f32 = 0.005;
-/// Deviations at the start and on a new surface: of the rate, m/s, since an edge disturbs it; of an unknown bias and
-/// of a learnt one, m/s².
+/// Deviations on a new surface: of the rate, m/s, since an edge disturbs it, and of a learnt bias, m/s².
 const START_RATE: f32 = 1.0;
-const START_BIAS: f32 = 0.3;
 const KEPT_BIAS: f32 = 0.1;
 /// Deviation of a range over a plain floor, and over what may be narrow and round, m: 3 cm of a back on which the vehicle
 /// drifts for half a second weigh as much, at 50 Hz, as white noise of that size.
@@ -106,6 +105,8 @@ pub struct RangeScale {
     /// Fading sums of inertial², range × inertial and range² innovations over their variance, and their number.
     sums: [f32; 4],
     wrong: bool,
+    /// Known speed and bias before the first range.
+    stood: VerticalState,
 }
 
 impl RangeScale {
@@ -131,8 +132,9 @@ impl RangeScale {
     }
 
     /// Predicts both runs to `at_us` µs with the measured acceleration `down`, m/s², gravity removed. `None`, while
-    /// the vehicle does not fly, restarts the filter.
-    pub fn predict(&mut self, at_us: u64, down: Option<f32>) {
+    /// the vehicle does not fly, restarts the filter, with the speed since it `stood` at the first range.
+    pub fn predict(&mut self, at_us: u64, down: Option<f32>, stood: &VerticalState) {
+        self.stood = *stood;
         let dt = seconds(self.at_us, at_us);
         self.since += dt;
         let down = down.filter(|a| a.abs() <= SHOCK && dt <= STEP_MAX && self.since <= GAP);
@@ -140,6 +142,7 @@ impl RangeScale {
             *self = Self {
                 wrong: self.wrong,
                 at_us,
+                stood: *stood,
                 ..Self::default()
             };
             return;
@@ -234,17 +237,29 @@ impl RangeScale {
     /// Restarts on another surface: the height is that of the range, the rate is unknown, the bias is kept.
     fn anchor(&mut self, ranged: f32, inertial: f32, below: Below) {
         let [_, _, bb] = self.rest;
-        let bias = if self.begun {
-            bb.max(KEPT_BIAS * KEPT_BIAS)
+        let (rate, bias) = if self.begun {
+            (START_RATE * START_RATE, bb.max(KEPT_BIAS * KEPT_BIAS))
         } else {
-            START_BIAS * START_BIAS
+            // The first rate comes from the inertial sensor, not from the range.
+            let VerticalState {
+                speed,
+                speed_deviation,
+                bias,
+                bias_deviation,
+            } = self.stood;
+            self.inertial = [0.0, -speed, bias];
+            (speed_deviation * speed_deviation, bias_deviation * bias_deviation)
         };
         let noise = deviation(below);
         self.with_height = [noise * noise, 0.0, 0.0];
-        self.rest = [START_RATE * START_RATE, 0.0, bias];
+        self.rest = [rate, 0.0, bias];
         let ([ranged_height, ..], [inertial_height, ..]) = (&mut self.ranged, &mut self.inertial);
         *ranged_height += ranged;
-        *inertial_height -= inertial;
+        *inertial_height = if self.begun {
+            *inertial_height - inertial
+        } else {
+            0.0
+        };
         (self.begun, self.anchored) = (true, true);
     }
 

@@ -36,7 +36,7 @@ pub enum Warning {
 
 impl Warning {
     /// Every warning.
-    pub const ALL: [Self; 27] = [
+    pub const ALL: [Self; 28] = [
         Self::AccelClips,
         Self::Vibrates,
         Self::Stack,
@@ -55,6 +55,7 @@ impl Warning {
         Self::Position(Fault::FlowRange(FlowRangeFault::RangeFrozen)),
         Self::Position(Fault::FlowRange(FlowRangeFault::RangeJumps)),
         Self::Position(Fault::FlowRange(FlowRangeFault::RangeScaled)),
+        Self::Position(Fault::FlowRange(FlowRangeFault::RangeInconsistent)),
         Self::Position(Fault::Pressure(PressureFault::Frozen)),
         Self::Position(Fault::Pressure(PressureFault::Jumps)),
         Self::Position(Fault::Pressure(PressureFault::Disagrees)),

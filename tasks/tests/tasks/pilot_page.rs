@@ -53,6 +53,9 @@ fn to_do(warning: Warning) -> &'static str {
         Warning::Position(Fault::FlowRange(FlowRangeFault::RangeJumps)) => {
             "Steer it away from what is rough below; look at the lens."
         }
+        Warning::Position(Fault::FlowRange(FlowRangeFault::RangeInconsistent)) => {
+            "Steer it; the height begins anew after 5 s. Land if it comes back; look at the lens."
+        }
         Warning::Position(Fault::FlowRange(FlowRangeFault::RangeScaled)) => {
             "Steer it, land; the module's unit of length. It counts again once it has climbed as far as the vehicle."
         }

@@ -275,7 +275,7 @@ params! {
     /// friction.
     pipe_friction = 0.6, "1", 0.1 ..= 1.5;
     /// Diameter of the pipe (paper). A grip is proven on pipes of 0.6 to 1.5 times this; on its own the vehicle looks for one of
-    /// 0.7 to 1.35 times; the leans above change by 1.5 degrees from 0.2 to 0.4 m.
+    /// 0.3 to 1.6 times; the leans above change by 1.5 degrees from 0.2 to 0.4 m.
     pipe_diameter = 0.3, "m", 0.1 ..= 2.0;
 
     /// Contact pressure of a proven grip (paper).

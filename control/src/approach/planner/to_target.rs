@@ -4,7 +4,6 @@ use super::{ApproachAbort, ApproachPlanner, Phase, View};
 use crate::approach::limits::*;
 use crate::approach::pipe_target::PipeTarget;
 use crate::maths::frames::about_down;
-use crate::maths::scalar;
 use crate::maths::vector::Vec3;
 use crate::navigation::estimate::Estimate;
 
@@ -52,10 +51,7 @@ impl ApproachPlanner {
         let surface = if self.has_target {
             self.crown_z - UNDER + LOWER
         } else {
-            // Beside the crown the beam meets the pipe's round back, by so much below it.
-            let (half, square) = (self.half, self.lens.y * self.lens.y);
-            let fallen = square / (half + scalar::sqrt(half * half - square));
-            self.edges.surface_depth() - fallen - self.lens.z.max(0.0)
+            self.crown_z - self.lens.z.max(0.0)
         };
         surface - at.z
     }

@@ -1,6 +1,6 @@
 //! Autonomous free flight onto the pipe, or off it.
 
-use crate::approach::limits::{BACK_SPEED, RANGE_AGE};
+use crate::approach::limits::{CLIMB_SPEED, LOST_TIME, RANGE_AGE};
 use crate::approach::planner::{ApproachAbort, ApproachPlanner, View};
 use crate::arming::ArmingInhibits;
 use crate::chain::setpoint::Setpoint;
@@ -135,7 +135,10 @@ impl Approach {
     }
 
     fn step(&mut self, estimate: &Estimate, step: &mut Step<'_>) {
-        let adrift = step.inputs.position_adrift();
+        // The flow goes on, but no range fits the height; a source that is silent as a whole has limits of its own.
+        let height_lost =
+            estimate.height_age > LOST_TIME && step.inputs.position_fresh() && !estimate.by_pressure;
+        let adrift = step.inputs.position_adrift() || height_lost;
         let blind = self.planner.asks_target() && step.inputs.target.is_none();
         self.adrift |= adrift;
         self.waits = if blind && !adrift {
@@ -144,7 +147,7 @@ impl Approach {
             0.0
         };
         if adrift || (blind && self.waits < TARGET_WAIT) {
-            self.wait(estimate, !adrift, step);
+            self.wait(estimate, (!adrift, !step.inputs.position_adrift()), step);
             return;
         }
         if core::mem::take(&mut self.adrift) {
@@ -153,9 +156,6 @@ impl Approach {
             self.again(Reason::PositionStale, &seen, estimate, step);
         }
         let seen = view(&self.position_hold, estimate, step);
-        if step.context.vertical_fallback.misfit() && !self.planner.leaves() {
-            self.misfit(false, &seen, estimate, step);
-        }
         let result = if self.planner.jumped(estimate.reset_count) {
             Err(ApproachAbort::NotCentred)
         } else {
@@ -169,11 +169,9 @@ impl Approach {
             reset_count: estimate.reset_count,
         });
         step.context.auto_perch.last_crown = crown.or(step.context.auto_perch.last_crown);
-        step.context.vertical_fallback.steady = self.planner.near_crown(&seen);
         let command = result.unwrap_or_else(|doubt| {
             match doubt {
-                ApproachAbort::RangeMisfit => self.misfit(false, &seen, estimate, step),
-                ApproachAbort::RangeLong => self.misfit(true, &seen, estimate, step),
+                ApproachAbort::RangeMisfit => self.misfit(&seen, estimate, step),
                 _ => self.again(reason(doubt), &seen, estimate, step),
             }
             VelocityCommand::default()
@@ -183,13 +181,13 @@ impl Approach {
             .step(estimate, &step.body_motion(), &command, true, step.dt);
     }
 
-    /// Holds a `known` position. Without one it stays level against the learnt wind, and rises: a decimetre by which the height is
-    /// off must not become a touch.
-    fn wait(&mut self, estimate: &Estimate, known: bool, step: &mut Step<'_>) {
+    /// Waits for the place of the pipe where it is `known` where the vehicle is. Otherwise it rises, so that who takes over has room
+    /// below, over a place that is `held` or level against the learnt wind.
+    fn wait(&mut self, estimate: &Estimate, (known, held): (bool, bool), step: &mut Step<'_>) {
         let (why, rise) = if known {
             (Reason::TargetStale, 0.0)
         } else {
-            (Reason::PositionStale, BACK_SPEED)
+            (Reason::PositionStale, CLIMB_SPEED)
         };
         step.context.note(Some(why));
         let rise = VelocityCommand {
@@ -198,12 +196,12 @@ impl Approach {
         };
         self.wanted = self
             .position_hold
-            .step(estimate, &step.body_motion(), &rise, known, step.dt);
+            .step(estimate, &step.body_motion(), &rise, held, step.dt);
     }
 
-    /// Allows one more try unless the misfit is `proven`; then climbs away.
-    fn misfit(&mut self, proven: bool, view: &View, e: &Estimate, step: &mut Step<'_>) {
-        let before = core::mem::replace(&mut step.context.auto_perch.misfit, true) || proven;
+    /// Allows one more try; then climbs away.
+    fn misfit(&mut self, view: &View, e: &Estimate, step: &mut Step<'_>) {
+        let before = core::mem::replace(&mut step.context.auto_perch.misfit, true);
         let cleared = self
             .planner
             .cleared(&step.context.params, view, heading(step, e), e.reset_count);
@@ -247,6 +245,7 @@ fn view(position_hold: &PositionHold, e: &Estimate, step: &Step<'_>) -> View {
         held: position_hold.held(),
         age: e.age,
         range_hit: e.range_hit,
+        levels: e.levels,
         target: step.inputs.target,
     }
 }
@@ -264,7 +263,7 @@ fn reason(doubt: ApproachAbort) -> Reason {
         ApproachAbort::NotCentred => Reason::NotCentred,
         ApproachAbort::NotTouched => Reason::NotTouched,
         ApproachAbort::RangeStale => Reason::RangeStale,
-        ApproachAbort::RangeMisfit | ApproachAbort::RangeLong => Reason::RangeMisfit,
+        ApproachAbort::RangeMisfit => Reason::RangeMisfit,
         ApproachAbort::TargetStale => Reason::TargetStale,
         ApproachAbort::TargetFar => Reason::TargetFar,
         ApproachAbort::TargetJumps => Reason::TargetJumps,

@@ -1,6 +1,7 @@
 //! Perching by itself: how it begins, how the pilot takes over from every part of it, tries, and the way back.
 
 use super::rig::Rig;
+use crate::approach::limits::CLIMB_SPEED;
 use crate::approach::pipe_target::PipeTarget;
 use crate::attitude::motion::Motion;
 use crate::chain::setpoint::Setpoint;
@@ -12,7 +13,7 @@ use crate::mode::state::State;
 use crate::mode::states::clamping::STOP_TIME;
 use crate::mode::states::contact::CONTACT_TIME;
 use crate::mode::*;
-use crate::navigation::estimate::Estimate;
+use crate::navigation::estimate::{Estimate, SurfaceLevels};
 use crate::navigation::range_hit::RangeHit;
 use crate::pilot::rc::Sticks;
 use crate::pilot::remote::RemoteOrder::{Grab, Release};
@@ -31,9 +32,10 @@ struct World {
     pipe: bool,
     /// There is a range.
     ranged: bool,
-    /// Speed that the estimate has too much, down, m/s, where what is felt goes with it; `None` where the two have nothing to
-    /// do with one another, and neither counts. How often its origin has jumped.
-    bent: Option<f32>,
+    /// The pipe has been seen, and by how much its level is too low then, m.
+    met: bool,
+    lowered: f32,
+    /// How often the estimate's origin has jumped.
     jumps: u8,
 }
 
@@ -46,7 +48,8 @@ impl World {
             count: 0,
             pipe: true,
             ranged: true,
-            bent: None,
+            met: false,
+            lowered: 0.0,
             jumps: 0,
         };
         w.see();
@@ -92,26 +95,29 @@ impl World {
     }
 
     fn see(&mut self) {
-        if self.bent.is_none() {
-            self.r.logic.forget_vertical_fallback();
-        }
         let y = self.at.y - RIGHT;
         let on = self.pipe && y.abs() < 0.15;
         let flank = 0.15 - crate::maths::scalar::sqrt((0.0225 - y * y).max(0.0));
         let z = if on { flank - CROWN } else { 0.0 };
         self.count = self.count.wrapping_add(1);
-        let surface_point = RangeHit {
+        self.met |= on;
+        let range_hit = RangeHit {
             surface_point: Some(Vec3::new(self.at.x, self.at.y, z)),
+            lens: self.at,
             count: self.count,
             age: 0.02,
+            ..RangeHit::default()
         };
         self.r.inputs.position = Some(Estimate {
             position: self.at,
-            velocity: Vec3::new(0.0, 0.0, self.bent.map_or(0.0, |bent| self.r.falling + bent)),
             reset_count: self.jumps,
             age: 0.02,
+            levels: SurfaceLevels {
+                ground: 0.0,
+                raised: self.met.then_some(self.lowered - CROWN),
+            },
             range_hit: if self.ranged {
-                surface_point
+                range_hit
             } else {
                 RangeHit::default()
             },
@@ -584,18 +590,16 @@ fn a_position_that_comes_back_in_time_is_waited_for_and_another_try_follows() {
 }
 
 #[test]
-fn a_range_that_does_not_fit_the_motion_ends_a_try_and_the_second_time_the_approach() {
+fn a_pipe_at_another_level_ends_a_try_and_the_second_time_the_approach() {
     let mut w = World::searching();
     w.run(0.5);
-    w.r.falling = 0.0;
     for last in [false, true] {
-        w.bent = Some(0.0);
         w.expect(5.0, Mode::Approach);
         let before = w.at.z;
-        w.bent = Some(-0.4);
-        w.expect(0.15, Mode::Approach);
+        w.lowered = 0.3;
+        w.expect(0.02, Mode::Approach);
         assert_eq!(w.r.out.reason, Some(Reason::RangeMisfit));
-        w.bent = Some(0.0);
+        w.lowered = 0.0;
         let mut highest = before;
         for _ in 0..500 {
             w.step();
@@ -611,7 +615,66 @@ fn a_range_that_does_not_fit_the_motion_ends_a_try_and_the_second_time_the_appro
     );
 }
 
-/// It used to search for the pipe that it was leaving.
+#[test]
+fn a_height_that_is_lost_is_waited_for_on_the_way_up_over_the_place_and_another_try_follows() {
+    let mut w = World::searching();
+    w.run(6.0);
+    let lost = |w: &World, height_age: f32, by_pressure: bool| {
+        let mut r = w.r.clone();
+        r.inputs.position = r.inputs.position.map(|e| Estimate {
+            height_age,
+            by_pressure,
+            ..e
+        });
+        r
+    };
+    let held = |r: &Rig| match r.logic.state() {
+        State::Approach(a) => a.position_hold.held(),
+        _ => panic!("{:?}", r.out),
+    };
+    // A height that is young enough, or by the pressure, is none that is lost.
+    for (age, by_pressure) in [(0.9, false), (5.0, true)] {
+        let mut r = lost(&w, age, by_pressure);
+        r.expect(0.5, Mode::Approach);
+        assert_ne!(r.out.reason, Some(Reason::PositionStale), "{age}");
+    }
+    let mut r = lost(&w, 1.1, false);
+    r.expect(1.0, Mode::Approach);
+    assert_eq!(r.out.reason, Some(Reason::PositionStale));
+    // What it holds rises as fast as a climb, as long as the vehicle goes with it; where it is blown aside it leans against it.
+    let mut rising = lost(&w, 1.1, false);
+    rising.expect(1.0, Mode::Approach);
+    let from = held(&rising);
+    rising.inputs.position = rising.inputs.position.map(|e| Estimate { position: from, ..e });
+    rising.expect(0.2, Mode::Approach);
+    let way = held(&rising) - from;
+    assert!((way.z + 0.2 * CLIMB_SPEED).abs() < 0.01, "{way:?}");
+    assert!(way.x.hypot(way.y) < 0.01, "{way:?}");
+    rising.inputs.position = rising.inputs.position.map(|e| Estimate {
+        position: e.position + Vec3::new(0.0, 0.3, 0.0),
+        ..e
+    });
+    rising.expect(0.2, Mode::Approach);
+    let [roll, ..] = rising.out.rotors.numbers();
+    assert!(roll < -0.05, "{:?}", rising.out.rotors);
+    // It is back.
+    w.r = r;
+    w.r.falling = 0.0;
+    w.step();
+    let height = w.at.z;
+    assert_eq!(w.r.out.mode, Mode::Approach);
+    w.run(1.5);
+    assert!(w.at.z < height - 0.1, "{height} {:?}", w.at);
+    for _ in 0..8000 {
+        w.step();
+        if w.r.out.mode != Mode::Approach {
+            break;
+        }
+    }
+    assert_eq!(w.r.out.mode, Mode::Contact, "{:?}", w.r.out.reason);
+    assert!((w.at.y - RIGHT).abs() < 0.02, "{:?}", w.at);
+}
+
 #[test]
 fn an_origin_that_jumps_on_the_way_off_leaves_it_climbing() {
     let mut w = World::perched();

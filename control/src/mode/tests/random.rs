@@ -17,7 +17,7 @@ use proptest::prelude::*;
 use super::rig::Rig;
 use crate::gripper::grip::ArmState;
 use crate::mode::*;
-use crate::navigation::estimate::Estimate;
+use crate::navigation::estimate::{Estimate, SurfaceLevels};
 use crate::navigation::range_hit::RangeHit;
 use crate::pilot::rc::StickMode;
 use crate::pilot::release_throttle::RELEASE_THROTTLE_MIN;
@@ -105,14 +105,21 @@ fn position() -> impl Strategy<Value = Option<Estimate>> {
     let vector = |size: f32| [-size..size, -size..size, -size..size].prop_map(Vec3::from);
     let reset_count = prop_oneof![9 => Just(0u8), 1 => any::<u8>()];
     let point = prop_oneof![3 => vector(20.0).prop_map(Some), 1 => Just(None)];
-    let surface_point = (point, any::<u8>(), prop_oneof![3 => Just(0.02f32), 1 => number()]).prop_map(
-        |(point, count, age)| RangeHit {
-            surface_point: point,
+    let beam = [-0.5f32..0.5, -0.5f32..0.5, 0.5f32..1.0].prop_map(Vec3::from);
+    let hit_age = prop_oneof![3 => Just(0.02f32), 1 => number()];
+    let range_hit = (point, vector(20.0), beam, any::<u8>(), hit_age).prop_map(
+        |(surface_point, lens, beam, count, age)| RangeHit {
+            surface_point,
+            lens,
+            beam,
             count,
             age,
         },
     );
-    let age = (age, any::<bool>());
+    let height_age = prop_oneof![Just(0.02f32), 0.0f32..10.0];
+    let age = (age, height_age, any::<bool>());
+    let raised = prop_oneof![3 => (-20.0f32..20.0).prop_map(Some), 1 => Just(None)];
+    let levels = (-20.0f32..20.0, raised).prop_map(|(ground, raised)| SurfaceLevels { ground, raised });
     let some = (
         vector(20.0),
         vector(5.0),
@@ -120,7 +127,7 @@ fn position() -> impl Strategy<Value = Option<Estimate>> {
         number(),
         age,
         reset_count,
-        surface_point,
+        (range_hit, levels),
     )
         .prop_map(
             |(
@@ -128,9 +135,9 @@ fn position() -> impl Strategy<Value = Option<Estimate>> {
                 velocity,
                 disturbance,
                 yaw_offset,
-                (age, by_pressure),
+                (age, height_age, by_pressure),
                 reset_count,
-                surface_point,
+                (range_hit, levels),
             )| {
                 Some(Estimate {
                     position,
@@ -138,9 +145,11 @@ fn position() -> impl Strategy<Value = Option<Estimate>> {
                     disturbance,
                     yaw_offset,
                     age,
+                    height_age,
+                    levels,
                     by_pressure,
                     reset_count,
-                    range_hit: surface_point,
+                    range_hit,
                 })
             },
         );

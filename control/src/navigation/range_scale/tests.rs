@@ -4,6 +4,7 @@ extern crate std;
 use std::f64::consts::TAU;
 
 use super::{Below, RangeScale};
+use crate::navigation::vertical_speed::VerticalState;
 
 const STEP_US: u64 = 5_000;
 const RANGE_US: u64 = 20_000;
@@ -69,7 +70,11 @@ impl Rig {
             self.now += STEP_US;
             let t = self.now as f64 * 1e-6;
             let [_, down] = (self.motion)(t);
-            self.scale.predict(self.now, Some((down + self.bias) as f32));
+            self.scale.predict(
+                self.now,
+                Some((down + self.bias) as f32),
+                &VerticalState::default(),
+            );
             let at = self.now - LATE_US;
             if self.now.is_multiple_of(RANGE_US) {
                 let t = at as f64 * 1e-6;
@@ -151,9 +156,9 @@ fn on_the_ground_and_in_a_shock_nothing_is_judged() {
     let mut r = Rig::new(climbing, |h, _| 1.6 * h);
     for _ in 0..40 {
         r.run(0.4);
-        r.scale.predict(r.now, None);
+        r.scale.predict(r.now, None, &VerticalState::default());
         r.run(0.4);
-        r.scale.predict(r.now, Some(9.0));
+        r.scale.predict(r.now, Some(9.0), &VerticalState::default());
         assert!(!r.scale.wrong());
     }
 }
@@ -174,7 +179,7 @@ fn a_step_onto_something_is_no_scale() {
 fn no_number_breaks_it() {
     let mut r = Rig::new(climbing, |h, _| h);
     for number in [f32::NAN, f32::INFINITY, f32::MAX, -1e30, 0.0] {
-        r.scale.predict(r.now, Some(number));
+        r.scale.predict(r.now, Some(number), &VerticalState::default());
         r.scale.update(number, 0.03, Below::Plain);
         r.scale.update(1.0, number, Below::Plain);
         r.run(1.0);

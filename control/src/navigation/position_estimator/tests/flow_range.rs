@@ -193,6 +193,57 @@ fn a_sound_flow_that_begins_in_the_air_is_not_named_whatever_its_phase() {
     }
 }
 
+/// An estimate that begins at rest, half a metre over the ground, and has no range for five seconds, in which this is felt
+/// downwards, m/s², with this thrust, N.
+fn without_range(down: f32, lift: f32) -> Option<Estimate> {
+    let mut estimator = PositionEstimator::new(&Params::default());
+    let mut out = None;
+    for step in 1..1_400u64 {
+        let at_us = 1_000_000 + step * STEP_US;
+        let until_us = (at_us - LATE_US) / FLOW_US * FLOW_US;
+        let view = GroundView {
+            flow: Some(Flow {
+                until_us,
+                seconds: FLOW_US as f32 * 1e-6,
+                angle: [0.0; 2],
+                quality: 100,
+            }),
+            range: Some(Range {
+                at_us: until_us,
+                distance: Some(0.5 + 0.001 * (until_us / FLOW_US % 7) as f32),
+                reach: (0.02, 8.0),
+            }),
+        };
+        let seen = (step < 400).then_some(&view);
+        let (down, lift) = if step < 400 { (0.0, 0.0) } else { (down, lift) };
+        let felt = Inertial {
+            at_us,
+            q: Quat::IDENTITY,
+            accel: Vec3::new(0.0, 0.0, down - GRAVITY),
+        };
+        out = estimator.step(&felt, lift, None, seen);
+    }
+    out
+}
+
+#[test]
+fn what_stands_keeps_its_height_and_what_flies_or_falls_does_not() {
+    let stands = without_range(0.0, 0.0).expect("an estimate");
+    assert!(
+        stands.height_age < 0.01 && stands.velocity.z.abs() < 0.01,
+        "{stands:?}"
+    );
+    assert!(
+        (stands.position.z + 0.5).abs() < 0.02 && (stands.age - 5.0).abs() < 0.1,
+        "{stands:?}"
+    );
+    // Carried by its rotors, and with a throttle that is closed in the air.
+    for (down, lift) in [(0.0, 17.7), (6.0, 0.0)] {
+        let flies = without_range(down, lift).expect("an estimate");
+        assert!((flies.height_age - 5.0).abs() < 0.1, "{flies:?}");
+    }
+}
+
 #[test]
 fn late_flow_of_a_vehicle_that_turns_gives_its_velocity_and_range_its_height() {
     let mut r = Rig::new();
@@ -229,9 +280,9 @@ fn off_by_lever(lens: Vec3, known: Vec3) -> [f32; 2] {
 #[test]
 fn the_lever_of_the_lens_is_taken_out_by_its_sign() {
     let axes = [
-        Vec3::new(-0.2, 0.0, 0.0),
-        Vec3::new(0.0, 0.2, 0.0),
-        Vec3::new(0.0, 0.0, 0.2),
+        Vec3::new(-0.1, 0.0, 0.0),
+        Vec3::new(0.0, 0.1, 0.0),
+        Vec3::new(0.0, 0.0, 0.1),
         Vec3::new(-0.08, 0.06, 0.05),
     ];
     let [without, high] = off_by_lever(Vec3::ZERO, Vec3::ZERO);
@@ -245,7 +296,7 @@ fn the_lever_of_the_lens_is_taken_out_by_its_sign() {
             "{lens:?}: {known} {known_high}"
         );
         assert!(
-            unknown > 10.0 * known && unknown_high > 0.01,
+            unknown > 10.0 * known && unknown_high > 0.05 * lens.norm(),
             "{lens:?}: {unknown} {unknown_high}"
         );
         let twice = [mirrored / unknown, mirrored_high / unknown_high];
@@ -270,34 +321,6 @@ fn a_step_of_the_surface_below_changes_neither_height_nor_velocity() {
     let [v, _] = r.errors();
     assert!(v < 0.2, "{v}");
     assert_eq!(r.fault(), None);
-}
-
-/// Over the pipe the height drifts: the ground that it falls back to is the ground, whatever height it had before. Two grounds
-/// would make of the true one something narrow, and of each way across it one that is twice as long.
-#[test]
-fn the_ground_is_the_surface_to_which_the_beam_returns() {
-    let mut flow_range = FlowRangeFusion::new(0.3, Vec3::ZERO);
-    let at = |us: u64, y: f32| StateSnapshot {
-        at_us: us,
-        position: Vec3::new(0.0, y, -1.9),
-        q: Quat::IDENTITY,
-        ..StateSnapshot::default()
-    };
-    let look = |flow_range: &mut FlowRangeFusion, y: f32, distance: f32| {
-        for i in 0..5u8 {
-            let y = y + 0.015 * f32::from(i);
-            let _ = flow_range.height((&at(0, y - 0.02), &at(0, y)), distance, (1e-4, false), 0.0);
-        }
-    };
-    look(&mut flow_range, 0.5, 1.9);
-    for drift in [0.0, 0.25, -0.1, 0.3] {
-        look(&mut flow_range, 0.9, 0.4);
-        assert!(flow_range.raised());
-        look(&mut flow_range, 1.2, 1.9 + drift);
-        assert!(!flow_range.raised(), "{drift}");
-        let depth = flow_range.depth(&at(0, 3.0), 1.0, 0.0).distance;
-        assert!((depth / 1.049 - 1.9 - drift).abs() < 0.13, "{drift}: {depth}");
-    }
 }
 
 /// Of a leaning vehicle whose lens is 20 cm ahead, 10 cm to the right and 5 cm below: where the beam falls, and the height that
@@ -343,48 +366,6 @@ fn a_beam_falls_where_it_does_below_the_lens() {
     assert!((height - 1.5).abs() < 1e-5, "{height}");
 }
 
-/// Along its own line beyond its end, and a while later, nothing narrow is in the view.
-#[test]
-fn a_pipe_is_left_behind_by_way_and_by_time() {
-    for (way, seconds) in [(2.5, 1), (0.0, 25)] {
-        let mut flow_range = FlowRangeFusion::new(0.3, Vec3::ZERO);
-        let at = |us: u64, x: f32, y: f32| StateSnapshot {
-            at_us: us,
-            position: Vec3::new(x, y, -1.9),
-            q: Quat::IDENTITY,
-            ..StateSnapshot::default()
-        };
-        let look = |flow_range: &mut FlowRangeFusion, us: u64, (x, y): (f32, f32), distance: f32| {
-            for i in 0..5u8 {
-                let y = y + 0.015 * f32::from(i);
-                let _ = flow_range.height(
-                    (&at(us, x, y - 0.02), &at(us, x, y)),
-                    distance,
-                    (1e-4, false),
-                    0.0,
-                );
-            }
-        };
-        look(&mut flow_range, 0, (0.0, 0.5), 1.9);
-        look(&mut flow_range, 0, (0.0, 0.8), 0.4);
-        look(&mut flow_range, 0, (0.0, 1.1), 1.9);
-        let depth = |flow_range: &FlowRangeFusion, x: f32| {
-            flow_range.depth(&at(0, x, 1.1), 1.0, 0.0).distance / 1.049
-        };
-        assert!(
-            depth(&flow_range, 0.0) < 1.7,
-            "beside it: {}",
-            depth(&flow_range, 0.0)
-        );
-        look(&mut flow_range, seconds * 1_000_000, (way, 1.1), 1.9);
-        assert!(
-            (depth(&flow_range, way) - 1.9).abs() < 0.01,
-            "{way} {seconds}: {}",
-            depth(&flow_range, way)
-        );
-    }
-}
-
 /// Where the range has just stepped, or is near, a flow that does not fit is not the flow's fault.
 #[test]
 fn no_flow_is_judged_while_its_prediction_is_uncertain() {
@@ -395,32 +376,6 @@ fn no_flow_is_judged_while_its_prediction_is_uncertain() {
     }
     let named = (0..500).any(|i| agreement.step(0.1 * turns(i), turns(i), 0.12, true, 0.02));
     assert!(named);
-}
-
-/// A beam that leans by 5° in a cross wind meets the ground 17 cm beside the vehicle and the pipe 3 cm.
-#[test]
-fn a_leaning_beam_finds_the_edges_where_they_are() {
-    let lean = 0.09f32;
-    let q = Quat::from_euler(lean, 0.0, 0.0);
-    let mut flow_range = FlowRangeFusion::new(0.3, Vec3::ZERO);
-    for step in 0..200u64 {
-        let y = 0.005 * step as f32;
-        let moment = |y: f32| StateSnapshot {
-            at_us: 20_000 * step,
-            position: Vec3::new(0.0, y, -1.9),
-            q,
-            ..StateSnapshot::default()
-        };
-        // To the left of the vehicle; the pipe's middle is at 0.5 m.
-        let near = y - 0.4 * lean.tan() - 0.5;
-        let distance = if near.abs() < 0.15 { 0.4 } else { 1.9 } / lean.cos();
-        let _ = flow_range.height((&moment(y - 0.025), &moment(y)), distance, (1e-4, false), 0.0);
-    }
-    let band = flow_range.band.unwrap();
-    let middle = Vec3::new(0.0, 0.5, 0.0);
-    // The beam's back falls by less than it does in truth: here it is flat.
-    let (drop, _) = band.drop(middle, 0.0);
-    assert!(drop < 1e-3, "{drop} {band:?}");
 }
 
 #[test]
@@ -488,13 +443,17 @@ fn a_range_that_stands_still_or_jumps_is_named_and_left_out() {
 
     let mut r = Rig::new();
     r.run(5.0);
-    for _ in 0..10 {
-        r.range = |d| d + 0.5;
+    let mut named = 0u8;
+    for i in 0..20u8 {
+        r.range = if i.is_multiple_of(2) { |d| d + 0.5 } else { |d| d };
         r.run(0.2);
-        r.range = |d| d;
-        r.run(0.2);
+        named += u8::from(r.fault() == Some(FlowRangeFault::RangeJumps));
     }
-    assert_eq!(r.fault(), Some(FlowRangeFault::RangeJumps));
+    // It is left out for a second at a time.
+    assert!(named >= 5, "{named}");
+    r.range = |d| d;
+    r.run(3.0);
+    assert!(r.fault().is_none() && r.errors()[1] < 0.15, "{:?}", r.errors());
 }
 
 /// Where the beam of a vehicle that hovered beside a pipe in gusts crossed its edge, s after the first time.
@@ -514,35 +473,6 @@ fn an_edge_that_is_crossed_in_gusts_is_no_fault_and_a_range_that_jumps_as_often_
         r.run(0.1);
         assert_eq!(r.fault(), fault);
     }
-}
-
-/// Of a round back beside whose crown the beam may be, the height is learnt for a while only: followed for good, the surface
-/// went with the height, which then was anything (30 cm off in two seconds).
-#[test]
-fn the_surface_of_a_flank_does_not_follow_the_height_for_good() {
-    let mut flow_range = FlowRangeFusion::new(0.3, Vec3::ZERO);
-    let mut moment = StateSnapshot {
-        at_us: 1_000_000,
-        position: Vec3::new(0.0, 0.0, -2.0),
-        ..StateSnapshot::default()
-    };
-    let mut seen = |flow_range: &mut FlowRangeFusion, height: f32, distance: f32, times: u8| {
-        moment.position.z = -height;
-        let mut off = 0.0;
-        for _ in 0..times {
-            moment.at_us += 20_000;
-            let found = flow_range.height((&moment, &moment), distance, (1e-4, false), 0.0);
-            off = found.map_or(0.0, |(off, _)| off);
-        }
-        off
-    };
-    // The ground, then something 1.5 m over it.
-    seen(&mut flow_range, 2.0, 2.0, 10);
-    seen(&mut flow_range, 2.0, 0.5, 60);
-    assert!(flow_range.raised());
-    // The height has drifted by 6 cm, which the range says again and again.
-    let off = seen(&mut flow_range, 2.06, 0.5, 60);
-    assert!((off - 0.06).abs() < 0.01, "{off}");
 }
 
 #[test]
