@@ -11,10 +11,9 @@ const FOLLOW: f32 = 4.0;
 /// Deviation of the speed at the end of a rest, m/s, and its growth by the bias that turning rotors add, m/s².
 const STOOD: f32 = 0.05;
 const SHIFTED: f32 = 0.15;
-/// Deviation beyond which it says nothing, m/s.
+/// Deviation from which on the speed is unknown, m/s: 6 s after a rest.
 const UNKNOWN: f32 = 1.0;
-
-/// Deviation of the bias of turning rotors, m/s², with one that was seen at rest and without (assumed).
+/// Deviation of the bias without a rest, m/s² (assumed).
 const UNRESTED: f32 = 0.3;
 
 /// Speed down, m/s, and bias of the acceleration down, m/s², with their deviations.
@@ -75,7 +74,7 @@ impl VerticalSpeed {
         self.speed += (speed - self.speed) * dt / (dt + FOLLOW);
     }
 
-    /// Speed down by the inertial sensor, m/s, between the estimate's as it was some seconds ago and now.
+    /// Speed down by the inertial sensor, m/s, that has followed the poses with [`FOLLOW`].
     pub fn inertial(&self) -> f32 {
         if self.speed.is_finite() { self.speed } else { 0.0 }
     }
