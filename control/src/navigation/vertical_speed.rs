@@ -141,6 +141,14 @@ mod tests {
     }
 
     #[test]
+    fn poses_that_bend_their_speed_for_a_second_bend_it_by_a_quarter() {
+        let mut speed = after(&[(0.0, false, 1.0), (0.0, true, 1.0)]);
+        (0..200).for_each(|_| speed.follow(1.0, 0.005));
+        let bent = speed.inertial();
+        assert!((0.15..0.25).contains(&bent), "{bent}");
+    }
+
+    #[test]
     fn a_throttle_that_is_closed_in_the_air_is_no_rest() {
         assert!(!after(&[(0.0, false, 1.0), (0.0, true, 2.0), (9.0, false, 1.0)]).rests());
         assert!(after(&[(0.0, false, 1.0)]).rests() && !after(&[(0.0, false, 0.1)]).rests());
