@@ -11,6 +11,9 @@ const RATE: f32 = 1.2;
 const CROSSED: f32 = 0.15;
 /// Shortest and longest half swing, s: 8 Hz, above the arms' bending mode, to 0.5 Hz.
 const HALF: (f32, f32) = (0.06, 1.0);
+/// Longest half swing that counts as none of a hand, s: 1.7 Hz. A pilot's loop crosses at 0.5 Hz (McRuer and Krendel,
+/// AGARDograph 188, 1974), and the prefilter of the sticks halves 2 Hz.
+const QUICK: f32 = 0.3;
 /// Half swings in a row: three periods.
 const SWINGS: u8 = 6;
 
@@ -21,8 +24,9 @@ struct Axis {
     /// Largest rate, rad/s, and time, s, of this half swing.
     peak: f32,
     time: f32,
-    /// Number of half swings before it, each large and in time.
+    /// Number of half swings before it, each large and in time, and of those in a row that no hand made.
     count: u8,
+    quick: u8,
 }
 
 impl Axis {
@@ -31,17 +35,16 @@ impl Axis {
         self.time += dt;
         if along < -CROSSED {
             let in_time = (HALF.0..=HALF.1).contains(&self.time);
-            self.count = if in_time && self.peak >= RATE {
-                self.count.saturating_add(1)
-            } else {
-                0
-            };
+            let counts = in_time && self.peak >= RATE;
+            let next = |count: u8, counts: bool| if counts { count.saturating_add(1) } else { 0 };
+            self.quick = next(self.quick, counts && self.time <= QUICK);
+            self.count = next(self.count, counts);
             (self.backwards, self.peak, self.time) = (!self.backwards, -along, 0.0);
         } else if along > self.peak {
             self.peak = along;
         }
         if self.time > HALF.1 {
-            self.count = 0;
+            (self.count, self.quick) = (0, 0);
         }
     }
 }
@@ -73,6 +76,11 @@ impl Oscillation {
     pub fn swings(&self) -> bool {
         self.roll.count.max(self.pitch.count) >= SWINGS
     }
+
+    /// It does, faster than a pilot's stick could swing it.
+    pub fn swings_by_itself(&self) -> bool {
+        self.roll.quick.max(self.pitch.quick) >= SWINGS
+    }
 }
 
 #[cfg(test)]
@@ -101,6 +109,19 @@ mod tests {
         for (size, hz) in [(2.7, 1.3), (1.4, 0.6), (1.6, 5.0)] {
             let at = noticed(20.0, swing(size, hz)).unwrap_or(f32::INFINITY);
             assert!((at * hz - 3.0).abs() < 0.7, "{size} {hz}: {at}");
+        }
+    }
+
+    #[test]
+    fn a_swing_that_a_hand_may_make_is_not_by_itself() {
+        for (hz, by_itself) in [(1.3, false), (1.6, false), (1.8, true), (5.0, true)] {
+            let mut watch = Oscillation::default();
+            let rate = swing(2.0, hz);
+            let noticed = (0..2000).any(|i| {
+                watch.step(Some(Vec3::new(rate(DT * i as f32), 0.0, 0.0)), DT);
+                watch.swings_by_itself()
+            });
+            assert_eq!(noticed, by_itself, "{hz} Hz");
         }
     }
 

@@ -143,7 +143,7 @@ impl PositionHold {
             mass: p.mass,
             gains: *gains,
             thrust: (0.4 * weight, scalar::clamp(1.6 * weight, weight, 0.95 * full)),
-            lag: Lag::at(p, tilt(motion.q)),
+            lag: Lag::at(tilt(motion.q)),
             height: Height::default(),
             anchor: e.position,
             course: Course::at(gains.pace),
@@ -208,7 +208,8 @@ impl PositionHold {
             core::array::from_fn(|i| at(&command.lean, i) - at(&wind, i))
         };
         let u = limited(u);
-        self.lag.step(u, tilt(motion.q), tilt_rate(motion.rate), dt);
+        self.lag
+            .step(&self.gains.loops, u, tilt(motion.q), tilt_rate(motion.rate), dt);
         let up = self.height.step(
             &height::State {
                 error: self.anchor.z - e.position.z,

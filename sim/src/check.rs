@@ -14,7 +14,7 @@ mod yaw;
 pub(crate) use self::grip::needed;
 use self::hover::Built;
 pub use self::row::{Limit, Row};
-use crate::scenario::{Scenario, Step};
+use crate::scenario::{Assist, Scenario, Step};
 
 /// Result of the check.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,6 +38,9 @@ impl Check {
         ];
         rows.extend(yaw::rows(scenario, &built));
         rows.extend(stability::rows(&loops::margins(scenario), &built));
+        if scenario.pilot.assist != Assist::None {
+            rows.push(stability::hold(&loops::hold_margins(scenario)));
+        }
         rows.push(endurance::flight(scenario, &built));
         rows.push(wind::row(scenario, &built));
         if perches {

@@ -145,6 +145,8 @@ links! {
     attitude: Attitude, Estimator to "control, commander, position, arms, telemetry, supervisor, console, mavlink", stale after 5 ms;
     /// Setpoint of the controllers; without it the rotors stop.
     setpoint: Setpoint, Commander to "control", stale after 50 ms;
+    /// The vehicle has swung by itself: roll and pitch slower; the loops keep the last one.
+    gentle: bool, Commander to "control", stale after 200 ms;
     /// Thrust and torque demand of the controllers.
     demand: Demand, Control to "mixer", stale after 5 ms;
     /// Target direction of down in body axes, and heading error.

@@ -31,6 +31,8 @@ use crate::thrust_factor::{Air, ThrustLearning, ThrustSample};
 /// Time constant of learning gravity at rest, s, and bounds, m/s²: a part's bias of some 40 mg.
 const GRAVITY_TIME: f32 = 0.5;
 const GRAVITY_BOUNDS: (f32, f32) = (9.4, 10.2);
+/// Least pace of loops whose motors are led in full: a hold solved for slower ones has less than its margins.
+const FULL_PACE: f32 = 0.9999;
 /// Display time of a reason, s.
 const NOTE_TIME: f32 = 10.0;
 
@@ -192,6 +194,21 @@ impl Context {
         self.dangers.step(i, &self.params, dt);
         self.oscillation.step(i.motion.map(|m| m.rate), dt);
         self.has_swung &= !at_rest;
+        if air == Air::Free && self.oscillation.swings_by_itself() {
+            self.swing();
+        }
+    }
+
+    /// The lead makes up for the motors' lag, 0.12 s at most: a hold has the margins that it was made for.
+    pub fn motors_follow(&self) -> bool {
+        self.hold_gains.usual.pace >= FULL_PACE
+    }
+
+    /// Goes on with gentle loops until it is disarmed, and says so.
+    fn swing(&mut self) {
+        self.oscillation.forget();
+        self.has_swung = true;
+        self.note(Some(Reason::Swings));
     }
 
     fn hold_gains(&self) -> &Gains {
@@ -367,9 +384,7 @@ impl Step<'_> {
     /// Goes on gently with a `hold` in which the vehicle swings, and says so.
     pub fn calm(&mut self, hold: &mut PositionHold) {
         if self.context.oscillation.swings() {
-            self.context.oscillation.forget();
-            self.context.has_swung = true;
-            self.context.note(Some(Reason::Swings));
+            self.context.swing();
             hold.change(self.context.hold_gains());
         }
     }

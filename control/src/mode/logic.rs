@@ -152,6 +152,7 @@ impl ModeLogic {
             inhibits,
             actuator_test: context.actuator_tests.answer(),
             remote: context.remote.answer(),
+            gentle: context.has_swung,
             thrust_factor: context.thrust.now(),
         }
     }

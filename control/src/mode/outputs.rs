@@ -29,6 +29,8 @@ pub struct Outputs {
     pub actuator_test: ActuatorTestAnswer,
     /// Answer to the newest order of a remote link.
     pub remote: RemoteAnswer,
+    /// The vehicle has swung by itself: roll and pitch slower.
+    pub gentle: bool,
     /// Thrust learnt in flight, by which the mixer divides its demands.
     pub thrust_factor: ThrustFactor,
 }

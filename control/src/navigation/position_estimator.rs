@@ -48,8 +48,9 @@ const STANDING: f32 = 0.05;
 const STAND_SPEED: f32 = 0.01;
 /// Variance of a vertical speed of zero at rest, (m/s)².
 const REST_SPEED: f32 = 0.01;
-/// Cut-off of the lateral and the vertical disturbance, rad/s.
-const LATERAL_CUTOFF: f32 = 20.0;
+/// Cut-off of the lateral disturbance, rad/s.
+pub const LATERAL_CUTOFF: f32 = 20.0;
+/// Cut-off of the vertical one, rad/s.
 const VERTICAL_CUTOFF: f32 = 8.0;
 
 /// A source that is rejected.

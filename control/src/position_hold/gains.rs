@@ -1,6 +1,7 @@
 //! Gains of the lateral feedback: the steady solution of a Riccati equation for the loops in force
 //! (docs/design/position-hold.md).
 
+use super::lag::Loops;
 use super::riccati::{self, Square};
 use crate::attitude::gains::Gains as LoopGains;
 use crate::maths::scalar;
@@ -19,8 +20,6 @@ const PERIOD: f32 = 0.01;
 const POSITION: f32 = 0.08;
 const VELOCITY: f32 = 0.5;
 const EFFORT: f32 = 1.0;
-/// Times as large, and its root, where the vehicle swings: half the pace, which leaves a margin of 2.4.
-const GENTLE: (f32, f32) = (4.0, 2.0);
 /// Correlation time of the gusts, s.
 const GUST: f32 = 1.0;
 /// Size of each state and of the input: single precision solves the equation of states of about one.
@@ -34,6 +33,8 @@ pub struct Gains {
     pub state: [f32; STATES],
     /// Pace of the loops below, 0 to 1.
     pub pace: f32,
+    /// Those loops.
+    pub loops: Loops,
 }
 
 /// Gains of a hold, and those for a vehicle that swings with them.
@@ -41,7 +42,7 @@ pub struct Gains {
 pub struct HoldGains {
     /// Those of a vehicle that does not swing.
     pub usual: Gains,
-    /// Those of a hold at half the pace.
+    /// Those over gentle loops.
     pub gentle: Gains,
 }
 
@@ -59,23 +60,23 @@ impl Gains {
     /// Gains for the loops of `p`: some 60,000 instructions, once at start-up. Zero, which holds no position, for loops
     /// that do not turn the vehicle.
     pub fn of(p: &Params) -> Self {
-        Self::weighed(p, POSITION, VELOCITY)
+        Self::over(p, &LoopGains::of(p))
     }
 
-    /// Gains of a hold that is half as fast, for a vehicle that swings in the other.
+    /// Gains over [gentle loops](LoopGains::gentle), for a vehicle that swings with the others.
     pub fn gentle(p: &Params) -> Self {
-        Self::weighed(p, GENTLE.0 * POSITION, GENTLE.1 * VELOCITY)
+        Self::over(p, &LoopGains::gentle(p))
     }
 
-    fn weighed(p: &Params, off: f32, moving: f32) -> Self {
-        let pace = LoopGains::of(p).pace;
-        let (a, b) = sampled(p);
+    fn over(p: &Params, loops: &LoopGains) -> Self {
+        let pace = loops.pace;
+        let (a, b) = sampled(loops);
         let per = |size: f32, weight: f32| (size / weight) * (size / weight);
         let [position, velocity, ..] = SIZES;
         let mut weights = [0.0; ORDER];
         let [on_position, on_velocity, ..] = &mut weights;
-        *on_position = per(position, off / pace);
-        *on_velocity = per(velocity, moving * scalar::inv_sqrt(pace));
+        *on_position = per(position, POSITION / pace);
+        *on_velocity = per(velocity, VELOCITY * scalar::inv_sqrt(pace));
         let solved = riccati::gains(&a, &b, &weights, EFFORT.recip() * EFFORT.recip());
         let mut state = [0.0; STATES];
         for ((gain, solved), size) in state.iter_mut().zip(solved).zip(SIZES) {
@@ -92,13 +93,14 @@ impl Gains {
                 [0.0; STATES]
             },
             pace,
+            loops: Loops::of(loops),
         }
     }
 }
 
 /// The discrete model in units of [`SIZES`], with u = v - d.
-fn sampled(p: &Params) -> (Square<ORDER>, [f32; ORDER]) {
-    let mut a = riccati::exponential(&continuous(p), PERIOD);
+fn sampled(loops: &LoopGains) -> (Square<ORDER>, [f32; ORDER]) {
+    let mut a = riccati::exponential(&continuous(loops), PERIOD);
     let mut b = [0.0; ORDER];
     for (row, reach) in a.iter_mut().zip(&mut b).take(STATES) {
         let [.., disturbance, input] = row;
@@ -109,14 +111,14 @@ fn sampled(p: &Params) -> (Square<ORDER>, [f32; ORDER]) {
 }
 
 /// The continuous model with its input, of the whole state, in units of [`SIZES`].
-fn continuous(p: &Params) -> Square<ORDER> {
-    let LoopGains {
+fn continuous(loops: &LoopGains) -> Square<ORDER> {
+    let &LoopGains {
         attitude_p,
         setpoint_cutoff: filter,
         rate_p: [roll_p, pitch_p],
         lag,
         ..
-    } = LoopGains::of(p);
+    } = loops;
     let motor = 1.0 / lag;
     // One law for both directions, made for the slower turn: the faster one leaves it more room.
     let rate = motor * roll_p.min(pitch_p);
@@ -172,7 +174,11 @@ mod tests {
 
     /// Position, velocity, tilt, its rate, its second derivative, both stages, disturbance; then the input.
     fn model(p: &Params) -> Matrix {
-        let loops = LoopGains::of(p);
+        model_of(&LoopGains::of(p))
+    }
+
+    /// The same of any loops.
+    fn model_of(loops: &LoopGains) -> Matrix {
         let filter = f64::from(loops.setpoint_cutoff);
         let (angle, rate) = (f64::from(loops.attitude_p), f64::from(loops.rate_p[1]));
         let motor = 1.0 / f64::from(loops.lag);
@@ -263,10 +269,15 @@ mod tests {
 
     /// The same where the arms push by `arms` s² of the tilt's second derivative, which the law takes for a disturbance.
     fn left_leaning(p: &Params, share: f64, arms: f64) -> f64 {
-        let gains = Gains::of(p).state.map(f64::from);
         let mut m = model(p);
         (m[1][2], m[1][4]) = (share, arms);
-        let (a, b) = discrete(&m);
+        left_of(&Gains::of(p), &m, arms)
+    }
+
+    /// The same of any `gains` over the model `m`.
+    fn left_of(gains: &Gains, m: &Matrix, arms: f64) -> f64 {
+        let gains = gains.state.map(f64::from);
+        let (a, b) = discrete(m);
         let step = |x: &Vec<f64>| -> Vec<f64> {
             let mut seen = x.clone();
             seen[7] += arms * x[4];
@@ -367,6 +378,32 @@ mod tests {
             };
             assert!(left(&p, 1.6) < 0.5, "{motor_tau}: {}", left(&p, 1.6));
         }
+    }
+
+    /// The model of `loops` over motors that lag `times` as much as they are made for.
+    fn lagging(loops: &LoopGains, times: f64) -> Matrix {
+        let mut m = model_of(loops);
+        m[4].iter_mut().for_each(|x| *x /= times);
+        m
+    }
+
+    #[test]
+    fn a_gentle_hold_bears_what_the_other_does_not() {
+        let p = Params::DEFAULT;
+        let worst = |gains: &Gains, loops: &LoopGains| {
+            let times = (10..60).map(|i| 0.1 * f64::from(i));
+            times
+                .take_while(|times| left_of(gains, &lagging(loops, *times), 0.0) < 1e-2)
+                .last()
+        };
+        let usual = worst(&Gains::of(&p), &LoopGains::of(&p));
+        let gentle = worst(&Gains::gentle(&p), &LoopGains::gentle(&p));
+        assert!(
+            usual
+                .zip(gentle)
+                .is_some_and(|(usual, gentle)| gentle > 1.25 * usual),
+            "{usual:?} {gentle:?}"
+        );
     }
 
     /// A roll acceleration bends the arms of the two sides apart, and their thrusts lean to the side of the roll: I φ'' = 4 d δ

@@ -4,12 +4,14 @@
 //! curve, plant), `laws` that of the moment to a body rate (filter, attitude and rate loop). Each is identified by an
 //! impulse of one step of 1 ms; their product is the loop's gain L(e^{jωT}), which gives the [`margins`].
 
+mod hold;
 mod laws;
 mod margins;
 mod response;
 mod resting;
 mod vehicle;
 
+pub use hold::hold_margins;
 pub use laws::Laws;
 pub use margins::Margins;
 pub use response::{Complex, Response};
@@ -22,6 +24,8 @@ use sophie_control::chain::CONTROL_RATE_HZ;
 
 use crate::scenario::Scenario;
 
+/// Step of attitude and rate loop, s.
+const STEP: f64 = 1.0 / CONTROL_RATE_HZ as f64;
 /// Lowest frequency, rad/s: below every integral's corner.
 const LOWEST: f64 = 1e-3;
 /// 3 % apart, which finds a margin to 1 %.
@@ -47,14 +51,18 @@ pub fn margins_of(vehicle: &Response, laws: &Laws, axis: usize) -> Margins {
             (omega, gain)
         })
         .collect();
-    Margins::of(&curve)
+    Margins::of(&curve, STEP)
 }
 
 /// From [`LOWEST`] to half the control rate, rad/s.
 fn frequencies() -> impl Iterator<Item = f64> {
-    let top = std::f64::consts::PI * f64::from(CONTROL_RATE_HZ);
-    let count = (libm::log10(top / LOWEST) * PER_DECADE) as i32;
-    (0..=count).map(move |i| LOWEST * libm::pow(top / LOWEST, f64::from(i) / f64::from(count)))
+    rising(LOWEST, std::f64::consts::PI / STEP)
+}
+
+/// From `low` to `top`, [`PER_DECADE`].
+fn rising(low: f64, top: f64) -> impl Iterator<Item = f64> {
+    let count = (libm::log10(top / low) * PER_DECADE) as i32;
+    (0..=count).map(move |i| low * libm::pow(top / low, f64::from(i) / f64::from(count)))
 }
 
 #[cfg(test)]

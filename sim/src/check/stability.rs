@@ -53,6 +53,18 @@ pub fn rows(margins: &[Margins; 3], built: &Built) -> Vec<Row> {
     rows
 }
 
+/// The lesser margin of the hold, forward and to the right: the factor by which a tilt may accelerate the vehicle more or less. What
+/// calibrations leave, 30 % of the inertias, 13 % of the motors' lag, 4 % of the torsion, takes 14 % of it.
+pub fn hold([forward, right]: &[Margins; 2]) -> Row {
+    Row::new(
+        "hold gain margin".to_owned(),
+        forward.gain.min(right.gain).min(100.0),
+        "",
+        Limit::AtLeast(1.0),
+    )
+    .advise("fit arms that twist less, measure motor_tau, or fly without hold")
+}
+
 /// √(k/m)/2π of the softest arm, body held, Hz, against the bandwidth of roll and pitch: beyond the mode the
 /// tips lag by half a turn, and a loop of more bandwidth shakes the body between them.
 fn arm_mode(margins: &[Margins; 3], built: &Built) -> Row {

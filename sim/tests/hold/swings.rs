@@ -1,5 +1,7 @@
 //! Motors that are slower than the default ones, known or not, and what a hold makes of a swing.
 
+use sophie_sim::check::Check;
+
 use super::*;
 
 /// A hold of a vehicle with motors of `lag` s that is told `told` s.
@@ -36,7 +38,7 @@ fn slow_motors_that_are_known_are_held_as_the_others() {
 }
 
 #[test]
-fn motors_that_are_slower_than_told_swing_and_are_held_gently_or_by_hand() {
+fn motors_that_are_slower_than_told_swing_and_are_held_gently() {
     let mut sum = 0.0;
     for seed in 1..=10 {
         let record = fly(&slow(seed, 60.0, 0.10, 0.05), &mut Silent);
@@ -45,12 +47,13 @@ fn motors_that_are_slower_than_told_swing_and_are_held_gently_or_by_hand() {
             let times = noticed + from..noticed + to;
             record.samples.iter().filter(|s| times.contains(&s.t)).collect()
         };
-        // Four seconds after it was noticed less than half is left, whoever flies.
+        assert!(record.outcome.accomplished, "{seed}: {}", record.outcome.reason);
+        // Four seconds after it was noticed what gusts make is left.
         let (before, after) = (rates(&within(-3.0, 0.0)), rates(&within(4.0, 24.0)));
-        assert!(after < 0.5 * before, "{seed}: {before} {after}");
+        assert!(after < 0.15 * before, "{seed}: {before} {after}");
         sum += after;
     }
-    assert!(sum / 10.0 < 28.0, "{} deg/s in the mean", sum / 10.0);
+    assert!(sum / 10.0 < 10.0, "{} deg/s in the mean", sum / 10.0);
 }
 
 /// What the false alarms of the watch rest on: about 8 deg/s.
@@ -65,5 +68,21 @@ fn gusts_of_a_strong_wind_are_no_swing() {
         let found = rates(&settled(&record));
         println!("{seed}: {found:.1} deg/s");
         assert!(found > 1.0 && found < 9.0, "{seed}: {found}");
+    }
+}
+
+/// The design check refuses what swings, and lets pass what does not.
+#[test]
+fn arms_that_twist_too_much_swing_as_the_design_check_says() {
+    for (torsion, swings) in [(0.5, true), (1.0, false)] {
+        let mut s = slow(4, 40.0, 0.05, 0.05);
+        s.vehicle.arm_torsion = torsion;
+        let margin = Check::of(&s)
+            .rows
+            .into_iter()
+            .find(|row| row.name == "hold gain margin");
+        assert_eq!(margin.map(|row| row.pass), Some(!swings), "{torsion}");
+        let record = fly(&s, &mut Silent);
+        assert_eq!(swung_at(&record).is_some(), swings, "{torsion}");
     }
 }

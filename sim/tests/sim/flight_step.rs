@@ -59,6 +59,7 @@ fn command(links: &Links) -> Command {
             .fresh(links.setpoint.stale_after)
             .unwrap_or(Setpoint::Stop),
         at_us: message.at.as_micros(),
+        gentle: links.gentle.look(|message| message.value).unwrap_or(false),
     }
 }
 

@@ -1,7 +1,8 @@
 //! A failed flight's reason names the quantity that ended it and its required value.
 
+use sophie_control::mode::Reason;
 use sophie_sim::flight::fly;
-use sophie_sim::record::{FlightRecord, Silent};
+use sophie_sim::record::{Event, FlightRecord, Silent};
 use sophie_sim::scenario::{Overrides, Scenario};
 
 fn flown(text: &str, overrides: &Overrides) -> FlightRecord {
@@ -40,13 +41,35 @@ fn the_reason_for_a_weak_vehicle_is_its_thrust_to_weight() {
 fn the_reason_for_an_oscillating_vehicle_is_its_swings() {
     for params in [
         "attitude_p = 12\nrate_roll_p = 40\nrate_pitch_p = 40",
-        "rate_pitch_p = 40",
-        "attitude_p = 12\nrate_pitch_p = 25",
+        "attitude_p = 12\nrate_pitch_p = 40",
     ] {
         // Each leaves the ground, where its feet shake it, within the pilot's patience.
         let line = reason(&format!("seed = 2\n{HOP}[params]\n{params}\n"));
         assert!(line.contains("swings by") && line.contains("deg/s"), "{line}");
     }
+}
+
+/// Gains with which pitch has a gain margin below 1 (`sophie check`).
+#[test]
+fn a_pitch_loop_that_swings_is_noticed_and_calmed_in_flight() {
+    let text = format!("seed = 2\n{HOP}[params]\nattitude_p = 12\nrate_pitch_p = 25\n");
+    let record = flown(&text, &Overrides::default());
+    assert!(record.outcome.accomplished, "{}", record.outcome.reason);
+    let said = |event: &Event| event.text.ends_with(Reason::Swings.text());
+    let noticed = record
+        .events
+        .iter()
+        .find(|event| said(event))
+        .map(|event| event.t);
+    let noticed = noticed.expect("the swing is named");
+    let rms = |from: f64, to: f64| {
+        let rates = record.samples.iter().filter(|s| (from..to).contains(&s.t));
+        let rates: Vec<f64> = rates.map(|s| s.rate[1].to_degrees()).collect();
+        (rates.iter().map(|r| r * r).sum::<f64>() / rates.len() as f64).sqrt()
+    };
+    let (before, after) = (rms(noticed - 1.0, noticed), rms(noticed + 5.0, noticed + 25.0));
+    println!("{before} {after}");
+    assert!(before > 50.0 && after < 0.2 * before, "{before} {after}");
 }
 
 #[test]

@@ -31,6 +31,7 @@ pub async fn run(links: &Links) {
             } else {
                 Setpoint::Stop
             },
+            gentle: links.gentle.look(|message| message.value).unwrap_or(false),
         });
         let command = command.unwrap_or_default();
         let feedback = links.mix.fresh_to(started, MixOutput::feedback);

@@ -48,6 +48,7 @@ pub async fn run(links: &Links) -> ! {
             inhibits,
             actuator_test,
             remote,
+            gentle,
             thrust_factor,
         } = logic.step(&inputs, tick.dt);
         links.setpoint.send(tick.started, rotors);
@@ -55,6 +56,7 @@ pub async fn run(links: &Links) -> ! {
         links.grip_memory.send(tick.started, grip_memory);
         links.actuator_test_answer.send(tick.started, actuator_test);
         links.remote_answer.send(tick.started, remote);
+        links.gentle.send(tick.started, gentle);
         links.thrust_factor.send(tick.started, thrust_factor);
         let limit = flow_limit.step(links, mode, tick.started);
         let vibrates = vibration.step(links, tick.started);

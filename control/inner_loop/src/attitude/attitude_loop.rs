@@ -100,6 +100,11 @@ impl AttitudeLoop {
         }
     }
 
+    /// Takes other gains.
+    pub fn change(&mut self, gains: &Gains) {
+        (self.p, self.cutoff) = (gains.attitude_p, gains.setpoint_cutoff);
+    }
+
     /// Bumpless restart: the target is `q` (unit, body to world) until the next setpoint.
     pub fn reset(&mut self, q: Quat) {
         let down = q.down_in_body();

@@ -20,6 +20,9 @@ const LEAD_MAX: f32 = 2.4;
 /// slowed by half (`sophie check`): gyro filter, frames, and the arms, which bend with thrust at 4.75 Hz.
 const OTHER_LAG: f32 = 0.03;
 
+/// Pace of gentle loops over that of the others: that for motors which lag twice as much as the loops are made for, 0.62.
+const GENTLE: f32 = (USUAL_LAG + OTHER_LAG) / (2.0 * USUAL_LAG + OTHER_LAG);
+
 /// Gains of roll and pitch in force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gains {
@@ -53,6 +56,19 @@ impl Gains {
             lead: amplified - 1.0,
             lag,
             pace,
+        }
+    }
+
+    /// Slower gains, for a vehicle that swings with the others.
+    pub fn gentle(p: &Params) -> Self {
+        let usual = Self::of(p);
+        Self {
+            attitude_p: GENTLE * usual.attitude_p,
+            setpoint_cutoff: GENTLE * usual.setpoint_cutoff,
+            rate_p: usual.rate_p.map(|gain| GENTLE * gain),
+            rate_i: usual.rate_i.map(|gain| GENTLE * GENTLE * gain),
+            pace: GENTLE * usual.pace,
+            ..usual
         }
     }
 }
@@ -93,6 +109,29 @@ mod tests {
             "{gains:?}"
         );
         assert!(gains.pace > 0.9999 && gains.rate_p[1] > 9.999, "{gains:?}");
+    }
+
+    #[test]
+    fn gentle_loops_are_those_of_motors_that_lag_twice_as_much() {
+        let p = Params::DEFAULT;
+        let (usual, gentle) = (Gains::of(&p), Gains::gentle(&p));
+        // 0.08 s of 0.13 s.
+        let close = |x: f32, y: f32| (x / y - 1.0).abs() < 1e-5;
+        assert!(close(gentle.pace, 0.08 / 0.13 * usual.pace), "{gentle:?}");
+        assert!(close(gentle.attitude_p, gentle.pace * p.attitude_p), "{gentle:?}");
+        assert!(
+            close(gentle.setpoint_cutoff, gentle.pace * usual.setpoint_cutoff),
+            "{gentle:?}"
+        );
+        assert!(
+            close(gentle.rate_p[1], gentle.pace * p.rate_pitch_p),
+            "{gentle:?}"
+        );
+        assert!(
+            close(gentle.rate_i[0], gentle.pace * gentle.pace * p.rate_roll_i),
+            "{gentle:?}"
+        );
+        assert_eq!((gentle.lead, gentle.lag), (usual.lead, usual.lag));
     }
 
     /// Twice the usual loop's lag, 0.08 s, is left: everything takes twice the time.

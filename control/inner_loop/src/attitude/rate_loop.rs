@@ -83,6 +83,15 @@ impl RateLoop {
         }
     }
 
+    /// Takes other gains of roll and pitch.
+    pub fn change(&mut self, gains: &Gains) {
+        let ([roll_p, pitch_p], [roll_i, pitch_i]) = (gains.rate_p, gains.rate_i);
+        (self.p, self.i) = (
+            Vec3::new(roll_p, pitch_p, self.p.z),
+            Vec3::new(roll_i, pitch_i, self.i.z),
+        );
+    }
+
     /// Clears integrals, derivatives and notch.
     pub fn reset(&mut self) {
         self.integral = Vec3::ZERO;

@@ -7,6 +7,7 @@ use super::messages::Demand;
 use super::step_clock::CONTROL_RATE_HZ;
 use crate::allocation::wrench::Wrench;
 use crate::attitude::attitude_loop::{AttitudeLoop, AttitudeSetpoint, Target};
+use crate::attitude::gains::Gains;
 use crate::attitude::messages::Attitude;
 use crate::attitude::rate_loop::{Feedback, RateLoop};
 use crate::chain::setpoint::Setpoint;
@@ -24,6 +25,8 @@ pub struct Command {
     pub setpoint: Setpoint,
     /// Its time, µs. Each is aimed at only once, which takes as long as half a step.
     pub at_us: u64,
+    /// The vehicle swings by itself: roll and pitch slower.
+    pub gentle: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,6 +72,9 @@ pub struct Control {
     kind: Kind,
     /// Time of the setpoint aimed at, µs.
     aimed: Option<u64>,
+    /// Gains of roll and pitch, and gentle ones.
+    gains: [Gains; 2],
+    gentle: bool,
 }
 
 impl Control {
@@ -80,6 +86,8 @@ impl Control {
             levers: [p.arm_d, p.arm_b],
             kind: Kind::None,
             aimed: None,
+            gains: [Gains::of(p), Gains::gentle(p)],
+            gentle: false,
         }
     }
 
@@ -96,6 +104,9 @@ impl Control {
         let kind = Kind::of(&command.setpoint);
         if kind != self.kind {
             self.change_to(kind, a);
+        }
+        if command.gentle != self.gentle {
+            self.change_pace(command.gentle);
         }
         if feedback.yaw_gated {
             self.attitude.capture_heading(a.q);
@@ -161,6 +172,15 @@ impl Control {
             self.rate.reset();
         }
         self.kind = kind;
+    }
+
+    #[cold]
+    fn change_pace(&mut self, gentle: bool) {
+        let [usual, slow] = &self.gains;
+        let gains = if gentle { slow } else { usual };
+        self.attitude.change(gains);
+        self.rate.change(gains);
+        self.gentle = gentle;
     }
 
     /// Rates towards `angle`, given at `at_us` µs.

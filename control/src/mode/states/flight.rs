@@ -53,6 +53,8 @@ impl Behaviour for Flight {
         {
             if !step.context.hold_seen_off {
                 step.context.note(Some(Reason::HoldSwitchNotOff));
+            } else if !step.context.motors_follow() {
+                step.context.note(Some(Reason::MotorsTooSlow));
             } else if !step.inputs.position_fresh() {
                 step.context.note(Some(Reason::NoPosition));
             }

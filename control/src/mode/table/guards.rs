@@ -66,6 +66,7 @@ guards! {
     HOLD_KEPT = "hold switch on, sticks in angle mode", |_, s| sticks(s, stick_positions::keeps_hold);
     HOLD_TURNED = "hold switch was off since the last try", |_, s| s.context.hold_seen_off;
     POSITION_FRESH = "position known", |_, s| s.inputs.position_fresh();
+    MOTORS_FOLLOW = "motors fast enough", |_, s| s.context.motors_follow();
     POSITION_LOST = "position lost for too long", |_, s| s.inputs.position_lost();
 
     SWINGS = "swings", |_, s| s.context.oscillation.swings();

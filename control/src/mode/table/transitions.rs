@@ -148,7 +148,7 @@ pub const TRANSITIONS: &[Transition] = &[
         To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
     row(&[Flight], &[SETS_DOWN, SWITCH_TURNED, FALLS_BESIDE], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
     row(&[Flight], &[MEANS_TO_PERCH, SWITCH_TURNED, SERVOS_FED, TOUCHED, LEVEL], To::Contact(entries::contact), Keep),
-    row(&[Flight], &[HOLD_ON, HOLD_TURNED, POSITION_FRESH, NOT_RESTING], To::Hold(entries::holding), Clear),
+    row(&[Flight], &[HOLD_ON, HOLD_TURNED, MOTORS_FOLLOW, POSITION_FRESH, NOT_RESTING], To::Hold(entries::holding), Clear),
     row(&[Hold], &[ASKED_TO_PERCH, MAY_APPROACH], To::Approach(entries::approach), Clear),
     row(&[Approach], &[COMMITTED, SLIDES_AT_TOUCH], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
     row(&[Approach], &[COMMITTED, TOUCHED, LEVEL], To::Contact(entries::contact), Keep),

@@ -1,11 +1,12 @@
 //! Holding a position: how it begins, what ends it, and what the sticks ask for meanwhile.
 
-use super::rig::Rig;
+use super::rig::{DT, Rig};
 use crate::chain::setpoint::Setpoint;
 use crate::maths::vector::Vec3;
 use crate::mode::*;
 use crate::navigation::estimate::Estimate;
 use crate::navigation::fix_age::{COAST_AGE, FRESH_AGE, HEIGHT_AGE};
+use crate::params::Params;
 use crate::pilot::rc::{StickMode, Sticks};
 
 /// Flying with a position that is `age` s old.
@@ -75,6 +76,52 @@ fn another_stick_mode_hands_back_too() {
         r.expect(0.1, Mode::Flight);
         assert_eq!(r.out.reason, Some(Reason::HoldSwitchNotOff));
     }
+}
+
+#[test]
+fn motors_that_no_lead_makes_up_for_are_not_held() {
+    for (motor_tau, mode) in [(0.12, Mode::Hold), (0.125, Mode::Flight)] {
+        let mut r = Rig::with(Params {
+            motor_tau,
+            ..Params::DEFAULT
+        });
+        r.fly();
+        set_age(&mut r, 0.0);
+        r.sticks().hold_switch = true;
+        r.expect(0.1, mode);
+        let refused = mode == Mode::Flight;
+        assert_eq!(
+            r.out.reason,
+            refused.then_some(Reason::MotorsTooSlow),
+            "{motor_tau}"
+        );
+    }
+}
+
+#[test]
+fn a_swing_in_flight_that_no_hand_makes_is_named_and_slows_the_loops_until_disarmed() {
+    let turning = |hz: f32| {
+        let mut r = Rig::flying();
+        for i in 0..300 {
+            let rate = 2.0 * (core::f32::consts::TAU * hz * DT * i as f32).sin();
+            let motion = r.inputs.motion.get_or_insert_default();
+            motion.rate = Vec3::new(0.0, rate, 0.0);
+            r.step();
+        }
+        assert_eq!(r.out.mode, Mode::Flight);
+        r
+    };
+    let mut r = turning(3.0);
+    assert!(r.out.gentle);
+    assert_eq!(r.out.reason, Some(Reason::Swings));
+    r.inputs.motion.get_or_insert_default().rate = Vec3::ZERO;
+    r.run(60.0);
+    assert!(r.out.gentle && r.out.reason.is_none());
+    r.sticks().arm_switch = false;
+    r.expect(0.1, Mode::Disarmed);
+    assert!(!r.out.gentle);
+    // What sticks may do is the pilot's.
+    assert!(!turning(1.2).out.gentle);
 }
 
 #[test]

@@ -52,8 +52,11 @@ fn on_reason(reason: Reason) -> &'static str {
         Reason::PerchSwitchNotOff => "Perch off, then on.",
         Reason::HoldSwitchNotOff => "Hold off, then on.",
         Reason::NoPosition => "Fly on by hand; look at what measures the pose.",
+        Reason::MotorsTooSlow => {
+            "Fly and perch by hand: `motor_tau` is above 0.12 s. Measure it again, or fit other motors."
+        }
         Reason::Swings => {
-            "It holds gently; if it goes on, fly by hand. `motor_tau`, then [tuning](tuning.md)."
+            "It goes on with slower loops; if it still swings, land. `motor_tau`, then [tuning](tuning.md)."
         }
         Reason::PositionStale => {
             "Steer by tilt, or hold off: it keeps only height and lean against the wind."

@@ -80,6 +80,7 @@ fn flight(print: &mut dyn FnMut(Arguments<'_>), name: &str, variant: Variant) {
             command = Command {
                 setpoint: setpoint(step / STRETCH, &mut noise),
                 at_us,
+                gentle: false,
             };
             surroundings.battery_ratio = Some(1.0 + 0.15 * noise.unit());
         }

@@ -116,6 +116,7 @@ impl Sequence {
             command: Command {
                 setpoint: Setpoint::Idle,
                 at_us: 0,
+                gentle: false,
             },
             arms: ArmReading {
                 at_us: 0,
@@ -150,6 +151,7 @@ impl Sequence {
             self.command = Command {
                 setpoint: setpoint(s.kind, sticks, self.thrust),
                 at_us: self.at_us,
+                gentle: false,
             };
         }
         if turn == 0 {

@@ -1,7 +1,6 @@
 //! Stability and margins of a loop from its gain over frequency.
 
 use super::response::{Complex, difference};
-use sophie_control::chain::CONTROL_RATE_HZ;
 use std::f64::consts::{PI, TAU};
 
 /// Margins of a loop.
@@ -22,14 +21,14 @@ pub struct Margins {
 }
 
 impl Margins {
-    /// Margins from the gains `curve` over rising frequencies (rad/s).
+    /// Margins from the gains `curve` over rising frequencies (rad/s), of a loop of steps of `step` s.
     ///
     /// The closed loop divides by 1 + L. With a factor 1 - z⁻¹ for each of L's n integrators all poles of
     /// F = (1 + L)(1 - z⁻¹)ⁿ are inside the unit circle, so along half of it, from a real number to another, F turns
     /// about 0 by π for each pole of the closed loop outside. A loop is stable if F does not turn.
     #[must_use]
-    pub fn of(curve: &[(f64, Complex)]) -> Self {
-        let stable = turned(curve).abs() < PI;
+    pub fn of(curve: &[(f64, Complex)], step: f64) -> Self {
+        let stable = turned(curve, step).abs() < PI;
         let (mut up, mut down, mut phase, mut crossover) = (f64::INFINITY, 0.0_f64, PI, 0.0);
         for ((_, a), (omega, b)) in curve.iter().zip(curve.iter().skip(1)) {
             // Phase crossover: through the negative real axis.
@@ -98,10 +97,10 @@ fn integrators(curve: &[(f64, Complex)]) -> u32 {
 }
 
 /// Angle by which F turns along `curve`, rad.
-fn turned(curve: &[(f64, Complex)]) -> f64 {
+fn turned(curve: &[(f64, Complex)], step: f64) -> f64 {
     let integrators = integrators(curve);
     let closed = |(omega, gain): &(f64, Complex)| {
-        let angle = omega / f64::from(CONTROL_RATE_HZ);
+        let angle = omega * step;
         let factor = difference(angle);
         (0..integrators).fold(Complex::X + *gain, |f, _| f.rotate(factor))
     };
@@ -120,7 +119,7 @@ mod tests {
 
     fn margins(gain: impl Fn(Complex) -> Complex) -> Margins {
         let curve: Vec<_> = frequencies().map(|w| (w, gain(Complex::new(0.0, w)))).collect();
-        Margins::of(&curve)
+        Margins::of(&curve, super::super::STEP)
     }
 
     fn one_over(s: Complex) -> Complex {

@@ -47,7 +47,7 @@ pub fn resting_margins(scenario: &Scenario, place: Place, share: f64) -> Margins
             (omega, loop_gain.rotate(factor))
         })
         .collect();
-    Margins::of(&curve)
+    Margins::of(&curve, super::STEP)
 }
 
 /// Growth rate of a slide on a pipe of `diameter` m without friction, 1/s, with the loop and without; 0 if the vehicle

@@ -64,3 +64,42 @@ fn arms_that_differ_turn_no_other_axis_into_the_loop() {
         assert!((0.7..1.4).contains(&share), "axis {axis}: {one:?} {other:?}");
     }
 }
+
+#[test]
+fn a_hold_has_less_room_the_more_its_model_is_off() {
+    let margin = |torsion: f64, told: f32| {
+        let mut s = Scenario::default_mission();
+        s.vehicle.arm_torsion = torsion;
+        s.params.motor_tau = told;
+        let [forward, right] = hold_margins(&s);
+        // The roll turns twice as fast: one law leaves it more.
+        assert!(
+            right.gain > forward.gain,
+            "{torsion} {told}: {forward:?} {right:?}"
+        );
+        forward
+    };
+    let usual = margin(1.0, 0.05);
+    assert!((usual.gain - 1.23).abs() < 0.03, "{usual:?}");
+    assert!(margin(2.0, 0.05).gain > usual.gain);
+    let soft = margin(0.5, 0.05);
+    assert!(
+        soft.gain < 0.9 && (6.0..10.0).contains(&soft.critical),
+        "{soft:?}"
+    );
+}
+
+/// The law's own model bears a factor of 1.6 (`loops_that_are_tuned_or_lag_otherwise_are_held`); it has neither gyro filter nor
+/// steps of the control.
+#[test]
+fn a_hold_over_stiff_arms_bears_the_share_that_its_model_does() {
+    let mut s = Scenario::default_mission();
+    s.vehicle.coupled_arms = false;
+    s.vehicle.arm_coefficients = [0.1, 0.0, 0.0, 0.0];
+    s.vehicle.gain_k = 1.0;
+    s.params.gain_k = 1.0;
+    (s.params.arm_a1, s.params.arm_a2, s.params.arm_b1, s.params.arm_b2) = (0.1, 0.0, 0.0, 0.0);
+    s.params.motor_tau = 0.05;
+    let [forward, _] = hold_margins(&s);
+    assert!((1.4..1.7).contains(&forward.gain), "{forward:?}");
+}

@@ -13,6 +13,7 @@ use sophie_control::chain::{
 };
 use sophie_control::maths::vector::{Quat, Vec3};
 use sophie_control::params::Params;
+use sophie_control::position_hold::BodyMotion;
 use sophie_mixers::Mixer;
 
 use super::response::Response;
@@ -131,25 +132,57 @@ impl Hovering {
         }
     }
 
-    /// Moments of the gentle loops.
-    fn held(&mut self) -> Wrench {
+    /// Other loops, that hold the present attitude.
+    pub(super) fn take_over(&mut self, control: Control) {
+        self.control = control;
+    }
+
+    /// True attitude and rates.
+    pub(super) fn motion(&self) -> BodyMotion {
         let pose = self.plant.pose();
         let [x, y, z, w] = pose.attitude.to_array().map(|q| q as f32);
-        let attitude = Attitude {
+        BodyMotion {
             q: Quat { w, x, y, z },
             rate: Vec3::from(pose.omega.as_vec3().to_array()),
+            carried: false,
+        }
+    }
+
+    /// `steps` of 1 ms towards roll and pitch of `setpoint`, with the thrust of the settled hover; returns the velocity that they
+    /// give, m/s, NED.
+    pub(super) fn fly(&mut self, setpoint: Setpoint, steps: usize) -> DVec3 {
+        let [roll, pitch, ..] = setpoint.numbers();
+        let at_us = self.at_us;
+        (0..steps).fold(DVec3::ZERO, |gained, _| {
+            let wrench = self.towards(roll, pitch, at_us);
+            gained + self.step(wrench)
+        })
+    }
+
+    /// Moments that hold it level.
+    fn held(&mut self) -> Wrench {
+        self.towards(0.0, 0.0, 1)
+    }
+
+    /// Moments of the loops towards roll and pitch, rad, of a setpoint at `at_us`.
+    fn towards(&mut self, roll: f32, pitch: f32, at_us: u64) -> Wrench {
+        let BodyMotion { q, rate, .. } = self.motion();
+        let attitude = Attitude {
+            q,
+            rate,
             calibrated: true,
             dt: DT as f32,
             ..Attitude::default()
         };
         let command = Command {
             setpoint: Setpoint::Angle {
-                roll: 0.0,
-                pitch: 0.0,
+                roll,
+                pitch,
                 yaw_rate: 0.0,
                 thrust: self.wrench.thrust,
             },
-            at_us: 1,
+            at_us,
+            gentle: false,
         };
         match self.control.step(&attitude, &command, &self.mix.feedback()) {
             Demand::Wrench(wrench) => wrench,
@@ -168,7 +201,8 @@ impl Hovering {
         self.step(wrench);
     }
 
-    fn step(&mut self, wrench: Wrench) {
+    /// Returns the velocity that the step gives, m/s, NED.
+    fn step(&mut self, wrench: Wrench) -> DVec3 {
         #[cfg(test)]
         STEPS.set(STEPS.get() + 1);
         self.at_us += 1000;
@@ -187,7 +221,9 @@ impl Hovering {
             self.plant.step(&actuators);
         }
         // Drag on the speed that a lean builds up would turn the vehicle over within seconds; the loops prevent that.
+        let gained = self.plant.pose().velocity;
         self.plant.place(PLACE, DVec3::ZERO);
+        gained
     }
 
     /// Body rate about `axis` (0 to 2) after 1 N·m in one step, rad/(s·N·m): half the difference of opposite pushes,

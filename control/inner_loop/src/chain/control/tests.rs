@@ -14,6 +14,7 @@ struct Bench {
     control: Control,
     attitude: Attitude,
     feedback: Feedback,
+    gentle: bool,
 }
 
 impl Bench {
@@ -26,11 +27,16 @@ impl Bench {
                 ..Attitude::default()
             },
             feedback: GIVEN,
+            gentle: false,
         }
     }
 
     fn run(&mut self, steps: usize, setpoint: Setpoint, at_us: u64) -> Demand {
-        let command = Command { setpoint, at_us };
+        let command = Command {
+            setpoint,
+            at_us,
+            gentle: self.gentle,
+        };
         let mut demand = Demand::Stop;
         for _ in 0..steps {
             demand = self.control.step(&self.attitude, &command, &self.feedback);
@@ -203,4 +209,29 @@ fn a_gated_yaw_takes_the_heading_along() {
         let is = bench.control.target().ahead;
         assert!((is - ahead).abs() < 5e-3, "{yaw_gated}: {is}");
     }
+}
+
+#[test]
+fn gentle_loops_ask_for_less_and_go_back() {
+    let mut bench = Bench::new();
+    let tilted = Setpoint::Rate {
+        rate: Vec3::new(0.5, 0.5, 0.5),
+        thrust: 18.0,
+    };
+    let mut moments = |gentle: bool| {
+        bench.control.rate.reset();
+        bench.gentle = gentle;
+        let Demand::Wrench(w) = bench.run(1, tilted, 0) else {
+            panic!("a wrench");
+        };
+        [w.roll, w.pitch, w.yaw]
+    };
+    let (usual, gentle, again) = (moments(false), moments(true), moments(false));
+    for (axis, slower) in [(0, 0.08 / 0.13), (1, 0.08 / 0.13), (2, 1.0)] {
+        assert!(
+            (gentle[axis] / usual[axis] - slower).abs() < 1e-3,
+            "{usual:?} {gentle:?}"
+        );
+    }
+    assert_eq!(usual, again);
 }
