@@ -194,9 +194,6 @@ impl Context {
         self.dangers.step(i, &self.params, dt);
         self.oscillation.step(i.motion.map(|m| m.rate), dt);
         self.has_swung &= !at_rest;
-        if air == Air::Free && self.oscillation.swings_by_itself() {
-            self.swing();
-        }
     }
 
     /// The lead makes up for the motors' lag, 0.12 s at most: a hold has the margins that it was made for.
@@ -205,7 +202,7 @@ impl Context {
     }
 
     /// Goes on with gentle loops until it is disarmed, and says so.
-    fn swing(&mut self) {
+    pub fn swing(&mut self) {
         self.oscillation.forget();
         self.has_swung = true;
         self.note(Some(Reason::Swings));

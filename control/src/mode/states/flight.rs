@@ -44,6 +44,9 @@ impl Flight {
 
 impl Behaviour for Flight {
     fn advance(&mut self, step: &mut Step<'_>) {
+        if step.context.oscillation.swings_by_itself() {
+            step.context.swing();
+        }
         if step
             .inputs
             .sticks

@@ -102,19 +102,13 @@ fn motors_that_no_lead_makes_up_for_are_not_held() {
 fn a_swing_in_flight_that_no_hand_makes_is_named_and_slows_the_loops_until_disarmed() {
     let turning = |hz: f32| {
         let mut r = Rig::flying();
-        for i in 0..300 {
-            let rate = 2.0 * (core::f32::consts::TAU * hz * DT * i as f32).sin();
-            let motion = r.inputs.motion.get_or_insert_default();
-            motion.rate = Vec3::new(0.0, rate, 0.0);
-            r.step();
-        }
+        swing(&mut r, hz);
         assert_eq!(r.out.mode, Mode::Flight);
         r
     };
     let mut r = turning(3.0);
     assert!(r.out.gentle);
     assert_eq!(r.out.reason, Some(Reason::Swings));
-    r.inputs.motion.get_or_insert_default().rate = Vec3::ZERO;
     r.run(60.0);
     assert!(r.out.gentle && r.out.reason.is_none());
     r.sticks().arm_switch = false;
@@ -303,10 +297,10 @@ fn what_ends_a_flight_ends_a_hold() {
     assert!(matches!(r.run(6.0), Mode::Landed | Mode::Disarmed));
 }
 
-/// Pitch rates of a swing of 40 deg at 1.3 Hz for `seconds`.
-fn swing(r: &mut Rig, seconds: f32) {
-    for i in 0..(seconds / super::rig::DT) as u32 {
-        let rate = 2.7 * (8.2 * super::rig::DT * i as f32).sin();
+/// Pitch rates of four periods of a swing.
+fn swing(r: &mut Rig, hz: f32) {
+    for i in 0..(4.0 / hz / DT) as u32 {
+        let rate = 2.7 * (core::f32::consts::TAU * hz * DT * i as f32).sin();
         if let Some(motion) = &mut r.inputs.motion {
             motion.rate = Vec3::new(0.0, rate, 0.0);
         }
@@ -319,18 +313,29 @@ fn swing(r: &mut Rig, seconds: f32) {
 
 #[test]
 fn a_swing_is_held_gently_and_one_that_goes_on_is_handed_back() {
-    let mut r = holding();
-    swing(&mut r, 3.0);
-    assert_eq!((r.out.mode, r.out.reason), (Mode::Hold, Some(Reason::Swings)));
-    r.expect(2.0, Mode::Hold);
-    swing(&mut r, 3.0);
-    assert_eq!((r.out.mode, r.out.reason), (Mode::Flight, Some(Reason::Swings)));
+    for hz in [1.3, 3.0] {
+        let mut r = holding();
+        swing(&mut r, hz);
+        assert_eq!(
+            (r.out.mode, r.out.reason),
+            (Mode::Hold, Some(Reason::Swings)),
+            "{hz} Hz"
+        );
+        assert!(r.out.gentle);
+        r.expect(2.0, Mode::Hold);
+        swing(&mut r, hz);
+        assert_eq!(
+            (r.out.mode, r.out.reason),
+            (Mode::Flight, Some(Reason::Swings)),
+            "{hz} Hz"
+        );
+    }
 }
 
 #[test]
 fn a_swing_by_hand_before_the_hold_does_not_count() {
     let mut r = placed(0.02);
-    swing(&mut r, 3.0);
+    swing(&mut r, 1.3);
     r.sticks().hold_switch = true;
     r.step();
     r.sticks().throttle = 0.5;
