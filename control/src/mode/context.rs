@@ -31,8 +31,8 @@ use crate::thrust_factor::{Air, ThrustLearning, ThrustSample};
 /// Time constant of learning gravity at rest, s, and bounds, m/s²: a part's bias of some 40 mg.
 const GRAVITY_TIME: f32 = 0.5;
 const GRAVITY_BOUNDS: (f32, f32) = (9.4, 10.2);
-/// Least pace of loops whose motors are led in full: a hold solved for slower ones has less than its margins.
-const FULL_PACE: f32 = 0.9999;
+/// Least pace of loops that a hold flies over: that for motors of 0.20 s, the slowest that were flown.
+const LEAST_PACE: f32 = 0.7;
 /// Display time of a reason, s.
 const NOTE_TIME: f32 = 10.0;
 
@@ -196,9 +196,9 @@ impl Context {
         self.has_swung &= !at_rest;
     }
 
-    /// The lead makes up for the motors' lag, 0.12 s at most: a hold has the margins that it was made for.
+    /// The motors are fast enough for a hold.
     pub fn motors_follow(&self) -> bool {
-        self.hold_gains.usual.pace >= FULL_PACE
+        self.hold_gains.usual.pace >= LEAST_PACE
     }
 
     /// Goes on with gentle loops until it is disarmed, and says so.

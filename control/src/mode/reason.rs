@@ -52,7 +52,7 @@ reasons! {
     HoldSwitchNotOff = "turn hold switch off first",
     /// The position estimate is missing or too old to begin a hold.
     NoPosition = "no position to hold",
-    /// The motors lag more than a hold makes up for.
+    /// The motors lag more than any that a hold was flown with.
     MotorsTooSlow = "motors too slow to hold",
     /// Hold by dead reckoning: height and estimated wind only, until a position returns or the hold ends.
     PositionStale = "dead reckoning: steer it",

@@ -79,8 +79,8 @@ fn another_stick_mode_hands_back_too() {
 }
 
 #[test]
-fn motors_that_no_lead_makes_up_for_are_not_held() {
-    for (motor_tau, mode) in [(0.12, Mode::Hold), (0.125, Mode::Flight)] {
+fn motors_slower_than_those_that_were_flown_are_not_held() {
+    for (motor_tau, mode) in [(0.2, Mode::Hold), (0.21, Mode::Flight)] {
         let mut r = Rig::with(Params {
             motor_tau,
             ..Params::DEFAULT

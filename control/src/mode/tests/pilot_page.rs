@@ -53,7 +53,7 @@ fn on_reason(reason: Reason) -> &'static str {
         Reason::HoldSwitchNotOff => "Hold off, then on.",
         Reason::NoPosition => "Fly on by hand; look at what measures the pose.",
         Reason::MotorsTooSlow => {
-            "Fly and perch by hand: `motor_tau` is above 0.12 s. Measure it again, or fit other motors."
+            "Fly and perch by hand: `motor_tau` is above 0.2 s. Measure it again, or fit other motors."
         }
         Reason::Swings => {
             "It goes on with slower loops; if it still swings, land. `motor_tau`, then [tuning](tuning.md)."
