@@ -9,6 +9,7 @@
 //! tilt may give more or less acceleration than this vehicle's; the estimate itself is taken to be true.
 
 use sophie_control::chain::Control;
+use sophie_control::maths::filter::LowPass;
 use sophie_control::maths::vector::Vec3;
 use sophie_control::navigation::estimate::Estimate;
 use sophie_control::navigation::position_estimator::LATERAL_CUTOFF;
@@ -40,28 +41,24 @@ pub fn hold_margins(scenario: &Scenario) -> [Margins; 2] {
         settled.period([0.0; 3]);
     }
     // Forward and to the right at once: the axes hardly know of each other.
-    let answers = IMPULSES
-        .map(|size| size)
-        .into_iter()
-        .enumerate()
-        .map(|(which, size)| {
-            let answer = |sign: f64| -> Vec<[f64; 2]> {
-                let mut holding = settled.clone();
-                let mut impulse = [0.0; 3];
-                impulse[which] = sign * size;
-                (0..ANSWERED)
-                    .map(|k| holding.period(if k == 0 { impulse } else { [0.0; 3] }))
-                    .collect()
-            };
-            let (there, back) = (answer(1.0), answer(-1.0));
-            [0, 1].map(|axis| {
-                let half = there
-                    .iter()
-                    .zip(&back)
-                    .map(|(t, b)| 0.5 * (t[axis] - b[axis]) / size);
-                Response::of(&half.collect::<Vec<_>>())
-            })
-        });
+    let answers = IMPULSES.into_iter().enumerate().map(|(which, size)| {
+        let answer = |sign: f64| -> Vec<[f64; 2]> {
+            let mut holding = settled.clone();
+            let mut impulse = [0.0; 3];
+            impulse[which] = sign * size;
+            (0..ANSWERED)
+                .map(|k| holding.period(if k == 0 { impulse } else { [0.0; 3] }))
+                .collect()
+        };
+        let (there, back) = (answer(1.0), answer(-1.0));
+        [0, 1].map(|axis| {
+            let half = there
+                .iter()
+                .zip(&back)
+                .map(|(t, b)| 0.5 * (t[axis] - b[axis]) / size);
+            Response::of(&half.collect::<Vec<_>>())
+        })
+    });
     let answers: Vec<[Response; 2]> = answers.collect();
     [0, 1].map(|axis| {
         let curve: Vec<_> = rising(LOWEST, std::f64::consts::PI / PERIOD)
@@ -90,9 +87,14 @@ fn motion(angle: f64) -> [Complex; 3] {
         later.rotate(velocity) * PERIOD + later * (0.5 * PERIOD * PERIOD),
         sum,
     );
-    let follow = f64::from(LATERAL_CUTOFF) * PERIOD / (1.0 + f64::from(LATERAL_CUTOFF) * PERIOD);
+    let follow = follow();
     let disturbance = quotient(later * follow, Complex::X - later * (1.0 - follow));
     [position, velocity, disturbance]
+}
+
+/// Share of its way that the estimator's low pass of the disturbance makes in a period.
+fn follow() -> f64 {
+    f64::from(LowPass::gain(LATERAL_CUTOFF, PERIOD as f32))
 }
 
 /// A vehicle under the hold's law, over loops at their gains, that stays where it is.
@@ -120,9 +122,8 @@ impl Holding {
     /// the right, m/s².
     fn period(&mut self, off: [f64; 3]) -> [f64; 2] {
         let motion = self.vehicle.motion();
-        let follow = f64::from(LATERAL_CUTOFF) * PERIOD / (1.0 + f64::from(LATERAL_CUTOFF) * PERIOD);
         for (leaned, tilt) in self.leaned.iter_mut().zip(tilt(&motion)) {
-            *leaned += (tilt - *leaned) * follow;
+            *leaned += (tilt - *leaned) * follow();
         }
         let [position, velocity, disturbance] = off;
         let level = |[x, y]: [f64; 2]| Vec3::new(x as f32, y as f32, 0.0);

@@ -3,14 +3,20 @@
 use super::*;
 use crate::plant::air::wind::WindSpec;
 
-#[test]
-fn stiff_level_arms_leave_the_motor_and_the_inertia() {
+/// The default mission's vehicle with arms that hardly bend.
+fn stiff() -> Scenario {
     let mut s = Scenario::default_mission();
     s.vehicle.coupled_arms = false;
     s.vehicle.arm_coefficients = [0.1, 0.0, 0.0, 0.0];
     s.vehicle.gain_k = 1.0;
     s.params.gain_k = 1.0;
     (s.params.arm_a1, s.params.arm_a2, s.params.arm_b1, s.params.arm_b2) = (0.1, 0.0, 0.0, 0.0);
+    s
+}
+
+#[test]
+fn stiff_level_arms_leave_the_motor_and_the_inertia() {
+    let s = stiff();
     // The plant's curve of command to thrust is not the stack's: the gain is the slope of one at the other.
     let hovering = Hovering::of(&s);
     for (axis, inertia) in [0.021, 0.044, 0.063].into_iter().enumerate() {
@@ -93,12 +99,7 @@ fn a_hold_has_less_room_the_more_its_model_is_off() {
 /// steps of the control.
 #[test]
 fn a_hold_over_stiff_arms_bears_the_share_that_its_model_does() {
-    let mut s = Scenario::default_mission();
-    s.vehicle.coupled_arms = false;
-    s.vehicle.arm_coefficients = [0.1, 0.0, 0.0, 0.0];
-    s.vehicle.gain_k = 1.0;
-    s.params.gain_k = 1.0;
-    (s.params.arm_a1, s.params.arm_a2, s.params.arm_b1, s.params.arm_b2) = (0.1, 0.0, 0.0, 0.0);
+    let mut s = stiff();
     s.params.motor_tau = 0.05;
     let [forward, _] = hold_margins(&s);
     assert!((1.4..1.7).contains(&forward.gain), "{forward:?}");
